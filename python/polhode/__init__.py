@@ -3,67 +3,51 @@
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from polhode._algebra.algebra import Algebra as Algebra
-from polhode._algebra.algebra import algebra as algebra
-from polhode._algebra.constructors import I as I
-from polhode._algebra.constructors import axial as axial
-from polhode._algebra.constructors import bivector as bivector
-from polhode._algebra.constructors import cross as cross
-from polhode._algebra.constructors import e1 as e1
-from polhode._algebra.constructors import e2 as e2
-from polhode._algebra.constructors import e3 as e3
-from polhode._algebra.constructors import from_axial as from_axial
-from polhode._algebra.constructors import from_pauli as from_pauli
-from polhode._algebra.constructors import multivector as multivector
-from polhode._algebra.constructors import scalar as scalar
-from polhode._algebra.constructors import split as split
-from polhode._algebra.constructors import to_pauli as to_pauli
-from polhode._algebra.constructors import trivector as trivector
-from polhode._algebra.constructors import vector as vector
-from polhode._algebra.grades import concatenate as concatenate
-from polhode._algebra.grades import stack as stack
-from polhode._algebra.multivector import Multivector as Multivector
-from polhode._algebra.rotor import Rotor as Rotor
-from polhode._native import SceneError as SceneError
+from polhode._algebra.algebra import Algebra, algebra
+from polhode._algebra.constructors import (
+    I,
+    axial,
+    bivector,
+    cross,
+    e1,
+    e2,
+    e3,
+    from_axial,
+    from_pauli,
+    multivector,
+    scalar,
+    split,
+    to_pauli,
+    trivector,
+    vector,
+)
+from polhode._algebra.grades import concatenate, stack
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._native import SceneError
 from polhode._native import __version__ as __version__
 
 if TYPE_CHECKING:
-    from polhode import event as event
-    from polhode import force as force
+    from polhode import event, force, torque
     from polhode import jax as jax
-    from polhode import torque as torque
-    from polhode._algebra.interpolation import RotorSpline as RotorSpline
-    from polhode._algebra.interpolation import mean as mean
-    from polhode._algebra.interpolation import slerp as slerp
-    from polhode._algebra.linear_map import LinearMap as LinearMap
-    from polhode._algebra.serialize import from_dict as from_dict
-    from polhode._algebra.serialize import to_dict as to_dict
-    from polhode._algebra.transform import RigidTransform as RigidTransform
-    from polhode._formula.agreement import Agreement as Agreement
-    from polhode._formula.errors import FormulaError as FormulaError
-    from polhode._formula.formula import Formula as Formula
-    from polhode._formula.formula import evaluate as evaluate
-    from polhode._formula.formula import formula as formula
-    from polhode._mechanics.bodies import Body as Body
-    from polhode._mechanics.bodies import Inertia as Inertia
-    from polhode._mechanics.closed_forms import DampedTop as DampedTop
-    from polhode._mechanics.closed_forms import LagrangeTop as LagrangeTop
-    from polhode._mechanics.closed_forms import LarmorSphere as LarmorSphere
-    from polhode._mechanics.free_motion import FlowDerivatives as FlowDerivatives
-    from polhode._mechanics.free_motion import FreeMotion as FreeMotion
-    from polhode._mechanics.free_motion import SymmetricTop as SymmetricTop
-    from polhode._mechanics.free_motion import describe_free as describe_free
-    from polhode._mechanics.result import Certificate as Certificate
-    from polhode._mechanics.result import Crossings as Crossings
-    from polhode._mechanics.result import Failure as Failure
-    from polhode._mechanics.simulate import simulate as simulate
-    from polhode._mechanics.simulate import simulate_blocks as simulate_blocks
-    from polhode._mechanics.state import State as State
-    from polhode._mechanics.statistics import Moments as Moments
-    from polhode._mechanics.stepper import Stepper as Stepper
-    from polhode._mechanics.trajectory import Trajectory as Trajectory
-    from polhode._scene.scene import Scene as Scene
-    from polhode._viewer.notebook import view as view
+    from polhode._algebra.interpolation import RotorSpline, mean, slerp
+    from polhode._algebra.linear_map import LinearMap
+    from polhode._algebra.serialize import from_dict, to_dict
+    from polhode._algebra.transform import RigidTransform
+    from polhode._formula.agreement import Agreement
+    from polhode._formula.errors import FormulaError
+    from polhode._formula.formula import Formula, evaluate, formula
+    from polhode._mechanics.bodies import Body, Inertia
+    from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere
+    from polhode._mechanics.free_motion import FlowDerivatives, FreeMotion, SymmetricTop, describe_free
+    from polhode._mechanics.result import Certificate, Crossings, Failure
+    from polhode._mechanics.simulate import simulate, simulate_blocks
+    from polhode._mechanics.state import State
+    from polhode._mechanics.statistics import Moments
+    from polhode._mechanics.stepper import Stepper
+    from polhode._mechanics.trajectory import Trajectory
+    from polhode._scene.scene import Scene
+    from polhode._viewer.notebook import view
 
 # Without `jax`, which needs JAX to be installed.
 # fmt: off

@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.constructors import as_point
+from polhode._algebra.constructors import as_bivectors, as_point
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import bivector_of, function_of, law_of_formula, number, shown, three
+from polhode._mechanics.laws import function_of, law_of_formula, number, shown
+from polhode._mechanics.parameters import check_finite
 
 
 @dataclass(frozen=True, repr=False)
@@ -80,7 +81,10 @@ def spin(plane: Any, rate: float = 0.0, *, direction: int = 0, terminal: bool = 
     The spin is the component of ω along the axis of the plane: ``spin(e3*e1)`` finds the flips of a T-handle
     about e2.
     """
-    components = np.array(bivector_of(plane, "the plane"))
+    components = as_bivectors(plane, "the plane")
+    if components.shape != (3,):
+        raise ValueError(f"the plane must be a single value, got shape {components.shape}")
+    check_finite(components, "the plane")
     return _event("spin", direction, terminal, _unit(components, "the plane"), number(rate, "rate"))
 
 
@@ -124,7 +128,7 @@ def _event(name: str, direction: int, terminal: bool, *arguments: Any) -> Event:
 
 
 def _direction(value: Any, name: str) -> tuple[float, ...]:
-    return _unit(np.array(three(as_point(value, name), name)), name)
+    return _unit(as_point(value, name), name)
 
 
 def _unit(components: Any, name: str) -> tuple[float, ...]:

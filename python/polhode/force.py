@@ -13,27 +13,18 @@ from polhode import _native
 from polhode._algebra.constructors import as_point
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import function_of, law_of_formula, number, shown, three
+from polhode._mechanics.laws import Sum, function_of, law_of_formula, number, shown
 from polhode._mechanics.registry import FORCES
 
 
 @dataclass(frozen=True, repr=False)
-class Force:
+class Force(Sum):
     """A sum of forces, returned by the functions of this module.
 
     Forces are immutable values: equal if their arguments are equal, hashable, and picklable.
     """
 
     laws: tuple[_native.Force, ...]
-
-    def __add__(self, other: Force) -> Force:
-        if not isinstance(other, Force):
-            return NotImplemented
-        return Force(self.laws + other.laws)
-
-    def __radd__(self, other: object) -> Force:
-        """``0 + force``, so that ``sum(forces)`` works."""
-        return self if other == 0 else NotImplemented
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Force(())"
@@ -114,7 +105,7 @@ def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Forc
 def _force(name: str, *values: Any) -> Force:
     """Return the force of the registry with these values for its arguments."""
     arguments = zip(FORCES[name].arguments, values, strict=False)
-    convert = {"scalar": number, "vector": _point}
+    convert: dict[str, Any] = {"scalar": number, "vector": _point}
     return _native_force(name, *(convert[x.shape](value, x.name) for x, value in arguments))
 
 
@@ -123,7 +114,7 @@ def _native_force(name: str, *arguments: Any) -> Force:
 
 
 def _point(value: Any, name: str) -> tuple[float, ...]:
-    return three(as_point(value, f"the force's {name}"), name)
+    return tuple(as_point(value, f"the force's {name}").tolist())
 
 
 def _shown(law: _native.Force) -> str:

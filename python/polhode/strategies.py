@@ -142,7 +142,6 @@ def _directions(planes: Array) -> Array:
 
 
 def _arrays(shape: Shape, numbers: Strategy) -> Strategy:
-    """Arrays of floats of this shape."""
     count = math.prod(shape)
     return st.lists(numbers, min_size=count, max_size=count).map(
         lambda x: np.array(x, dtype=float).reshape(shape)

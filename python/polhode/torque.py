@@ -21,8 +21,8 @@ from polhode import _native
 from polhode._algebra.constructors import as_bivectors, bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body, Inertia, bodies_of
-from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
+from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of
+from polhode._mechanics.laws import Sum, finite, function_of, law_of_formula, shown
 from polhode._mechanics.parameters import (
     bivectors,
     common,
@@ -73,22 +73,13 @@ _KINDS = ("linear", "cubic")
 
 
 @dataclass(frozen=True, repr=False)
-class Torque:
+class Torque(Sum):
     """A sum of torque laws, returned by the functions of this module.
 
     Laws are immutable values: equal if their arguments are equal, hashable, and picklable.
     """
 
     laws: tuple[_native.Law, ...]
-
-    def __add__(self, other: Torque) -> Torque:
-        if not isinstance(other, Torque):
-            return NotImplemented
-        return Torque(self.laws + other.laws)
-
-    def __radd__(self, other: object) -> Torque:
-        """``0 + torque``, so that ``sum(torques)`` works."""
-        return self if other == 0 else NotImplemented
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Torque(())"
@@ -118,9 +109,7 @@ class Torque:
         if state.shape:
             raise ValueError(f"the state must be a single one, got batch {state.shape}")
         bodies, laws = about_pivot(bodies_of(inertia), self.laws)
-        body = bodies[()]
-        if isinstance(body, Body):
-            body = body.inertia_about(0) if self.holds else body.inertia
+        body = inertia_of(bodies[()], self.holds)
         rotor, omega = state.rotor._data, state.omega_body._data
         time = finite(as_float(state.time if t is None else t, "t"), "t")
         return bivector(_native.torque_at(list(laws), body._core, rotor, omega, time))

@@ -19,12 +19,13 @@ pytest.importorskip("matplotlib")
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from polhode._figures import handout as _handout
-from polhode._figures import phase_portrait
+from polhode._figures import phase_portrait, spheres
 from polhode._figures import tilt as _tilt
 from polhode._figures.camera import View
 from polhode._figures.handout import handout_figure, inertia_of_plane, swept_trivector, turned_vector
-from polhode._figures.registry import KINDS, encoded
-from polhode._figures.style import HERPOLHODE, MOMENTUM, OMEGA, POLHODE, TRACE
+from polhode._figures.palette import HERPOLHODE, MOMENTUM, OMEGA, POLHODE, TRACE
+from polhode._figures.registry import KINDS
+from polhode._figures.style import encoded
 from polhode._mechanics.smooth import samples
 
 R0 = ph.Rotor.from_components([4, -2, 1, 2])
@@ -196,7 +197,7 @@ def test_symmetric_bodies_and_spheres_are_drawn(i):
 def test_a_long_title_is_wrapped():
     motion = free()
     motion.attributes["title"] = "A $5 body " * 20
-    for kind in KINDS.keys() - {"locus"}:
+    for kind in set(KINDS) - {"locus"}:
         figure = drawn(motion.plot(kind))
         box = figure._suptitle.get_window_extent()
         assert box.x0 >= 0
@@ -334,14 +335,14 @@ def test_the_portrait_of_a_satellite_has_its_amplitude():
 
 def test_families_are_motions_of_one_momentum_and_energy():
     moments = np.array([1.0, 2.0, 3.0])
-    family = phase_portrait._family(moments)
+    family, divides = phase_portrait._without_wheel(moments)
     assert len(family) == 16
     for curve in family:
         np.testing.assert_allclose(np.linalg.norm(curve, axis=1), 1, rtol=1e-12)
         energy = 0.5 * (curve**2 / moments).sum(axis=1)
         np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
         np.testing.assert_allclose(curve[0], curve[-1], atol=1e-12)
-    for circle in phase_portrait._separatrix(moments):
+    for circle in divides:
         np.testing.assert_allclose(np.linalg.norm(circle, axis=1), 1, rtol=1e-12)
         np.testing.assert_allclose((circle**2 / moments).sum(axis=1), 1 / moments[1], rtol=1e-12)
 
@@ -365,8 +366,8 @@ def test_the_map_and_the_sphere_show_the_motion():
 
 def test_a_wheels_family_has_equal_energies():
     moments, h = np.array([60.0, 80.0, 100.0]), np.array([0, 0.4, 0.1])
-    chosen = phase_portrait._Axes(2, 0, 1, -1.0)
-    for curve in phase_portrait._family_with_wheel(moments, h, chosen):
+    chosen = spheres.Frame(2, 0, 1, -1.0)
+    for curve in phase_portrait._with_wheel(moments, h, chosen)[0]:
         energy = 0.5 * ((curve - h) ** 2 / moments).sum(axis=1)
         np.testing.assert_allclose(np.linalg.norm(curve, axis=1), 1, rtol=1e-12)
         # Straight lines between cells of 1.5°.

@@ -10,8 +10,9 @@ import polhode as ph
 
 pytest.importorskip("matplotlib")
 from polhode._figures.camera import View
+from polhode._figures.over_time import motion_figure
+from polhode._figures.palette import PLANES, POLHODE, TRACE
 from polhode._figures.spheres import axis_figure, polhode_figure
-from polhode._figures.style import PLANES, POLHODE, TRACE, motion_figure
 
 R0 = ph.Rotor.from_components([4, -2, 1, 2])
 TIMES = np.linspace(0, 10, 201)

@@ -9,8 +9,7 @@ import pytest
 
 import polhode as ph
 from command_line import SCENE, polhode, summary_of
-from polhode._report.summary import summary
-from polhode._report.text import QUANTITIES, as_text
+from polhode._report.summary import QUANTITIES, as_text, summary
 
 
 def with_tables(tables, scene=SCENE):

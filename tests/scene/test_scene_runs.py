@@ -14,8 +14,7 @@ import polhode as ph
 import processes
 from command_line import POLHODE, SCENE, polhode, summary_of
 from polhode._cli import ensemble as _ensemble_run
-from polhode._report.ensemble.collect import EnsembleRecords
-from polhode._report.ensemble.quantiles import LEVELS, first_above, quantiles
+from polhode._report.ensemble.collect import LEVELS, EnsembleRecords, first_above, quantiles
 from polhode._support import memory
 
 FREE = (

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
-from polhode._report.summary import summary
-from polhode._report.text import as_text
+from polhode._report.summary import as_text, summary
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -46,7 +46,7 @@ class Painted:
 
 def paint(monkeypatch):
     """Replace the studio of figures and films, also without Playwright; return the list of those opened."""
-    from polhode._figures import film, scene
+    from polhode._figures import film
 
     opened = []
 
@@ -56,6 +56,5 @@ def paint(monkeypatch):
         yield opened[-1]
 
     monkeypatch.setitem(sys.modules, "playwright", ModuleType("playwright"))
-    for module in (film, scene):
-        monkeypatch.setattr(module, "studio", studio)
+    monkeypatch.setattr(film, "studio", studio)
     return opened

@@ -11,7 +11,12 @@ export interface PageDocument {
   /** Files that the scene refers to, gzip in base64. */
   files?: Record<string, string>;
   /** A motion computed by Python. */
-  recorded?: Recorded;
+  recorded?: {
+    /** `About` as JSON text, with method `recorded`. */
+    about: string;
+    /** Rows of states (`State`), little-endian float64, gzip in base64. */
+    rows: string;
+  };
   /** The page to show first; by default the motion. */
   page?: "motion" | "algebra";
   /** Lines of the algebra page. */
@@ -35,13 +40,6 @@ export function parsed(text: string, where: string): PageDocument {
       ? `${where} is not a viewer document: it has no format`
       : `${where}: this page reads documents of format 1, not ${String(format)}`,
   );
-}
-
-export interface Recorded {
-  /** `About` as JSON text, with method `recorded`. */
-  about: string;
-  /** Rows of states (`State`), little-endian float64, gzip in base64. */
-  rows: string;
 }
 
 /** The view, synchronised between Python and the page. */

@@ -24,7 +24,8 @@ const PAPER: Palette = { ...LIGHT, background: "#ffffff" };
  * child `<script type="application/json">` or at the address in `src`; without one, the first preset.
  *
  * Attributes: `theme` is auto, light or dark; `compact` leaves out panels where space is small; `bare` draws nothing
- * but what `capture` returns. The attributes `data-…` have the state that is shown, with all digits.
+ * but what `capture` returns. It dispatches `connected` and `disconnected`: notebooks remove cells that are scrolled
+ * away, and restore them. The attributes `data-…` have the state that is shown, with all digits.
  */
 export class PolhodeViewer extends HTMLElement {
   static readonly observedAttributes = ["theme", "compact", "src"];
@@ -65,7 +66,7 @@ export class PolhodeViewer extends HTMLElement {
 
   set document(given: PageDocument | null) {
     this.given = given;
-    if (this.model && given) void this.show(this.model, given);
+    if (given) void this.model?.show(given).catch(this.report);
   }
 
   connectedCallback(): void {
@@ -75,10 +76,12 @@ export class PolhodeViewer extends HTMLElement {
       Reflect.deleteProperty(this, "document");
       this.given = early;
     }
-    if (this.model) return;
-    this.dataset["state"] = "loading";
-    render(<p class="notice">Loading…</p>, this.place);
-    void this.start();
+    if (!this.model) {
+      this.dataset["state"] = "loading";
+      render(<p class="notice">Loading…</p>, this.place);
+      void this.start();
+    }
+    this.dispatchEvent(new Event("connected"));
   }
 
   disconnectedCallback(): void {
@@ -86,13 +89,16 @@ export class PolhodeViewer extends HTMLElement {
     queueMicrotask(() => {
       if (!this.isConnected) this.stop();
     });
+    this.dispatchEvent(new Event("disconnected"));
   }
 
   attributeChangedCallback(name: string, _old: string | null, value: string | null): void {
     if (!this.model) return;
     if (name === "theme") this.model.look({ theme: themeOf(value) });
     else if (name === "src")
-      void this.source().then((given) => given && this.show(this.model!, given), this.report);
+      void this.source()
+        .then((given) => given && this.model?.show(given))
+        .catch(this.report);
     else this.draw(this.model);
   }
 
@@ -102,7 +108,7 @@ export class PolhodeViewer extends HTMLElement {
       if (!this.isConnected || this.model) return;
       this.model = model;
       if (this.hasAttribute("theme")) model.look({ theme: themeOf(this.getAttribute("theme")) });
-      await this.first(model);
+      await this.first(model).catch(this.report);
       // The element may have been removed in the meantime.
       if (this.model !== model) return;
       this.watch(model);
@@ -113,26 +119,14 @@ export class PolhodeViewer extends HTMLElement {
     }
   }
 
-  /** Shows the given document, by default playing; the page reports its errors. */
+  /** Shows the given document, by default playing. */
   private async first(model: Model): Promise<void> {
-    try {
-      const given = this.given ?? (await this.child()) ?? (await this.source());
-      this.given ??= given;
-      if (given) await model.show(given);
-      if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
-      else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
-        model.look({ playing: mayAutoplay() });
-    } catch (error) {
-      model.problem.value = words(error);
-    }
-  }
-
-  private async show(model: Model, given: PageDocument): Promise<void> {
-    try {
-      await model.show(given);
-    } catch (error) {
-      model.problem.value = words(error);
-    }
+    const given = this.given ?? (await this.child()) ?? (await this.source());
+    this.given ??= given;
+    if (given) await model.show(given);
+    if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
+    else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
+      model.look({ playing: mayAutoplay() });
   }
 
   /** The document inside the element, after it was parsed. */

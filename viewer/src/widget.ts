@@ -5,20 +5,16 @@
 import { effect } from "@preact/signals";
 import { State } from "./core/core.ts";
 import type { PageDocument, ViewState } from "./document.ts";
+import type { PolhodeViewer } from "./element.tsx";
 import type { Model } from "./model/model.ts";
 
 /** Python's traits, from anywidget. */
-export interface Traits {
+interface Traits {
   get(name: string): unknown;
   set(name: string, value: unknown): void;
   on(event: string, heard: () => void): void;
   off(event: string, heard: () => void): void;
   save_changes(): void;
-}
-
-interface Viewer extends HTMLElement {
-  document: PageDocument | null;
-  readonly ready: Promise<Model>;
 }
 
 const VIEW = ["time", "playing", "speed", "camera", "theme", "shown"] as const;
@@ -27,62 +23,43 @@ const HEARD = ["document", "scene", ...VIEW] as const;
 /** Interval in ms at which changes are sent to Python: while a motion plays, each frame changes. */
 const PAUSE = 100;
 
-/** Reports when it is connected and disconnected: notebooks remove cells that are scrolled away, and restore them. */
-class Anchor extends HTMLElement {
-  entered = () => {};
-  left = () => {};
-
-  connectedCallback(): void {
-    this.entered();
-  }
-
-  disconnectedCallback(): void {
-    this.left();
-  }
-}
-
 /** Shows the widget in an element of the notebook; returns the function that removes it. */
 export function render({ model: traits, el }: { model: Traits; el: HTMLElement }): () => void {
-  if (!customElements.get("polhode-anchor")) customElements.define("polhode-anchor", Anchor);
-  const viewer = document.createElement("polhode-viewer") as Viewer;
+  const viewer = document.createElement("polhode-viewer") as PolhodeViewer;
   viewer.style.cssText = "display: block; height: min(40rem, 85vh)";
   viewer.document = present(traits);
-  const anchor = document.createElement("polhode-anchor") as Anchor;
   let leave = () => {};
-  const disconnect = () => {
-    leave();
-    leave = () => {};
-  };
   let away = false;
-  anchor.entered = () => {
+  const entered = () => {
     // The viewer starts again, with the current traits.
     if (away) viewer.document = present(traits);
     away = false;
     const { ready } = viewer;
     void ready.then((model) => {
       if (viewer.ready !== ready || !viewer.isConnected) return;
-      disconnect();
+      leave();
       leave = connected(viewer, model, traits);
     });
   };
-  anchor.left = () => {
-    disconnect();
+  const left = () => {
+    leave();
+    leave = () => {};
     // An element that is connected again by then was only moved.
     queueMicrotask(() => {
       away = !viewer.isConnected;
     });
   };
-  el.append(viewer, anchor);
+  viewer.addEventListener("connected", entered);
+  viewer.addEventListener("disconnected", left);
+  el.append(viewer);
   return () => {
-    anchor.entered = anchor.left = () => {};
-    disconnect();
+    viewer.removeEventListener("connected", entered);
     viewer.remove();
-    anchor.remove();
   };
 }
 
 /** The document of the current traits. */
-export function present(traits: Traits): PageDocument {
+function present(traits: Traits): PageDocument {
   const given = traits.get("document") as PageDocument;
   const scene = traits.get("scene") as string | null;
   // A notebook has many widgets: none plays by default.
@@ -101,11 +78,7 @@ function known(traits: Traits, names: readonly string[]): Partial<ViewState> {
 }
 
 /** Synchronises traits and signals; returns the function that stops it. */
-export function connected(
-  viewer: { document: PageDocument | null },
-  model: Model,
-  traits: Traits,
-): () => void {
+function connected(viewer: { document: PageDocument | null }, model: Model, traits: Traits): () => void {
   let sending = false;
   let timer: ReturnType<typeof setTimeout> | undefined;
 

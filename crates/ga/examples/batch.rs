@@ -3,10 +3,12 @@
 //! `cargo run --release -p polhode-ga --example batch [rows]`
 
 use polhode_ga::product::{Grades, Plan, Product};
-use polhode_ga::rows::product::{Element, multiply_adds, turn};
+use polhode_ga::rows::product::{Element, turn};
 use polhode_ga::rows::rotor_functions;
+use polhode_ga::simd::lanes::{Work, fastest};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::{Algebra, Signature};
+use std::hint::black_box;
 use std::time::Instant;
 
 const VECTOR: Grades = Grades(0b0010);
@@ -33,7 +35,7 @@ fn line<T: Element>(what: &str, rows: usize, read: usize, written: usize, work: 
     let ours = best(rows, work);
     let half = (read + written) * rows / 2;
     let (from, mut to) = (numbers::<T>(half), numbers::<T>(half));
-    let copy = best(rows, || to.copy_from_slice(std::hint::black_box(&from)));
+    let copy = best(rows, || to.copy_from_slice(black_box(&from)));
     let rate = (size_of::<T>() * (read + written)) as f64 / ours;
     println!("{what:<34}{ours:>8.2} ns{copy:>8.2} ns{:>7.0} %{rate:>7.1} GB/s", 100.0 * copy / ours);
 }
@@ -45,7 +47,7 @@ fn product<T: Element>(what: &str, rows: usize, ga: Grades, gb: Grades, rows_b: 
     let (a, b) = (numbers::<T>(rows * na), numbers::<T>(rows_b * nb));
     let mut out = numbers::<T>(rows * nout);
     line::<T>(what, rows, na + if rows_b == 1 { 0 } else { nb }, nout, || {
-        plan.run_threads(threads, &a, &b, &mut out);
+        plan.run(threads, &a, &b, &mut out);
     });
 }
 
@@ -53,13 +55,37 @@ fn product<T: Element>(what: &str, rows: usize, ga: Grades, gb: Grades, rows_b: 
 fn turning<T: Element>(what: &str, rows: usize, rotors: usize) {
     let (r, v) = (numbers::<T>(4 * rotors), numbers::<T>(3 * rows));
     let mut out = numbers::<T>(3 * rows);
-    line::<T>(what, rows, 3 + if rotors == 1 { 0 } else { 4 }, 3, || turn(&r, &v, VECTOR, &mut out));
+    line::<T>(what, rows, 3 + if rotors == 1 { 0 } else { 4 }, 3, || {
+        turn(Threads::ONE, &r, &v, VECTOR, &mut out)
+    });
 }
 
-/// The multiply-adds that the machine can do in a nanosecond.
+/// `N` independent chains of products and sums in registers.
+struct Chains<const N: usize>;
+
+impl<const N: usize> Work for Chains<N> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> f64 {
+        let x = black_box(0.999);
+        let mut chains: [f64; N] = std::array::from_fn(|i| x + i as f64);
+        for _ in 0..1000 {
+            for z in &mut chains {
+                *z = if FUSED { z.mul_add(x, x) } else { *z * x + x };
+            }
+        }
+        chains.iter().sum()
+    }
+}
+
+/// The multiply-adds that the machine can do in a nanosecond: 48 chains fit the registers of AVX2, 96 hide the latency
+/// of AVX-512.
 fn peak() -> f64 {
-    let rate = |many| 1.0 / best(multiply_adds(many), || _ = multiply_adds(many));
-    rate(false).max(rate(true))
+    fn rate<const N: usize>() -> f64 {
+        1.0 / best(1000 * N, || _ = black_box(fastest(Chains::<N>)))
+    }
+    rate::<48>().max(rate::<96>())
 }
 
 /// Full products in a larger algebra, beside the multiply-adds that they take.
@@ -69,7 +95,7 @@ fn full(rows: usize, peak: f64, p: usize, q: usize, r: usize) {
     let plan = Plan::new(&algebra, Product::Geometric, all, all);
     let count = rows * plan.sizes.0;
     let (a, b, mut out) = (numbers::<f64>(count), numbers::<f64>(count), numbers::<f64>(count));
-    let ours = best(rows, || plan.run(&a, &b, &mut out));
+    let ours = best(rows, || plan.run(Threads::ONE, &a, &b, &mut out));
     let share = 100.0 * plan.terms.len() as f64 / ours / peak;
     println!("{:<34}{ours:>8.2} ns{share:>20.0} % of the peak", format!("full * full, Cl({p},{q},{r})"));
 }

@@ -72,9 +72,9 @@ fn many(runner: &Runner, rows: usize) {
                 runner.run(Threads::ONE, &[r, v, a, b, c], &mut [&mut out], 0..rows).expect("it has a value");
             },
             &mut || {
-                turn(r, v, VECTOR, &mut turned);
-                wedge.run(a, b, &mut plane);
-                dot.run(&plane, c, &mut dotted);
+                turn(Threads::ONE, r, v, VECTOR, &mut turned);
+                wedge.run(Threads::ONE, a, b, &mut plane);
+                dot.run(Threads::ONE, &plane, c, &mut dotted);
                 for ((sum, x), y) in sum.iter_mut().zip(&turned).zip(&dotted) {
                     *sum = x + y;
                 }

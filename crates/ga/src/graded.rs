@@ -1,11 +1,8 @@
 //! A single value of G3 with grades known at run time, as in dynamic languages.
 
 use crate::g3::rotor::Rotor;
-use crate::g3::values::{Vector, geometric};
+use crate::g3::values::{GRADE, Vector, geometric};
 use crate::product::{Engine, Grades, Plan, Product};
-
-/// Where each grade of G3 begins among the eight components, and where the last one ends.
-const STARTS: [usize; 5] = [0, 1, 4, 7, 8];
 
 /// The components of the grades present, in basis order; zeros follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,13 +65,7 @@ impl Graded {
     /// The eight components, zeros for the grades it does not hold.
     pub fn full(&self) -> [f64; 8] {
         let mut full = [0.0; 8];
-        let mut next = 0;
-        for k in (0..4).filter(|&k| self.grades.contains(k)) {
-            for slot in &mut full[STARTS[k]..STARTS[k + 1]] {
-                *slot = self.components[next];
-                next += 1;
-            }
-        }
+        places(self.grades).zip(self.components).for_each(|(place, x)| full[place] = x);
         full
     }
 
@@ -85,13 +76,7 @@ impl Graded {
         }
         let full = self.full();
         let mut part = Graded { components: [0.0; 8], grades };
-        let mut next = 0;
-        for k in (0..4).filter(|&k| grades.contains(k)) {
-            for x in &full[STARTS[k]..STARTS[k + 1]] {
-                part.components[next] = *x;
-                next += 1;
-            }
-        }
+        part.components.iter_mut().zip(places(grades)).for_each(|(slot, place)| *slot = full[place]);
         part
     }
 
@@ -180,6 +165,11 @@ impl Graded {
     }
 }
 
+/// The places of the components of some grades among all eight.
+fn places(grades: Grades) -> impl Iterator<Item = usize> {
+    (0..8).filter(move |&i| grades.contains(GRADE[i]))
+}
+
 /// The number of components of some grades.
 pub(crate) fn size(grades: Grades) -> usize {
     const SIZES: [u8; 16] = [0, 1, 3, 4, 3, 4, 6, 7, 1, 2, 4, 5, 4, 5, 7, 8];
@@ -187,54 +177,4 @@ pub(crate) fn size(grades: Grades) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::rows::product::turn;
-    use crate::table::G3;
-
-    fn numbers(seed: usize, count: usize) -> Vec<f64> {
-        (0..count).map(|i| ((seed * 31 + i) as f64 * 0.7).sin()).collect()
-    }
-
-    /// Every product of every pair of sets of grades equals the batch kernels bit for bit.
-    #[test]
-    fn single_values_equal_the_batches() {
-        for (ga, gb) in (1..16).flat_map(|a| (1..16).map(move |b| (Grades(a), Grades(b)))) {
-            let (a, b) = (numbers(1, size(ga)), numbers(2, size(gb)));
-            let (left, right) = (Graded::new(&a, ga).unwrap(), Graded::new(&b, gb).unwrap());
-            for product in Product::ALL {
-                let plan = Plan::g3(product, ga, gb);
-                let mut expected = vec![0.0; plan.sizes.2];
-                plan.run(&a, &b, &mut expected);
-                let got = left.product(product, &right);
-                assert_eq!(got.components(), expected, "{product:?} {ga:?} {gb:?}");
-                assert_eq!(got.grades(), plan.grades);
-            }
-            let rotor = Rotor::from_components([0.3, -0.2, 0.9, 0.4]).unwrap();
-            let mut expected = vec![0.0; b.len()];
-            turn(&rotor.components(), &b, gb, &mut expected);
-            assert_eq!(right.turned(rotor).components(), expected);
-        }
-    }
-
-    #[test]
-    fn parts_and_sums_follow_the_basis() {
-        for grades in (1..16).map(Grades) {
-            let value = Graded::new(&numbers(3, size(grades)), grades).unwrap();
-            let full = value.full();
-            for (x, i) in value.components().iter().zip(grades.indices(&G3)) {
-                assert_eq!(*x, full[i]);
-            }
-            let all = value.with_grades(Grades::ALL);
-            assert_eq!(all.components(), full);
-            assert_eq!(all.with_grades(grades), value);
-            let sum = value.zip(&Graded::new(&[1.0], Grades::SCALAR).unwrap(), |x, y| x + y);
-            assert_eq!(sum.full()[0], full[0] + 1.0);
-            for (i, x) in value.reverse().full().iter().enumerate() {
-                assert_eq!(*x, if G3.blades()[i].grade() >= 2 { -full[i] } else { full[i] });
-            }
-        }
-        assert_eq!(Graded::new(&[1.0, 2.0], Grades::SCALAR), None);
-        assert_eq!(Graded::new(&[1.0], Grades(16)), None);
-    }
-}
+mod tests;

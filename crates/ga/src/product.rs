@@ -7,56 +7,56 @@ use crate::rows::tiles::Tiles;
 use crate::table::{Algebra, G3};
 use std::sync::OnceLock;
 
-/// The products of the handout, and the contractions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Product {
-    /// The geometric product `AB`: every grade.
-    Geometric,
-    /// `A∧B`: grade r + s.
-    Wedge,
-    /// `A·B`: grade abs(r − s).
-    Dot,
-    /// `A×B = ½(AB − BA)`: the pairs of blades that anticommute.
-    Commutator,
-    /// Left contraction `A⌋B`: grade s − r.
-    LeftContraction,
-    /// Right contraction `A⌊B`: grade r − s.
-    RightContraction,
-    /// `⟨AB⟩`: grade 0.
-    Scalar,
+/// An enum whose variants have names.
+macro_rules! named {
+    ($(#[$doc:meta])* $type:ident: $count:literal { $($(#[$about:meta])* $variant:ident $name:literal,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $type {
+            $($(#[$about])* $variant,)*
+        }
+
+        impl $type {
+            /// Every one, in the order of the enum.
+            pub const ALL: [$type; $count] = [$($type::$variant),*];
+
+            /// The one of this name.
+            pub fn from_name(name: &str) -> Option<$type> {
+                $type::ALL.into_iter().find(|one| one.name() == name)
+            }
+
+            /// Its name.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $($type::$variant => $name,)*
+                }
+            }
+        }
+    };
+}
+pub(crate) use named;
+
+named! {
+    /// The products of the handout, and the contractions.
+    Product: 7 {
+        /// The geometric product `AB`: every grade.
+        Geometric "geometric",
+        /// `A∧B`: grade r + s.
+        Wedge "wedge",
+        /// `A·B`: grade abs(r − s).
+        Dot "dot",
+        /// `A×B = ½(AB − BA)`: the pairs of blades that anticommute.
+        Commutator "commutator",
+        /// Left contraction `A⌋B`: grade s − r.
+        LeftContraction "left_contraction",
+        /// Right contraction `A⌊B`: grade r − s.
+        RightContraction "right_contraction",
+        /// `⟨AB⟩`: grade 0.
+        Scalar "scalar",
+    }
 }
 
 impl Product {
-    /// Every product, in the order of the enum.
-    pub const ALL: [Product; 7] = [
-        Product::Geometric,
-        Product::Wedge,
-        Product::Dot,
-        Product::Commutator,
-        Product::LeftContraction,
-        Product::RightContraction,
-        Product::Scalar,
-    ];
-
-    /// The product of this name: `geometric`, `wedge`, `dot`, `commutator`, `left_contraction`,
-    /// `right_contraction`, `scalar`.
-    pub fn from_name(name: &str) -> Option<Product> {
-        Product::ALL.into_iter().find(|p| p.name() == name)
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Product::Geometric => "geometric",
-            Product::Wedge => "wedge",
-            Product::Dot => "dot",
-            Product::Commutator => "commutator",
-            Product::LeftContraction => "left_contraction",
-            Product::RightContraction => "right_contraction",
-            Product::Scalar => "scalar",
-        }
-    }
-
     /// Whether the grade-k product of blades of grades r and s is kept.
     fn keeps(self, r: usize, s: usize, k: usize, anticommute: bool) -> bool {
         match self {
@@ -206,29 +206,4 @@ impl Plan {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn grades_of(product: Product, ga: u16, gb: u16) -> u16 {
-        Plan::new(&G3, product, Grades(ga), Grades(gb)).grades.0
-    }
-
-    #[test]
-    fn grades_follow_the_products() {
-        assert_eq!(grades_of(Product::Geometric, 0b0010, 0b0010), 0b0101); // vector vector
-        assert_eq!(grades_of(Product::Geometric, 0b0010, 0b0100), 0b1010); // vector bivector
-        assert_eq!(grades_of(Product::Wedge, 0b0010, 0b0010), 0b0100);
-        assert_eq!(grades_of(Product::Dot, 0b0001, 0b0010), 0b0010); // 3·a = 3a
-        assert_eq!(grades_of(Product::LeftContraction, 0b0100, 0b0010), 0b0001); // vanishes
-        assert_eq!(grades_of(Product::Commutator, 0b0100, 0b0100), 0b0100);
-        assert_eq!(grades_of(Product::Wedge, 0b0100, 0b0100), 0b0001); // vanishes: the scalar 0
-    }
-
-    #[test]
-    fn names_round_trip() {
-        for product in Product::ALL {
-            assert_eq!(Product::from_name(product.name()), Some(product));
-        }
-        assert_eq!(Product::from_name("outer"), None);
-    }
-}
+mod tests;

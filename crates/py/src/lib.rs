@@ -34,14 +34,12 @@ mod _native {
     #[pymodule_export]
     use crate::mechanics::law_value::LawValue;
     #[pymodule_export]
-    use crate::mechanics::motion::symmetric_top;
-    #[pymodule_export]
     use crate::mechanics::simulation::{Motion, methods, simulate};
     #[pymodule_export]
     use crate::mechanics::stepper::Stepper;
 
     #[pymodule_export]
-    use crate::mechanics::closed_forms::{DampedTop, LagrangeTop, LarmorSphere};
+    use crate::mechanics::closed_forms::{DampedTop, LagrangeTop, LarmorSphere, symmetric_top};
     #[pymodule_export]
     use crate::mechanics::torque::{Law, orbit_directions, torque_at};
 

@@ -8,7 +8,8 @@ use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start};
-use polhode_rigid::laws::torque::{Axes, FormulaTorque, Gains, Orbit, Torque};
+use polhode_rigid::laws::formula::{Formula, Purpose};
+use polhode_rigid::laws::torque::{Axes, Gains, Orbit, Torque};
 use polhode_rigid::methods::Method;
 use polhode_rigid::run::Options;
 use polhode_rigid::state::center::Center;
@@ -43,7 +44,7 @@ fn best(runs: u32, mut run: impl FnMut()) -> f64 {
 }
 
 fn formula(text: &str) -> Torque {
-    Torque::Formula(FormulaTorque::new(text, Axes::Body, Names::new([]), |_| None).unwrap())
+    Torque::Formula(Formula::new(text, Purpose::Torque(Axes::Body), Names::new([]), |_| None).unwrap())
 }
 
 fn ensemble(bodies: usize, laws: &[Torque]) -> Ensemble {

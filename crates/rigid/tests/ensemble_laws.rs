@@ -7,10 +7,12 @@ use polhode_ga::{Bivector, Graded, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start, Summary};
 use polhode_rigid::error::TorqueError;
-use polhode_rigid::laws::torque::{Axes, FormulaTorque, FunctionTorque, Gains, Kind, Orbit, Table, Torque};
+use polhode_rigid::laws::formula::{Formula, Purpose};
+use polhode_rigid::laws::torque::{Axes, Gains, Kind, Orbit, Table, Torque};
 use polhode_rigid::methods::Method;
 use polhode_rigid::run::Options;
 use polhode_rigid::state::center::Center;
+use polhode_rigid::state::point::{Function, Seen};
 use std::sync::Arc;
 
 /// More than two blocks, the last not full.
@@ -52,7 +54,7 @@ fn formula(text: &str, axes: Axes, c: [f64; 3], k: f64) -> Torque {
     names.bind("c".to_owned(), Meaning::Value(Type::of(Grades(0b0010))));
     names.bind("k".to_owned(), Meaning::Value(Type::SCALAR));
     let value = |input: &Input| Some(if input.name == "c" { vector(c) } else { scalar(k) });
-    Torque::Formula(FormulaTorque::new(text, axes, names, value).unwrap())
+    Torque::Formula(Formula::new(text, Purpose::Torque(axes), names, value).unwrap())
 }
 
 fn table(axes: Axes, kind: Kind) -> Torque {
@@ -66,7 +68,7 @@ fn laws(body: usize) -> Vec<(&'static str, Torque)> {
     let gains = |which: usize| Gains::new(three(body, which).map(|x| 1.0 + 0.5 * x));
     let in_body = Torque::GravityGradient(Orbit::circular(1.0 + 0.5 * number(body, 3)));
     let ellipse = Orbit::new(1.0 + 0.5 * number(body, 3), 0.4 + 0.3 * number(body, 4), number(body, 5));
-    let function = move |time: f64, rotor: Rotor, omega: Bivector| -> Result<Bivector, TorqueError> {
+    let function = move |&Seen { time, rotor, omega, .. }: &Seen| -> Result<Bivector, TorqueError> {
         Ok(rotor.reverse().apply_bivector(Bivector([time, 0.0, number(body, 1)])) - omega * 0.1)
     };
     let c = three(body, 6);
@@ -96,7 +98,7 @@ fn laws(body: usize) -> Vec<(&'static str, Torque)> {
             ),
         ),
         ("formula_space", formula("c∧(R e1 ~R) − 0.1 k Ω", Axes::Space, c, number(body, 2))),
-        ("function", Torque::Function(FunctionTorque::new(function))),
+        ("function", Torque::Function(Function::new(function))),
     ]
 }
 
@@ -277,7 +279,7 @@ fn a_body_that_fails_fails_alone() {
     assert_only_these_fail(&healthy, &failing, &ill);
     // Functions that give up.
     let function = |until: f64| {
-        Torque::Function(FunctionTorque::new(move |time, _, omega| {
+        Torque::Function(Function::new(move |&Seen { time, omega, .. }| {
             if time > until { Err(TorqueError("too late".into())) } else { Ok(omega * -0.1) }
         }))
     };

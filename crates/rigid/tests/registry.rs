@@ -4,8 +4,9 @@ use polhode_ga::formula::{Given, Input, Meaning, Names, Type};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor};
 use polhode_rigid::laws::conserved::energy;
+use polhode_rigid::laws::formula::{Formula, Purpose};
 use polhode_rigid::laws::registry::{Argument, Entry, FORCES, Kernel, Limit, Shape, TORQUES, torque};
-use polhode_rigid::laws::torque::{Axes, FormulaTorque, Torque, total, wheel};
+use polhode_rigid::laws::torque::{Axes, Torque, total, wheel};
 use polhode_rigid::state::phase::{Gyrostat, Phase};
 
 /// Numbers that every law takes: those of rotors of norm 1, those of ellipses below 1.
@@ -93,7 +94,7 @@ fn formula(entry: &Entry<Torque>, numbers: &[f64]) -> Torque {
             (shape, own) => Given::Value(Graded::new(own, grades(shape))?),
         })
     };
-    let law = FormulaTorque::new(entry.formula, Axes::Body, names, value);
+    let law = Formula::new(entry.formula, Purpose::Torque(Axes::Body), names, value);
     Torque::Formula(law.unwrap_or_else(|error| panic!("{}: {}", entry.name, error.message)))
 }
 

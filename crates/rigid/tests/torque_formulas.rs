@@ -3,7 +3,8 @@
 use polhode_ga::formula::{Error, Given, Input, Meaning, Names, Space, Type, define};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};
-use polhode_rigid::laws::torque::{Axes, Dependence, FormulaTorque, Torque};
+use polhode_rigid::laws::formula::{Formula, Purpose};
+use polhode_rigid::laws::torque::{Axes, Dependence, Torque};
 use polhode_rigid::state::phase::{Gyrostat, Phase};
 
 /// A law with a vector c, a number k, and the function `pull(a, b) = a∧b`.
@@ -17,7 +18,7 @@ fn law(text: &str, axes: Axes) -> Result<Torque, Error> {
         "k" => Some(Given::Value(Graded::default().map(|_| 2.0))),
         _ => None,
     };
-    FormulaTorque::new(text, axes, names, value).map(Torque::Formula)
+    Formula::new(text, Purpose::Torque(axes), names, value).map(Torque::Formula)
 }
 
 fn state() -> (Gyrostat, Phase) {

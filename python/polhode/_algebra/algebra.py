@@ -126,7 +126,6 @@ class Algebra(_native.Algebra):
     @property
     @functools.cache  # noqa: B019  # algebras live as long as the process
     def _grade_of(self) -> np.ndarray[Any, np.dtype[np.int64]]:
-        """The grade of each basis element."""
         return np.array([bits.bit_count() for bits, _ in self._blades()])
 
     @functools.cache  # noqa: B019

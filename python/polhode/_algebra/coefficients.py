@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
 from numbers import Real
 from typing import Any
 
 import numpy as np
 
 from polhode import _generic, _native
-from polhode._support.arrays import as_floats, is_float
+from polhode._support.arrays import as_floats, is_float, leaves
 from polhode._support.extras import register_pytree
 
 _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
@@ -32,7 +31,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     if is_float(values):
         return values
     if isinstance(values, list | tuple):
-        strange = [leaf for leaf in _leaves(values) if type(leaf) not in _PLAIN]
+        strange = [leaf for leaf in leaves(values) if type(leaf) not in _PLAIN]
         special = any(not isinstance(leaf, np.ndarray | np.generic) for leaf in strange)
     else:
         special = type(values) not in _PLAIN and not isinstance(values, np.ndarray | np.generic)
@@ -42,7 +41,10 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
             register_pytrees()
             return kind.asarray(values)
     array = _as_array(values, what)
-    if array.dtype == object and _is_exact(array, isinstance(values, np.ndarray)):
+    # A list that mixes floats with integers is not exact.
+    if array.dtype == object and (
+        isinstance(values, np.ndarray) or not any(isinstance(x, float) for x in array.flat)
+    ):
         return _exact(array, what)
     if array.dtype.kind in "iu" and not _fits_floats(array):
         return _exact(array.astype(object), what)
@@ -152,14 +154,6 @@ def _exact(array: Any, what: str) -> Any:
         raise TypeError(f"{what} must be real numbers or expressions: {error}") from None
 
 
-def _leaves(values: Any) -> Iterator[Any]:
-    for value in values:
-        if isinstance(value, list | tuple):
-            yield from _leaves(value)
-        else:
-            yield value
-
-
 def _as_array(values: Any, what: str) -> Any:
     try:
         return np.asarray(values)
@@ -167,11 +161,6 @@ def _as_array(values: Any, what: str) -> Any:
         raise TypeError(f"{what} must be an array of numbers; the rows have unequal lengths") from error
     except TypeError as error:
         raise TypeError(f"{what} must be real numbers: {error}") from error
-
-
-def _is_exact(array: Any, asked: bool) -> bool:
-    """Whether an array of objects is exact: not if it comes from a list that mixes floats with integers."""
-    return asked or not any(isinstance(x, float) for x in array.flat)
 
 
 def _fits_floats(array: Any) -> bool:
@@ -182,7 +171,6 @@ def _fits_floats(array: Any) -> bool:
 
 
 def _converted(values: Any, what: str, dtype: Any) -> Any:
-    """Convert values to coefficients of a dtype."""
     given = as_coefficients(values, what)
     if not isinstance(given, np.ndarray):
         return _converted_foreign(given, what, dtype)

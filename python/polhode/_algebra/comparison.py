@@ -9,7 +9,6 @@ import numpy as np
 from polhode._algebra.coefficients import common, namespace
 from polhode._algebra.grades import over_grades
 from polhode._algebra.products import coerced, common_algebra
-from polhode._support.arrays import is_float
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -60,10 +59,8 @@ def _length(xp: Any, x: Any) -> Any:
 
 def _same_grades(a: Multivector, b: Multivector) -> tuple[Any, Any]:
     mask = a._mask | b._mask
-    left, right = over_grades(a, mask), over_grades(b, mask)
-    if is_float(left) and is_float(right):
-        return left, right
-    return common(left, right)
+    left, right = common(over_grades(a, mask), over_grades(b, mask))
+    return left, right
 
 
 def _as_floats(data: Any) -> Any:

@@ -85,7 +85,6 @@ def angles_of(wxyz: Any, seq: str) -> Any:
 
 
 def _exact_angles(d: Exact, q: Parts, axes: list[int], turning: bool) -> Parts:
-    """Return the angles of one quaternion of exact components."""
     (a, b, c, e), sign = _two_numbers(q, axes, turning)
     cosine, sine = (exact.sqrt(x * x + y * y) for x, y in ((a, b), (c, e)))
     free = 1 if turning else -1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -103,14 +104,11 @@ def reshaped(value: V, *shape: Any) -> V:
     if len(shape) == 1 and not hasattr(shape[0], "__index__"):
         shape = tuple(shape[0])
     lengths = [operator.index(length) for length in shape]
-    data = value._data
-    if -1 in lengths:
-        known = int(np.prod([length for length in lengths if length != -1]))
-        count = int(np.prod(value.shape))
-        if lengths.count(-1) > 1 or known == 0 or count % known:
-            raise ValueError(f"a batch of shape {value.shape} cannot be reshaped to {tuple(lengths)}")
+    data, count = value._data, math.prod(value.shape)
+    known = math.prod(length for length in lengths if length != -1)
+    if lengths.count(-1) == 1 and known and count % known == 0:
         lengths[lengths.index(-1)] = count // known
-    if np.prod(lengths) != np.prod(value.shape):
+    if -1 in lengths or math.prod(lengths) != count:
         raise ValueError(f"a batch of shape {value.shape} cannot be reshaped to {tuple(lengths)}")
     return value._like(coefficients_reshaped(data, (*lengths, data.shape[-1])))
 
@@ -153,7 +151,6 @@ def _listed(shapes: Iterable[Shape]) -> str:
 
 
 def _batch_axis(axis: int, count: int) -> int:
-    """Return the axis counted from 0."""
     place = operator.index(axis)
     if not -count <= place < count:
         raise ValueError(f"batch axis {axis} is out of range for {count} batch axes")

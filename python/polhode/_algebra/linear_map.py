@@ -123,7 +123,6 @@ class LinearMap:
         return sum(others, start=first)
 
     def _part(self, X: Multivector, k: int) -> Multivector:
-        """Return F of the part of grade k."""
         components = X.grade(k).components
         if k == 0:
             return scalar(components[..., 0]).wedge(np.ones(self.shape))
@@ -134,7 +133,6 @@ class LinearMap:
         return trivector(components[..., 0]).wedge(self.determinant)
 
     def _images(self) -> list[Multivector]:
-        """Return the columns of the matrix, as vectors."""
         return [vector(self.matrix[..., k]) for k in range(3)]
 
     # --- algebra
@@ -167,13 +165,11 @@ class LinearMap:
 
     def symmetric_part(self) -> LinearMap:
         """Return ``½ (F + adj F)``, as maps of vectors or, for grade 2, of bivectors."""
-        transposed = np.swapaxes(self.matrix, -1, -2)
-        return LinearMap.from_matrix(0.5 * self.matrix + 0.5 * transposed, self.grade)
+        return LinearMap.from_matrix(0.5 * self.matrix + 0.5 * self.adjoint().matrix, self.grade)
 
     def antisymmetric_part(self) -> LinearMap:
         """Return ``½ (F − adj F)``; of vectors, it is ``a ↦ a·B`` for a bivector B."""
-        transposed = np.swapaxes(self.matrix, -1, -2)
-        return LinearMap.from_matrix(0.5 * self.matrix - 0.5 * transposed, self.grade)
+        return LinearMap.from_matrix(0.5 * self.matrix - 0.5 * self.adjoint().matrix, self.grade)
 
     # --- eigenvalues
 
@@ -192,10 +188,9 @@ class LinearMap:
 
         The eigenvalues rise. For a map of vectors they are the products of two eigenvalues of vectors.
         """
-        if self.grade == 2:
-            factors, axes = self._principal_axes()
-            return bivector(axes), factors
         stretch, axes = self._principal_axes()
+        if self.grade == 2:
+            return bivector(axes), stretch
         factors = np.stack([stretch[..., i] * stretch[..., j] for i, j in ((1, 2), (2, 0), (0, 1))], axis=-1)
         order = np.argsort(factors, axis=-1, kind="stable")
         planes = np.take_along_axis(axes, order[..., np.newaxis], axis=-2)
@@ -250,14 +245,12 @@ class LinearMap:
 
 
 def _checked(grade: int) -> int:
-    """Return the grade; a ValueError unless it is 1 or 2."""
     if grade not in _NAMES:
         raise ValueError(f"a linear map takes vectors (grade 1) or bivectors (grade 2), got grade {grade!r}")
     return grade
 
 
 def _times(matrix: Array, components: Array) -> Array:
-    """Return the product of matrices and columns."""
     with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
         product: Array = (matrix @ components[..., np.newaxis])[..., 0]
     return product

@@ -206,15 +206,11 @@ class Multivector(_native.Multivector):
 
     def _product(self, name: str, other: Any) -> Multivector:
         right = coerced(other, self)
-        if right is None:
-            return NotImplemented  # type: ignore[no-any-return]
-        return product(name, self, right)
+        return NotImplemented if right is None else product(name, self, right)
 
     def _product_from(self, name: str, other: Any) -> Multivector:
         left = coerced(other, self)
-        if left is None:
-            return NotImplemented  # type: ignore[no-any-return]
-        return product(name, left, self)
+        return NotImplemented if left is None else product(name, left, self)
 
     def _named(self, name: str, other: Any, out: Any) -> Multivector:
         right = coerced(other, self)
@@ -287,5 +283,4 @@ class Multivector(_native.Multivector):
 
 
 def _rebuild(cls: type[Multivector], data: Any, mask: int, algebra: Algebra) -> Multivector:
-    """Restore a pickled value."""
     return cls._restored(data, mask, algebra)

@@ -24,7 +24,6 @@ _BIVECTOR, _EVEN = 0b0100, 0b0101
 
 
 def _components(values: Any, size: int, what: str) -> Any:
-    """Return coefficients of shape (..., size)."""
     data = as_coefficients(values, what)
     if not data.shape or data.shape[-1] != size:
         raise ValueError(f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}")
@@ -299,7 +298,6 @@ class Rotor(_native.Rotor, Multivector):
 
 
 def _powers(R: Rotor, n: Array) -> Rotor:
-    """Return ``exp(n log R)`` for a batch."""
     if not np.isfinite(n).all():
         raise ValueError(f"the power of a rotor must be finite, got {n[~np.isfinite(n)][0]}")
     batch, data, exponents = aligned(R._data, n[..., np.newaxis])

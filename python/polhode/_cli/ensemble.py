@@ -25,7 +25,7 @@ class InterruptedRunError(KeyboardInterrupt):
 
 
 def run(
-    scene: Scene, targets: list[Path], threads: int | None, pages: Mapping[Path, bytes] | None = None
+    scene: Scene, targets: list[Path], threads: int | None, pages: Mapping[Path, bytes]
 ) -> EnsembleRecords:
     """Run all bodies and write them and the figures to the targets, if any, and the pages.
 
@@ -38,28 +38,33 @@ def run(
     """
     require_room(scene, targets)
     records = EnsembleRecords(scene, _nominal(scene))
-    with contextlib.ExitStack() as stack:
-        part = stack.enter_context(unfinished(targets[0])) if targets else None
-        stopped = False
-        with contextlib.ExitStack() as opened:
-            # HDF5 may swallow an interrupt while it creates a file.
-            with _uninterrupted():
-                file = None if part is None else opened.enter_context(EnsembleFile(part, scene))
-            try:
-                _run_bodies(records, file, threads)
-            except KeyboardInterrupt:
-                if file is None or not records.complete:
-                    raise
-                stopped = True
-            with _uninterrupted():
-                if file is not None:
-                    file.end()
-        if part is not None:
-            with _uninterrupted():
-                _write(targets, part, records, stopped, pages or {})
-        elif pages:
-            write_atomically(pages)
+    if not targets:
+        _run_bodies(records, None, threads)
+        write_atomically(pages)
+        return records
+    with unfinished(targets[0]) as part:
+        stopped = _stopped(part, records, threads)
+        with _uninterrupted():
+            _write(targets, part, records, stopped, pages)
     return records
+
+
+def _stopped(part: Path, records: EnsembleRecords, threads: int | None) -> bool:
+    """Run all bodies into a file; return whether Ctrl-C stopped the run after some bodies."""
+    with contextlib.ExitStack() as opened:
+        # HDF5 may swallow an interrupt while it creates a file.
+        with _uninterrupted():
+            file = opened.enter_context(contextlib.closing(EnsembleFile(part, records.scene)))
+        stopped = False
+        try:
+            _run_bodies(records, file, threads)
+        except KeyboardInterrupt:
+            if not records.complete:
+                raise
+            stopped = True
+        with _uninterrupted():
+            file.end(records)
+    return stopped
 
 
 def _nominal(scene: Scene) -> Trajectory:

@@ -1,4 +1,4 @@
-"""The command ``polhode examples`` and the example scenes of the package."""
+"""The example scenes of the package, and the commands ``polhode demo`` and ``polhode examples``."""
 
 from __future__ import annotations
 
@@ -6,29 +6,40 @@ import argparse
 import difflib
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from polhode._cli.common import DRIFTED, OK, add_command, add_folder
+from polhode._support.arrays import Array
+
+if TYPE_CHECKING:
+    from polhode._mechanics.trajectory import Trajectory
+    from polhode._scene.scene import Scene
+
+NAME = "t-handle"
+_WIDTH, _HEIGHT = 72, 9
 FOLDER = Path(__file__).parents[1] / "_examples"
 
 
 def add(commands: Any) -> None:
-    """Add the command to those of `polhode`."""
-    examples = commands.add_parser(
-        "examples",
-        help="list or copy the example scenes",
-        description="List the example scenes, or copy the named ones. Existing files are not replaced.",
+    """Add both commands to those of `polhode`."""
+    demo = add_command(
+        commands,
+        "demo",
+        _demo,
+        help="run an example: print a summary and a sketch, write a page and figures",
+        description="Run a T-handle in free flight: print its summary and a sketch, and write "
+        "t-handle.html, a page that shows it in a browser. With matplotlib it also writes figures.",
     )
-    examples.add_argument(
-        "names", metavar="NAME", nargs="*", help="name of an example; without one, list all"
+    add_folder(demo, "files")
+
+    words = "List the example scenes, or copy the named ones. Existing files are not replaced."
+    parser = add_command(
+        commands, "examples", _run, help="list or copy the example scenes", description=words
     )
-    examples.add_argument(
-        "-o",
-        "--output",
-        metavar="FOLDER",
-        default=".",
-        help="folder for the copies, default the current one",
-    )
-    examples.set_defaults(command=lambda options: _run(options, examples))
+    parser.add_argument("names", metavar="NAME", nargs="*", help="name of an example; without one, list all")
+    add_folder(parser, "copies")
 
 
 def examples() -> dict[str, Path]:
@@ -41,7 +52,7 @@ def examples() -> dict[str, Path]:
     return found
 
 
-def _run(options: argparse.Namespace, parser: argparse.ArgumentParser) -> int:
+def _run(options: argparse.Namespace) -> int:
     known = examples()
     if not options.names:
         width = max(map(len, known))
@@ -52,10 +63,9 @@ def _run(options: argparse.Namespace, parser: argparse.ArgumentParser) -> int:
         if name not in known:
             close = difflib.get_close_matches(name, known, n=1)
             hint = f"did you mean {close[0]}?" if close else "`polhode examples` lists them"
-            parser.error(f"unknown example {name!r}; {hint}")
-    copied = _copy(
-        [file for name in dict.fromkeys(names) for file in _files(known[name])], Path(options.output)
-    )
+            options.parser.error(f"unknown example {name!r}; {hint}")
+    files = [file for name in dict.fromkeys(names) for file in _files(known[name])]
+    copied = _copy(files, Path(options.output))
     print("Written", *(f"  {path}" for path in copied), sep="\n")
     print(f"Try `polhode run {copied[0]}` or `polhode view {copied[0]}`.")
     return 0
@@ -83,3 +93,68 @@ def _copy(files: list[Path], folder: Path) -> list[Path]:
         with path.open("xb") as file:
             file.write(content)
     return list(targets)
+
+
+# --- the demonstration
+
+
+def _demo(options: argparse.Namespace) -> int:
+    from polhode._report.summary import as_text, summary
+    from polhode._scene.scene import Scene
+    from polhode._support.files import check_target, write_atomically
+
+    folder = Path(options.output)
+    check_target(folder / f"{NAME}.html")
+    scene = Scene.read(examples()[NAME])
+    trajectory = scene.run()
+    result = summary(scene, trajectory)
+    print(as_text(result), "", *_sketch(trajectory), "", sep="\n")
+    written, missing = _contents(scene, trajectory, folder)
+    write_atomically(written)
+    print(*missing, *(["Written"] if written else []), *(f"  {path}" for path in written), sep="\n")
+    return OK if result["run"]["drift_within_bound"] else DRIFTED
+
+
+def _contents(scene: Scene, trajectory: Trajectory, folder: Path) -> tuple[dict[Path, bytes], list[str]]:
+    """Return the contents of the files by path, and messages about missing libraries."""
+    from polhode._viewer.server import motion_page
+
+    contents: dict[Path, bytes] = {}
+    missing = []
+    try:
+        contents[folder / f"{NAME}.html"] = motion_page(trajectory)
+    except FileNotFoundError as error:
+        missing.append(f"No page: {error}.")
+    try:
+        from polhode._figures.registry import pictures
+
+        names = (f"{NAME}-motion.png", f"{NAME}-polhode.png")
+        contents |= {folder / name: x for name, x in zip(names, pictures(scene, trajectory), strict=True)}
+    except ImportError as error:
+        missing.append(f"No figures: {error}.")
+    return contents, missing
+
+
+def _sketch(trajectory: Trajectory) -> list[str]:
+    """Return a plot of the angular velocity about the stem over time, as lines of text."""
+    values = trajectory.omega_body.components[:, 1]
+    labels = {
+        0: f"{abs(values).max():.3g} rad/s",
+        _HEIGHT // 2: "0",
+        _HEIGHT - 1: f"-{abs(values).max():.3g}",
+    }
+    return [
+        "Angular velocity about the stem: it changes sign at each flip",
+        *(f"{labels.get(k, ''):>10} |{row}" for k, row in enumerate(_rows(values))),
+        f"{'':>10} +{'-' * _WIDTH}",
+        f"{'':>12}0{f'{trajectory.time[-1]:g} s':>{_WIDTH - 1}}",
+    ]
+
+
+def _rows(values: Array) -> list[str]:
+    """Return the rows of a plot of values as text; 0 is in the middle row."""
+    marks = np.full((_HEIGHT, _WIDTH), " ")
+    scaled = np.rint((1 - values / abs(values).max()) / 2 * (_HEIGHT - 1)).astype(int)
+    for column, part in enumerate(np.array_split(scaled, _WIDTH)):
+        marks[part.min() : part.max() + 1, column] = "*"
+    return ["".join(row).rstrip() for row in marks]

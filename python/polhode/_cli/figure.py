@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli.arguments import file_name
+from polhode._cli.common import add_command, file_name, progress
 
 if TYPE_CHECKING:
-    from polhode._scene.scene import Scene
-
-Report = Callable[[int, float], object]
-# Progress bar of a name, on a terminal; a pass of 0 is not shown.
-Shown = Callable[[str], AbstractContextManager[Report | None]]
+    from polhode._mechanics.trajectory import Trajectory
 
 _KINDS = ("motion", "polhode", "herpolhode", "locus", "drift", "phase", "scene")
 _OF_HANDOUT = ("1", "2", "3")
 
 
-def add(commands: Any, shown: Shown) -> None:
+def add(commands: Any) -> None:
     """Add both commands to those of `polhode`."""
-    figure = commands.add_parser(
+    figure = add_command(
+        commands,
         "figure",
+        _figure,
         help="draw a figure for print: SVG, PDF or PNG",
         description="Draw a figure of a scene's motion, or figure 1, 2 or 3 of the handout.",
         epilog="motion: rates, attitude and drift over time; polhode, herpolhode: paths of the angular "
@@ -32,82 +28,73 @@ def add(commands: Any, shown: Shown) -> None:
         "scene: the body and its bivectors (needs polhode[film] and a browser). 1: a trivector swept; "
         "2: a vector turned; 3: the inertia map.",
     )
-    figure.add_argument(
-        "what", metavar="WHAT", choices=(*_KINDS, *_OF_HANDOUT), help=f"{', '.join(_KINDS)}, 1, 2, 3"
-    )
+    choices = (*_KINDS, *_OF_HANDOUT)
+    figure.add_argument("what", metavar="WHAT", choices=choices, help=f"{', '.join(_KINDS)}, 1, 2, 3")
     figure.add_argument(
         "scene", metavar="SCENE.toml", nargs="?", help="the scene file, except for 1, 2 and 3"
     )
-    figure.add_argument(
-        "-o", "--output", metavar="FILE", type=file_name("a figure"), required=True,
-        help="FILE.svg, FILE.pdf or FILE.png",
-    )  # fmt: skip
-    figure.add_argument("--view", metavar="A,E", type=_view, help="camera azimuth and elevation in degrees")
+    _add_output(figure, "a figure", "FILE.svg, FILE.pdf or FILE.png")
+    _add_view(figure)
     figure.add_argument("--time", metavar="T", type=float, help="time of the figure in s, default the last")
-    figure.set_defaults(command=lambda options: _figure(options, shown, figure))
 
-    film = commands.add_parser(
+    film = add_command(
+        commands,
         "film",
+        _film,
         help="film a scene: MP4 (by ffmpeg) or GIF",
         description="Film a scene's motion as the viewer draws it. Needs polhode[film] and Chromium, Chrome "
         "or Edge, which runs without a window.",
     )
     film.add_argument("scene", metavar="SCENE.toml", help="the scene file")
-    film.add_argument(
-        "-o", "--output", metavar="FILE", type=file_name("a film"), required=True,
-        help="FILE.mp4 or FILE.gif",
-    )  # fmt: skip
+    _add_output(film, "a film", "FILE.mp4 or FILE.gif")
     film.add_argument("--seconds", metavar="N", type=float, help="length in s, default that of the motion")
     film.add_argument("--fps", metavar="N", type=float, default=25.0, help="frames per second, default 25")
     film.add_argument(
         "--size", metavar="WxH", type=_size, help="size in pixels, default 1280x720, for a GIF 640x360"
     )
-    film.add_argument("--view", metavar="A,E", type=_view, help="camera azimuth and elevation in degrees")
-    film.set_defaults(command=lambda options: _film(options, shown))
+    _add_view(film)
 
 
-def _figure(options: argparse.Namespace, shown: Shown, parser: argparse.ArgumentParser) -> int:
-    of_handout = options.what in _OF_HANDOUT
+def _add_output(parser: argparse.ArgumentParser, what: str, names: str) -> None:
+    parser.add_argument("-o", "--output", metavar="FILE", type=file_name(what), required=True, help=names)
+
+
+def _add_view(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--view", metavar="A,E", type=_view, help="camera azimuth and elevation in degrees")
+
+
+def _figure(options: argparse.Namespace) -> int:
+    of_handout, error = options.what in _OF_HANDOUT, options.parser.error
     if of_handout and (options.scene or options.view or options.time is not None):
-        parser.error(
-            f"figure {options.what} is a figure of the handout: it does not take a scene, view or time"
-        )
+        error(f"figure {options.what} is a figure of the handout: it does not take a scene, view or time")
     if not of_handout and options.scene is None:
-        parser.error(f"figure {options.what} needs a scene: polhode figure {options.what} SCENE.toml -o FILE")
+        error(f"figure {options.what} needs a scene: polhode figure {options.what} SCENE.toml -o FILE")
     from polhode._support.extras import optional
     from polhode._support.files import check_target
 
     optional("matplotlib", "plot", "a figure")
     path = Path(options.output)
     check_target(path)
-    if of_handout:
-        from polhode._figures.handout import handout_figure
+    from polhode._figures.handout import handout_figure
+    from polhode._figures.registry import check, write
 
+    if of_handout:
         drawn = handout_figure(int(options.what))
     else:
-        from polhode._figures.registry import check
-
         check(options.what, options.view, options.time)
-        scene = _scene_of_one(options.scene)
-        with shown(scene.path.name) as report:
-            trajectory = scene.run(report)
-        drawn = trajectory.plot(options.what, view=options.view, time=options.time)
-    from polhode._figures.registry import write
-
+        drawn = _motion(options.scene).plot(options.what, view=options.view, time=options.time)
     write(drawn, path)
     print(f"Written\n  {path}")
     return 0
 
 
-def _film(options: argparse.Namespace, shown: Shown) -> int:
+def _film(options: argparse.Namespace) -> int:
     from polhode._figures.film import planned
 
     path = Path(options.output)
     planned(path, options.seconds, options.fps, options.size, options.view)
-    scene = _scene_of_one(options.scene)
-    with shown(scene.path.name) as report:
-        trajectory = scene.run(report)
-    with shown(path.name) as report:
+    trajectory = _motion(options.scene)
+    with progress(path.name) as report:
         trajectory.film(
             path,
             seconds=options.seconds,
@@ -120,8 +107,8 @@ def _film(options: argparse.Namespace, shown: Shown) -> int:
     return 0
 
 
-def _scene_of_one(name: str) -> Scene:
-    """Return the scene; a ValueError for an ensemble."""
+def _motion(name: str) -> Trajectory:
+    """Run the scene of a file; a ValueError for an ensemble."""
     from polhode import Scene
 
     scene = Scene.read(name)
@@ -130,7 +117,8 @@ def _scene_of_one(name: str) -> Scene:
             f"{name} has {scene.ensemble.number} bodies, and this command draws one: remove its table "
             "[ensemble], or draw the ensemble with `polhode run`"
         )
-    return scene
+    with progress(scene.path.name) as report:
+        return scene.run(report)
 
 
 def _size(text: str) -> tuple[int, int]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import io
 import json
-import math
 import os
 import re
 import signal
@@ -16,14 +15,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli.arguments import file_name
-from polhode._cli.exit_codes import BAD_INPUT, DRIFTED, FAILED, INTERRUPTED, OK
+from polhode._cli import common
+from polhode._cli.common import add_command, file_name, progress, whole_number
 from polhode._native import SceneError, __version__
+from polhode._support.files import UnreadableError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from polhode._mechanics.trajectory import Trajectory
     from polhode._scene.scene import Scene
 
 
@@ -39,13 +36,13 @@ def main(arguments: list[str] | None = None) -> int:
             code = int(options.command(options))
         print(end="", flush=True)
     except KeyboardInterrupt as stop:
-        code = _complain(str(stop) or "interrupted; no file was changed", INTERRUPTED)
-    except SceneError as error:
-        code = _complain(str(error), BAD_INPUT)
+        code = _complain(str(stop) or "interrupted; no file was changed", common.INTERRUPTED)
+    except (SceneError, UnreadableError) as error:
+        code = _complain(str(error), common.BAD_INPUT)
     except BrokenPipeError:
-        code = FAILED  # the reader of the output has closed it
+        code = common.FAILED  # the reader of the output has closed it
     except (OSError, ValueError, ImportError, MemoryError) as error:
-        code = _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
+        code = _complain(f"polhode: error: {error or 'out of memory'}", common.FAILED)
     _drop_output()
     return code
 
@@ -98,7 +95,17 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"polhode {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
 
-    run = commands.add_parser("run", help="run a scene: summary, netCDF file, figures")
+    from polhode._cli import examples, figure
+
+    _add_scenes(commands)
+    _add_formulas(commands)
+    figure.add(commands)
+    examples.add(commands)
+    return parser
+
+
+def _add_scenes(commands: Any) -> None:
+    run = add_command(commands, "run", _run, help="run a scene: summary, netCDF file, figures")
     run.add_argument("scene", metavar="SCENE.toml", help="the scene file")
     run.add_argument(
         "-o",
@@ -118,48 +125,36 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         "--threads",
         metavar="N",
-        type=_whole_number("number of threads", 1, math.inf),
+        type=whole_number("number of threads", 1, float("inf")),
         help="number of threads for ensembles, default all cores; results do not depend on it",
     )
-    run.set_defaults(command=_run)
 
-    check = commands.add_parser("check", help="check scenes and their meshes without running them")
+    check = add_command(commands, "check", _check, help="check scenes and their meshes without running them")
     check.add_argument("scenes", metavar="SCENE.toml", nargs="+", help="scene files")
     check.add_argument("--json", action="store_true", help="print the findings as JSON")
-    check.set_defaults(command=_check)
-    _add_view(commands)
-    _add_formulas(commands)
-    _add_others(commands)
-    return parser
 
-
-def _add_view(commands: Any) -> None:
-    view = commands.add_parser(
+    view = add_command(
+        commands,
         "view",
+        _view,
         help="show a motion in the browser",
         description="Show a scene, or a motion from a netCDF file, in the browser of this machine. Reload "
         "the page to read an edited scene again.",
     )
     view.add_argument("file", metavar="FILE", help="a scene, or the netCDF file of one body's motion")
+    port = whole_number("port", 0, 65535)
     view.add_argument(
-        "--port",
-        metavar="N",
-        type=_whole_number("port", 0, 65535),
-        default=0,
-        help="port of the server, default a free one",
+        "--port", metavar="N", type=port, default=0, help="port of the server, default a free one"
     )
-    view.add_argument(
-        "--no-browser",
-        dest="browser",
-        action="store_false",
-        help="print the address of the page without opening it",
-    )
-    view.set_defaults(command=_view)
+    words = "print the address of the page without opening it"
+    view.add_argument("--no-browser", dest="browser", action="store_false", help=words)
 
 
 def _add_formulas(commands: Any) -> None:
-    evaluate = commands.add_parser(
+    evaluate = add_command(
+        commands,
         "eval",
+        _eval,
         help="evaluate formulas",
         description="Evaluate formulas in paper notation or in ASCII: `-I a∧b` is `-I a^b`.",
         epilog="Lines of files and of standard input are formulas or `let NAME = VALUE`; # begins a comment.",
@@ -179,20 +174,11 @@ def _add_formulas(commands: Any) -> None:
     form = evaluate.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print the values as JSON")
     form.add_argument("--latex", action="store_true", help="print formulas and values as LaTeX")
-    evaluate.set_defaults(command=_eval)
 
     words = "evaluate formulas as you type them"
-    repl = commands.add_parser("repl", help=words, description=f"{words.capitalize()}; :help lists commands.")
-    repl.set_defaults(command=_repl)
-
-
-def _add_others(commands: Any) -> None:
-    from polhode._cli import demo, examples
-    from polhode._cli import figure as _figure_command
-
-    _figure_command.add(commands, _progress)
-    demo.add(commands)
-    examples.add(commands)
+    add_command(
+        commands, "repl", _repl, help=words, description=f"{words.capitalize()}; :help lists commands."
+    )
 
 
 def _definition(text: str) -> str:
@@ -214,93 +200,84 @@ def _with_values(arguments: list[str]) -> list[str]:
 
 
 def _eval(options: argparse.Namespace) -> int:
-    from polhode._formula.shell import eval as _eval
+    from polhode._formula.shell.eval import run
 
-    try:
-        return _eval.run(options)
-    except _eval.UnreadableError as error:
-        return _complain(str(error), BAD_INPUT)
+    return run(options)
 
 
 def _view(options: argparse.Namespace) -> int:
-    from polhode._viewer import server
+    from polhode._viewer.server import run
 
-    try:
-        return server.run(options, _progress)
-    except server.UnreadableError as error:
-        return _complain(str(error), BAD_INPUT)
+    return run(options, progress)
 
 
 def _repl(_: argparse.Namespace) -> int:
-    from polhode._formula.shell import repl as _repl
+    from polhode._formula.shell.repl import run
 
-    return _repl.run()
-
-
-def _whole_number(what: str, least: int, most: float) -> Callable[[str], int]:
-    """Return an argparse type for integers in a range."""
-
-    def checked(text: str) -> int:
-        if not (text.isascii() and text.isdigit() and least <= int(text) <= most):
-            bounds = f"of at least {least}" if most == math.inf else f"from {least} to {most}"
-            raise argparse.ArgumentTypeError(f"{what} must be an integer {bounds}, got {text!r}")
-        return int(text)
-
-    return checked
+    return run()
 
 
 def _run(options: argparse.Namespace) -> int:
     from polhode._scene.scene import Scene
 
-    output = None if options.output is None else Path(options.output)
     scene = Scene.read(options.scene)
-    targets = _checked_targets(output, scene)
-    html = _checked_page(options.html)
+    targets = _checked_targets(options.output, scene)
+    pages = [] if options.html is None else [Path(options.html)]
+    if pages:
+        from polhode._viewer.server import check_page
+
+        check_page(pages[0])
     run = _run_one if scene.ensemble is None else _run_many
-    result = run(scene, targets, html, options)
-    written = result["files"] = [str(path) for path in (*targets, *([html] if html else []))]
+    result = run(scene, targets, pages, options)
+    written = result["files"] = [str(path) for path in (*targets, *pages)]
     if options.json:
         print(json.dumps(result, indent=2, allow_nan=False))
     elif written:
-        print("Written")
-        print("\n".join(f"  {path}" for path in written))
+        print("Written", *(f"  {path}" for path in written), sep="\n")
     else:
         print("No file was written; use -o FILE.nc for data and figures, --html FILE.html for a page.")
     if result["run"]["drift_within_bound"] is None:
-        return _complain("polhode: error: all bodies failed", FAILED)
-    return OK if result["run"]["drift_within_bound"] else DRIFTED
+        return _complain("polhode: error: all bodies failed", common.FAILED)
+    return common.OK if result["run"]["drift_within_bound"] else common.DRIFTED
 
 
 def _run_one(
-    scene: Scene, targets: list[Path], html: Path | None, options: argparse.Namespace
+    scene: Scene, targets: list[Path], pages: list[Path], options: argparse.Namespace
 ) -> dict[str, Any]:
-    """Run one body, print its summary and write its files; return the summary."""
-    from polhode._report.summary import summary
-    from polhode._report.text import as_text
+    """Run one body, print its summary and write its files, all or none; return the summary."""
+    from polhode._report.summary import as_text, summary
+    from polhode._support.files import write_atomically
 
-    with _progress(scene.path.name) as report:
+    with progress(scene.path.name) as report:
         trajectory = scene.run(report, options.threads)
     result = summary(scene, trajectory)
     if not options.json:
         print(as_text(result))
-    _write(targets, html, scene, trajectory)
+    contents: dict[Path, bytes] = {}
+    if targets:
+        from polhode._figures.registry import pictures
+        from polhode._report.netcdf import netcdf
+
+        written = (netcdf(trajectory), *pictures(scene, trajectory))
+        contents |= dict(zip(targets, written, strict=True))
+    if pages:
+        from polhode._viewer.server import motion_page
+
+        contents[pages[0]] = motion_page(trajectory)
+    write_atomically(contents)
     return result
 
 
 def _run_many(
-    scene: Scene, targets: list[Path], html: Path | None, options: argparse.Namespace
+    scene: Scene, targets: list[Path], pages: list[Path], options: argparse.Namespace
 ) -> dict[str, Any]:
     """Run an ensemble, print its summary and write its files; return the summary."""
-    from polhode._cli import ensemble as _ensemble_run
-    from polhode._report.ensemble.summary import summary
-    from polhode._report.ensemble.text import as_text
+    from polhode._cli import ensemble
+    from polhode._report.ensemble.summary import as_text, summary
+    from polhode._viewer.server import scene_page
 
-    pages = {}
-    if html:
-        from polhode._viewer.server import scene_page
-
-        pages[html] = scene_page(scene)
-    result = summary(_ensemble_run.run(scene, targets, options.threads, pages))
+    contents = {path: scene_page(scene) for path in pages}
+    result = summary(ensemble.run(scene, targets, options.threads, contents))
     if not options.json:
         print(as_text(result))
     return result
@@ -308,43 +285,32 @@ def _run_many(
 
 def _check(options: argparse.Namespace) -> int:
     from polhode._scene.scene import Scene
+    from polhode._support.memory import size
 
-    findings = []
+    findings: list[dict[str, Any]] = []
     for path in options.scenes:
         try:
             scene = Scene.read(path)
         except SceneError as error:
             findings.append({"scene": path, "ok": False, "errors": str(error)})
             if not options.json:
-                _complain(str(error), BAD_INPUT)
-        else:
-            findings.append({"scene": path, "ok": True, "body": repr(scene.body), **_size(scene)})
-            if not options.json:
-                print(f"{path}: ok, {scene.body!r}, {len(scene.times)} output times{_many(scene)}")
+                _complain(str(error), common.BAD_INPUT)
+            continue
+        findings.append({"scene": path, "ok": True, "body": repr(scene.body)})
+        words = f"{path}: ok, {scene.body!r}, {len(scene.times)} output times"
+        if scene.ensemble is not None:
+            findings[-1] |= {"bodies": scene.ensemble.number, "bytes": scene.result_bytes}
+            words += f", {scene.ensemble.number} bodies, {size(scene.result_bytes)} of results"
+        if not options.json:
+            print(words)
     if options.json:
         print(json.dumps(findings, indent=2))
-    return OK if all(finding["ok"] for finding in findings) else BAD_INPUT
+    return common.OK if all(finding["ok"] for finding in findings) else common.BAD_INPUT
 
 
-def _size(scene: Scene) -> dict[str, int]:
-    """Return the number of bodies of an ensemble and their bytes of results; nothing without one."""
-    if scene.ensemble is None:
-        return {}
-    return {"bodies": scene.ensemble.number, "bytes": scene.result_bytes}
-
-
-def _many(scene: Scene) -> str:
-    """Return the size of an ensemble in words; nothing without one."""
-    if scene.ensemble is None:
-        return ""
-    from polhode._support.memory import size
-
-    return f", {scene.ensemble.number} bodies, {size(scene.result_bytes)} of results"
-
-
-def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
+def _checked_targets(name: str | None, scene: Scene) -> list[Path]:
     """Return the paths of the data and two figures, checked before the run."""
-    if output is None:
+    if name is None:
         return []
     from polhode._figures.registry import ON_ELLIPSOID
     from polhode._report.netcdf import require_libraries
@@ -356,57 +322,11 @@ def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
     figures = ("motion", "polhode" if scene.kind in ON_ELLIPSOID else "axis")
     if scene.ensemble is not None:
         figures = ("ensemble", "directions")
-    targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in figures)]
+    output = Path(name)
+    targets = [output, *(output.with_name(f"{output.stem}-{figure}.png") for figure in figures)]
     for path in targets:
         check_target(path)
     return targets
-
-
-def _checked_page(name: str | None) -> Path | None:
-    """Return the path of the page, checked before the run."""
-    if name is None:
-        return None
-    from polhode._viewer.server import check_page
-
-    check_page(Path(name))
-    return Path(name)
-
-
-def _write(targets: list[Path], html: Path | None, scene: Scene, trajectory: Trajectory) -> None:
-    """Write the data, the figures and the page, all of them or none."""
-    from polhode._support.files import write_atomically
-
-    contents: dict[Path, bytes] = {}
-    if targets:
-        from polhode._figures.registry import characteristic_figure
-        from polhode._figures.style import as_png, motion_figure
-        from polhode._report.netcdf import netcdf
-
-        second = characteristic_figure(scene, trajectory)
-        written = (netcdf(trajectory), as_png(motion_figure(trajectory)), as_png(second))
-        contents |= dict(zip(targets, written, strict=True))
-    if html:
-        from polhode._viewer.server import motion_page
-
-        contents[html] = motion_page(trajectory)
-    write_atomically(contents)
-
-
-@contextmanager
-def _progress(name: str) -> Iterator[Callable[[int, float], Any] | None]:
-    """Show a progress bar on standard error, if that is a terminal."""
-    from polhode._support.extras import progress_bar
-
-    if (shown := progress_bar("{task.percentage:>3.0f} %")) is None:
-        yield None
-        return
-    with shown as bar:
-        task = bar.add_task(name, total=1.0)
-
-        def report(number: int, fraction: float) -> None:
-            bar.update(task, description=f"{name}, pass {number}" if number else name, completed=fraction)
-
-        yield report
 
 
 if __name__ == "__main__":

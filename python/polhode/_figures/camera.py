@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from polhode._figures.style import _BLACK
+from polhode._figures.palette import BLACK
+from polhode._figures.style import Axes
 from polhode._support.arrays import Array, as_floats
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
 
 # Default direction of view: azimuth from e1 towards e2 and elevation above e1∧e2, in degrees.
 DEFAULT = (35.0, 22.0)
@@ -71,7 +68,7 @@ class View:
     def ellipsoid(self, axes: Axes, semi_axes: Array) -> None:
         """Draw an ellipsoid, below the curves on it."""
         outline = self.silhouette(semi_axes)
-        axes.fill(*outline.T, facecolor=_SHADE, edgecolor=_BLACK, lw=0.9, zorder=0)
+        axes.fill(*outline.T, facecolor=_SHADE, edgecolor=BLACK, lw=0.9, zorder=0)
 
     def finish(self, axes: Axes, semi_axes: Array, names: Sequence[str], colours: Sequence[str]) -> None:
         """Draw the positive half of each axis outside the ellipsoid, and set the limits."""

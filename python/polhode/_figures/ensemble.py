@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from polhode._algebra.constructors import vector
-from polhode._figures.style import _BLACK, _BLUE, _ORANGE, new_figure, time_unit
-from polhode._report.ensemble.collect import EnsembleRecords
-from polhode._report.ensemble.quantiles import first_above, quantiles
-from polhode._report.text import time as time_text
+from polhode._figures.palette import BLACK, BLUE, ORANGE
+from polhode._figures.style import Axes, Figure, halo, new_figure, plotting, time_unit
+from polhode._report.ensemble.collect import EnsembleRecords, first_above, quantiles
+from polhode._report.summary import time as time_text
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _WIDE, _NARROW = "#CFE3F1", "#86BBDD"
 
@@ -39,21 +35,17 @@ def fan_figure(gathered: EnsembleRecords) -> Figure:
     """
     figure = new_figure(8, 8)
     panels = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
-    times, along = _scale(gathered.scene.elapsed)
-    seconds, unit = time_unit(np.sqrt(times[0] * times[-1]) if along == "log" else times)
-    for axes, (name, factor, label) in zip(
-        panels,
-        (
-            ("from_nominal", 180 / np.pi, "attitude, from that of the\nnominal body, degrees"),
-            ("tilt", 180 / np.pi, f"tilt of the axis\nfrom {gathered.tilt_name}, degrees"),
-            ("rate", 1.0, "angular velocity |Ω|,\nrad/s"),
-        ),
-        strict=True,
-    ):
-        bands = factor * quantiles(gathered.series[name][:, -len(times) :])
-        _fan(axes, times / seconds, bands)
-        axes.set_xscale(along)
-        axes.set_ylabel(label)
+    times, scale = _scale(gathered.scene.elapsed)
+    seconds, unit = time_unit(np.sqrt(times[0] * times[-1]) if scale == "log" else times)
+    labels = {
+        "from_nominal": "attitude, from that of the\nnominal body, degrees",
+        "tilt": f"tilt of the axis\nfrom {gathered.tilt_name}, degrees",
+        "rate": "angular velocity |Ω|,\nrad/s",
+    }
+    for axes, (name, label) in zip(panels, labels.items(), strict=True):
+        bands = quantiles(gathered.series[name][:, -len(times) :])
+        _fan(axes, times / seconds, bands if name == "rate" else 180 / np.pi * bands)
+        axes.set(xscale=scale, ylabel=label)
         axes.grid(alpha=0.25, lw=0.6)
         axes.margins(x=0)
     _horizons(panels[0], gathered, seconds)
@@ -62,10 +54,7 @@ def fan_figure(gathered: EnsembleRecords) -> Figure:
     panels[-1].set_xlabel(f"time, {unit}")
     figure.align_ylabels()
     figure.suptitle(gathered.scene.name)
-    figure.supxlabel(
-        f"Quantiles over {_counted(gathered)}; the axis: {gathered.axis_name}.",
-        fontsize=9,
-    )
+    figure.supxlabel(f"Quantiles over {_counted(gathered)}; the axis: {gathered.axis_name}.", fontsize=9)
     return figure
 
 
@@ -80,7 +69,7 @@ def _fan(axes: Axes, t: Array, bands: Array) -> None:
     low, lower, median, upper, high = bands
     axes.fill_between(t, low, high, color=_WIDE, lw=0, label="5 to 95 %")
     axes.fill_between(t, lower, upper, color=_NARROW, lw=0, label="25 to 75 %")
-    axes.plot(t, median, color=_BLUE, lw=1.4, label="median")
+    axes.plot(t, median, color=BLUE, lw=1.4, label="median")
 
 
 def _horizons(axes: Axes, gathered: EnsembleRecords, seconds: float) -> None:
@@ -94,7 +83,7 @@ def _horizons(axes: Axes, gathered: EnsembleRecords, seconds: float) -> None:
             continue
         # On the left, above the bands, if there is room.
         left = axes.transLimits.transform(axes.transScale.transform((moment / seconds, angle)))[0] > 0.35
-        axes.plot(moment / seconds, angle, "o", color=_ORANGE, ms=5, mec="white", mew=0.8, zorder=5)
+        axes.plot(moment / seconds, angle, "o", color=ORANGE, ms=5, mec="white", mew=0.8, zorder=5)
         axes.annotate(
             f"95 % within {angle}° for {time_text(moment, 3)}",
             (moment / seconds, angle),
@@ -102,7 +91,7 @@ def _horizons(axes: Axes, gathered: EnsembleRecords, seconds: float) -> None:
             textcoords="offset points",
             ha="right" if left else "left",
             va="baseline" if left else "center",
-            color=_ORANGE,
+            color=ORANGE,
             fontsize=9,
             bbox={"fc": "white", "ec": "none", "alpha": 0.0 if left else 0.75, "pad": 1.5},
         )
@@ -167,24 +156,16 @@ def _frame(middle: Array) -> Array:
 
 
 def _map(axes: Axes, directions: Array) -> Any:
-    from matplotlib import colormaps
-    from matplotlib.colors import LogNorm
-
     longitude, latitude = np.meshgrid(
         np.linspace(-np.pi, np.pi, _DRAWN[0] + 1), np.linspace(-np.pi / 2, np.pi / 2, _DRAWN[1] + 1)
     )
     density = _density(directions, _unit_vectors(longitude, latitude))
-    colours = colormaps["YlGnBu"].with_extremes(under="white")
-    drawn = axes.pcolormesh(
-        longitude,
-        latitude,
-        np.maximum(density, np.finfo(float).tiny),
-        cmap=colours,
-        norm=LogNorm(_FAINTEST, _DENSEST),
-        shading="gouraud",
-        rasterized=True,
-    )
-    axes.grid(color=_BLACK, alpha=0.25, lw=0.5)
+    colours = plotting("matplotlib").colormaps["YlGnBu"].with_extremes(under="white")
+    scale = plotting("matplotlib.colors").LogNorm(_FAINTEST, _DENSEST)
+    positive = np.maximum(density, np.finfo(float).tiny)
+    look = {"cmap": colours, "norm": scale, "shading": "gouraud", "rasterized": True}
+    drawn = axes.pcolormesh(longitude, latitude, positive, **look)
+    axes.grid(color=BLACK, alpha=0.25, lw=0.5)
     axes.set_xticks(np.radians([-120, -60, 0, 60, 120]), [])
     axes.set_yticks(np.radians([-60, -30, 0, 30, 60]), [])
     return drawn
@@ -192,26 +173,14 @@ def _map(axes: Axes, directions: Array) -> Any:
 
 def _mark(axes: Axes, gathered: EnsembleRecords, frame: Array, k: int) -> None:
     """Mark the axis of the nominal body and the axes of space."""
-    from matplotlib.patheffects import withStroke
-
-    halo = [withStroke(linewidth=2, foreground="white")]
-    nominal = gathered.nominal
-    path = nominal.rotor(vector(gathered.axis)).components[k]
-    axes.plot(*_angles(frame @ path), "o", mfc="none", mec=_ORANGE, mew=1.4, ms=9, zorder=5)
+    path = gathered.nominal.rotor(vector(gathered.axis)).components[k]
+    axes.plot(*_angles(frame @ path), "o", mfc="none", mec=ORANGE, mew=1.4, ms=9, zorder=5)
     for name, direction in zip(("e1", "e2", "e3"), frame.T, strict=True):
         place = _angles(direction)
-        axes.plot(*place, "o", color=_BLACK, ms=3.5, mec="white", mew=0.6, zorder=4)
-        above = place[1] > _HIGH
-        offset = (7, -10) if above else (7, 4)
-        axes.annotate(
-            name,
-            place,
-            xytext=offset,
-            textcoords="offset points",
-            fontsize=8,
-            zorder=6,
-            path_effects=halo,
-        )
+        axes.plot(*place, "o", color=BLACK, ms=3.5, mec="white", mew=0.6, zorder=4)
+        offset = (7, -10) if place[1] > _HIGH else (7, 4)
+        look: Any = {"fontsize": 8, "zorder": 6, "path_effects": [halo(2)]}
+        axes.annotate(name, place, xytext=offset, textcoords="offset points", **look)
 
 
 def _unit_vectors(longitude: Array, latitude: Array) -> Array:

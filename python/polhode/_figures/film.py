@@ -1,4 +1,4 @@
-"""A film of the scene of a motion."""
+"""Figures and films of the scene of a motion, captured from the viewer."""
 
 from __future__ import annotations
 
@@ -9,19 +9,26 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from polhode._figures.camera import angles_of
-from polhode._figures.style import require_times, time_unit, title_of
+from polhode._figures.style import Figure, drawing, plotting, require_times, time_unit, title_of
+from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array, as_count, as_float
 from polhode._support.extras import optional
 from polhode._support.files import check_target, form_of, unfinished, write_atomically
-from polhode._viewer.capture import Studio, studio
+from polhode._viewer.capture import studio
 
-if TYPE_CHECKING:
-    from polhode._mechanics.trajectory import Trajectory
+# Size of the picture in a figure, in pixels.
+_SIZE = (1920, 1080)
+
+_CAPTION = (
+    "Arrows: body axes fₖ = R eₖ ~R; dashed: space axes eₖ. Discs: Ω and L in space, in their planes and "
+    "senses, with areas proportional to |Ω| and |L|. Lines: the path of a body axis in space (pink) and of Ω "
+    "in the body (ochre); they fade with time."
+)
 
 _SIZES = {"mp4": (1280, 720), "gif": (640, 360)}
 _SMALLEST, _LARGEST, _MOST = 16, 7680, 100_000
@@ -35,6 +42,30 @@ _GIF_FPS = 50.0
 _SAMPLED = 6
 
 Progress = Callable[[float], object]
+
+
+@drawing(7, 4.75, "Motion of a rigid body")
+def scene_figure(figure: Figure, trajectory: Trajectory, view: Any = None, time: float | None = None) -> str:
+    """Draw the scene at a time in s, the last one if none is given, as the viewer draws it."""
+    when = _checked_time(trajectory, time)
+    with studio(trajectory, np.array([when]), _SIZE, angles_of(view), "a figure of kind 'scene'") as taken:
+        picture = taken.capture(when)
+    axes = figure.add_subplot()
+    axes.imshow(plotting("matplotlib.image").imread(io.BytesIO(picture), format="png"))
+    axes.set_axis_off()
+    seconds, unit = time_unit(trajectory.time)
+    axes.text(0.01, 0.97, f"t = {when / seconds:.4g} {unit}", transform=axes.transAxes, va="top")
+    held = trajectory._origin is not None and trajectory._origin.held
+    return _CAPTION + " mg: the weight at the centre of mass." * held
+
+
+def _checked_time(trajectory: Trajectory, time: float | None) -> float:
+    """Return the time, the last one for None; a ValueError outside of those of the motion."""
+    first, last = float(trajectory.time.min()), float(trajectory.time.max())
+    when = last if time is None else as_float(time, "time")
+    if not first <= when <= last:
+        raise ValueError(f"time is {when:.6g} s; the motion goes from {first:.6g} s to {last:.6g} s")
+    return when
 
 
 class Plan(NamedTuple):
@@ -62,9 +93,27 @@ def write(
     if (problem := stroboscopic(trajectory, plan)) is not None:
         # To the caller of `Trajectory.film`.
         warnings.warn(problem, stacklevel=3)
-    save = _save_mp4 if plan.form == "mp4" else _save_gif
+    title, (per_unit, unit) = title_of(trajectory, ""), time_unit(trajectory.time)
+    decimals = 2 if np.ptp(trajectory.time) / per_unit < 100 else 1
     with unfinished(path) as target, studio(trajectory, times, plan.size, angles_of(view), "a film") as taken:
-        save(target, _Frames(trajectory, taken, times, plan.fps, progress), plan)
+
+        def frame(k: int) -> bytes:
+            note = f"t = {times[k] / per_unit:.{decimals}f} {unit}"
+            return taken.capture(float(times[k]), played=k / plan.fps, title=title, note=note)
+
+        def frames() -> Iterator[bytes]:
+            for k in range(len(times)):
+                yield frame(k)
+                if progress is not None:
+                    progress((k + 1) / len(times))
+
+        if plan.form == "mp4":
+            _save_mp4(target, frames(), plan.fps)
+        else:
+            sampled = np.unique(np.linspace(0, len(times) - 1, _SAMPLED).round().astype(int))
+            # The times of a GIF are in hundredths of a second, Pillow's in thousandths.
+            ends = 10 * np.rint(100 * np.arange(len(times) + 1) / plan.fps).astype(int)
+            _save_gif(target, [frame(int(k)) for k in sampled], frames(), np.diff(ends).tolist())
         write_atomically({path: target})
 
 
@@ -124,8 +173,7 @@ def stroboscopic(trajectory: Trajectory, plan: Plan) -> str | None:
 
 def ffmpeg() -> str:
     """Return the path of the program; an OSError with what to install."""
-    program = shutil.which("ffmpeg")
-    if program is None:
+    if (program := shutil.which("ffmpeg")) is None:
         raise OSError(
             "an MP4 film needs the program ffmpeg: install it (Debian: apt install ffmpeg), or write a .gif"
         )
@@ -165,35 +213,9 @@ def _checked_size(size: Any, form: str) -> tuple[int, int]:
     return width, height
 
 
-class _Frames:
-    """The frames of a film as PNGs."""
-
-    def __init__(
-        self, trajectory: Trajectory, taken: Studio, times: Array, fps: float, progress: Progress | None
-    ) -> None:
-        self._taken, self._times, self._fps, self._progress = taken, times, fps, progress
-        self._title = title_of(trajectory, "")
-        self._seconds, self._unit = time_unit(trajectory.time)
-        self._decimals = 2 if np.ptp(trajectory.time) / self._seconds < 100 else 1
-
-    def __len__(self) -> int:
-        return len(self._times)
-
-    def __getitem__(self, k: int) -> bytes:
-        time = float(self._times[k])
-        note = f"t = {time / self._seconds:.{self._decimals}f} {self._unit}"
-        return self._taken.capture(time, played=k / self._fps, title=self._title, note=note)
-
-    def __iter__(self) -> Iterator[bytes]:
-        for k in range(len(self)):
-            yield self[k]
-            if self._progress is not None:
-                self._progress((k + 1) / len(self))
-
-
-def _save_mp4(target: Path, frames: _Frames, plan: Plan) -> None:
+def _save_mp4(target: Path, frames: Iterator[bytes], fps: float) -> None:
     """Pass the frames to ffmpeg, which runs in its own session: only this function ends it, not a Ctrl-C."""
-    given = ["-f", "image2pipe", "-c:v", "png", "-framerate", f"{plan.fps:.9g}", "-i", "-"]
+    given = ["-f", "image2pipe", "-c:v", "png", "-framerate", f"{fps:.9g}", "-i", "-"]
     coded = ["-an", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"]
     same = ["-fflags", "+bitexact", "-flags:v", "+bitexact"]
     process = subprocess.Popen(
@@ -217,26 +239,19 @@ def _save_mp4(target: Path, frames: _Frames, plan: Plan) -> None:
         raise OSError(f"ffmpeg failed: {words[-1]}")
 
 
-def _save_gif(target: Path, frames: _Frames, plan: Plan) -> None:
-    """Write a GIF of one palette, so that colours do not flicker."""
+def _save_gif(target: Path, sampled: list[bytes], frames: Iterator[bytes], durations: list[int]) -> None:
+    """Write a GIF of one palette, that of the sampled frames, so that colours do not flicker."""
     image = optional("PIL.Image", "film", "a GIF")
 
     def opened(frame: bytes) -> Any:
         return image.open(io.BytesIO(frame)).convert("RGB")
 
-    width, height = plan.size
-    some = np.unique(np.linspace(0, len(frames) - 1, _SAMPLED).round().astype(int))
-    sheet = image.new("RGB", (width, height * len(some)))
-    for row, k in enumerate(some):
-        sheet.paste(opened(frames[int(k)]), (0, row * height))
-    # White stays white.
+    sheet = np.concatenate([np.asarray(opened(frame)) for frame in sampled])
+    colours = image.fromarray(sheet).quantize(255, dither=image.Dither.NONE).getpalette()
     palette = image.new("P", (1, 1))
-    palette.putpalette(
-        [255, 255, 255, *sheet.quantize(255, dither=image.Dither.NONE).getpalette()[: 3 * 255]]
-    )
+    # White stays white.
+    palette.putpalette([255, 255, 255, *colours[: 3 * 255]])
     pictures = (opened(frame).quantize(palette=palette, dither=image.Dither.NONE) for frame in frames)
-    # The times of a GIF are in hundredths of a second, Pillow's in thousandths.
-    ends = 10 * np.rint(100 * np.arange(len(frames) + 1) / plan.fps).astype(int)
     next(pictures).save(
-        target, format="GIF", save_all=True, append_images=pictures, duration=np.diff(ends).tolist(), loop=0
+        target, format="GIF", save_all=True, append_images=pictures, duration=durations, loop=0
     )

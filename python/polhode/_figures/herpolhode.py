@@ -2,33 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from polhode._algebra.constructors import e3
 from polhode._algebra.rotor import Rotor
-from polhode._figures.style import (
-    _BLACK,
-    HERPOLHODE,
-    MOMENTUM,
-    dress,
-    entitle,
-    explain,
-    in_our_look,
-    new_figure,
-    scaled_unit,
-    title_of,
-)
+from polhode._figures.palette import BLACK, HERPOLHODE, MOMENTUM
+from polhode._figures.style import Axes, Figure, at_rest, drawing, dress, mark, scaled_unit
 from polhode._mechanics.free_motion import FreeMotion
-from polhode._mechanics.smooth import rotor_at, samples
-from polhode._report.text import time as time_text
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from polhode._mechanics.trajectory import Trajectory
+from polhode._mechanics.smooth import samples
+from polhode._mechanics.trajectory import Trajectory
+from polhode._report.summary import time as time_text
 
 # Samples of a period from which the least and largest distance from L are found.
 _POINTS = 4097
@@ -36,22 +19,18 @@ _POINTS = 4097
 _EQUAL = 1e-4
 
 
-@in_our_look
-def herpolhode_figure(trajectory: Trajectory) -> Figure:
+@drawing(5.2, 5.9, "Herpolhode")
+def herpolhode_figure(figure: Figure, trajectory: Trajectory) -> str:
     """Draw ω of a free body in the invariable plane, which is perpendicular to L, between its two circles."""
-    figure = new_figure(5.2, 5.9)
     axes = figure.add_subplot()
-    entitle(figure, title_of(trajectory, "Herpolhode"))
     momentum = trajectory.momentum_space[0]
     if not float(momentum.norm()):
-        axes.set_axis_off()
-        axes.text(0.5, 0.5, "At rest: no herpolhode", ha="center", transform=axes.transAxes)
-        return figure
+        return at_rest(axes, "herpolhode")
     # Into axes with L along the third one: the invariable plane is spanned by the first two.
     into_plane = ~Rotor.from_vectors(e3, momentum.dual().normalized())
     path = samples(trajectory)
     omega = into_plane(path.rotor(path.omega_body)).components
-    free = FreeMotion(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0])
+    free = FreeMotion(trajectory.inertia, trajectory.rotor[0], trajectory.omega_body[0])
     around = into_plane(free.herpolhode(_POINTS)).components
     power, per_second = scaled_unit(around[:, :2], "rad/s")
     omega, around = omega / power, around / power
@@ -61,17 +40,15 @@ def herpolhode_figure(trajectory: Trajectory) -> Figure:
     turns = float(np.abs(np.diff(np.unwrap(np.arctan2(omega[:, 1], omega[:, 0])))).sum()) / (2 * np.pi)
     crowded = turns > 15 or 0.85 * largest < least < (1 - _EQUAL) * largest
     axes.plot(omega[:, 0], omega[:, 1], color=HERPOLHODE, lw=0.7 if crowded else 1.4, zorder=3)
-    axes.plot(*omega[0, :2], "o", color=HERPOLHODE, ms=6, mec="white", mew=0.8, zorder=5)
+    mark(axes, omega[0, :2], HERPOLHODE)
     axes.plot(0, 0, "+", color=MOMENTUM, ms=10, mew=1.8, zorder=6)
     axes.annotate("L", (0, 0), xytext=(6, 5), textcoords="offset points", color=MOMENTUM, zorder=6)
     dress(axes)
     axes.set_aspect("equal")
     reach = 1.08 * largest if largest > 1e-9 * float(np.abs(omega).max()) else float(np.abs(omega).max())
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
-    axes.set_xlabel(f"ω along g₁, {per_second}")
-    axes.set_ylabel(f"ω along g₂, {per_second}")
-    explain(figure, _caption(free, power * float(omega[0, 2]), power * least, power * largest))
-    return figure
+    axes.set(xlabel=f"ω along g₁, {per_second}", ylabel=f"ω along g₂, {per_second}")
+    return _caption(free, power * float(omega[0, 2]), power * least, power * largest)
 
 
 def _draw_annulus(axes: Axes, least: float, largest: float) -> None:
@@ -80,7 +57,7 @@ def _draw_annulus(axes: Axes, least: float, largest: float) -> None:
     axes.fill(*(largest * circle), facecolor="#EAF5F1", edgecolor="none", zorder=0)
     axes.fill(*(least * circle), facecolor="white", edgecolor="none", zorder=0)
     for radius in (least, largest) if largest > (1 + _EQUAL) * least else (largest,):
-        axes.plot(*(radius * circle), color=_BLACK, lw=0.8, ls=(0, (4, 2)), zorder=2)
+        axes.plot(*(radius * circle), color=BLACK, lw=0.8, ls=(0, (4, 2)), zorder=2)
 
 
 def _caption(free: FreeMotion, distance: float, least: float, largest: float) -> str:

@@ -2,47 +2,53 @@
 
 from __future__ import annotations
 
-import io
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from polhode._figures.camera import angles_of
-from polhode._figures.spheres import axis_figure, orbit_figure, polhode_figure
-from polhode._figures.style import motion_figure, require_times
+from polhode._figures.film import scene_figure
+from polhode._figures.herpolhode import herpolhode_figure
+from polhode._figures.over_time import drift_figure, motion_figure
+from polhode._figures.phase_portrait import phase_figure
+from polhode._figures.spheres import axis_figure, path_figure, polhode_figure
+from polhode._figures.style import Figure, as_png, encoded, require_times
+from polhode._figures.tilt import angle_figure, locus_figure, satellite_figure, top_figure
+from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import long_axis, main_axis, weight, wheel
+from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 from polhode._support.files import form_of, write_atomically
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from polhode._mechanics.trajectory import Trajectory
-    from polhode._scene.scene import Scene
-
+# Kinds of figures.
+KINDS = ("motion", "polhode", "herpolhode", "locus", "drift", "phase", "scene")
 # Kinds of motion whose angular velocity stays on an ellipsoid in the body.
 ON_ELLIPSOID = ("free", "damped", "gyrostat")
 # Kinds of figures that have a direction of view.
 _WITH_VIEW = ("polhode", "locus", "phase", "scene")
-
-# SVG has text as outlines, because few readers have a font with ∧ and ₁. PDF has text, in a font type that
-# journals accept.
-_AS_FILES = {"svg.fonttype": "path", "svg.hashsalt": "polhode", "pdf.fonttype": 42}
-_UNDATED: dict[str, dict[str, Any]] = {
-    "svg": {"Date": None},
-    "pdf": {"CreationDate": None},
-    "png": {"Software": None},
-}
 
 
 def figure(trajectory: Trajectory, kind: str, view: Any = None, time: float | None = None) -> Figure:
     """Return a figure of one body; see `Trajectory.plot`."""
     check(kind, view, time)
     require_times(trajectory)
-    return KINDS[kind](trajectory, view, time)
+    match kind:
+        case "motion":
+            return motion_figure(trajectory)
+        case "polhode":
+            return _polhode(trajectory, view)
+        case "herpolhode":
+            return _herpolhode(trajectory)
+        case "locus":
+            return locus_figure(trajectory, _weight(trajectory, kind), view)
+        case "drift":
+            return drift_figure(trajectory)
+        case "phase":
+            return _phase(trajectory, view)
+        case _:
+            return scene_figure(trajectory, view, time)
 
 
 def check(kind: str, view: Any, time: float | None) -> None:
@@ -64,20 +70,20 @@ def characteristic_figure(scene: Scene, trajectory: Trajectory) -> Figure:
     if kind in ON_ELLIPSOID:
         return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
     if kind == "satellite":
-        path = long_axis(trajectory)
-        return orbit_figure(trajectory, path, "the axis of the least moment")
+        caption = (
+            "Path of the axis of the least moment in orbit axes, from the dot on: up is away from the "
+            "planet, along is the direction of flight. Dashed: behind."
+        )
+        return path_figure(trajectory, long_axis(trajectory), caption, ("along", "normal", "up"))
     if scene.held and (c := weight(scene.torque)).any():
         return axis_figure(trajectory, c, "the line from the fixed point to the centre of mass")
     number, axis = main_axis(trajectory)
     return axis_figure(trajectory, axis, f"principal axis {number}")
 
 
-def encoded(figure: Figure, form: str) -> bytes:
-    """Return a figure as the bytes of a file; equal figures give equal bytes."""
-    buffer = io.BytesIO()
-    with optional("matplotlib", "plot", "a figure").rc_context(_AS_FILES):
-        figure.savefig(buffer, format=form, dpi=200, metadata=_UNDATED[form])
-    return buffer.getvalue()
+def pictures(scene: Scene, trajectory: Trajectory) -> tuple[bytes, bytes]:
+    """Return the PNGs of a run: the motion, and its characteristic figure."""
+    return as_png(motion_figure(trajectory)), as_png(characteristic_figure(scene, trajectory))
 
 
 def write(figure: Figure, path: Path) -> None:
@@ -85,24 +91,17 @@ def write(figure: Figure, path: Path) -> None:
     write_atomically({path: encoded(figure, form_of(path, "a figure"))})
 
 
-def _motion(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
-    return motion_figure(trajectory)
-
-
-def _polhode(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
+def _polhode(trajectory: Trajectory, view: Any) -> Figure:
     kind = _kind(trajectory)
     if kind not in ON_ELLIPSOID:
         raise ValueError(
             "kind 'polhode' is for bodies whose Ω stays on an ellipsoid: free, damped in proportion to L, "
             f"or with a wheel; {_acting(trajectory)}"
         )
-    h = _wheel(trajectory)
-    return polhode_figure(trajectory, h if kind == "gyrostat" else None, view)
+    return polhode_figure(trajectory, _wheel(trajectory) if kind == "gyrostat" else None, view)
 
 
-def _herpolhode(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
-    from polhode._figures.herpolhode import herpolhode_figure
-
+def _herpolhode(trajectory: Trajectory) -> Figure:
     if _kind(trajectory) != "free":
         raise ValueError(
             "kind 'herpolhode' is for free bodies, whose Ω stays in an invariable plane; "
@@ -112,49 +111,16 @@ def _herpolhode(trajectory: Trajectory, view: Any, time: float | None) -> Figure
     return herpolhode_figure(trajectory)
 
 
-def _locus(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
-    from polhode._figures.tilt import locus_figure
-
-    return locus_figure(trajectory, _weight(trajectory, "locus"), view)
-
-
-def _drift(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
-    from polhode._figures.drift import drift_figure
-
-    return drift_figure(trajectory)
-
-
-def _phase(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
-    from polhode._figures import phase_portrait, tilt
-
+def _phase(trajectory: Trajectory, view: Any) -> Figure:
     _require_path(trajectory, "phase")
     kind = _kind(trajectory)
     if kind in ON_ELLIPSOID:
-        return phase_portrait.phase_figure(trajectory, _wheel(trajectory), view)
+        return phase_figure(trajectory, _wheel(trajectory), view)
     if view is not None:
         raise ValueError("view is for the phase portraits of bodies without torque, not for this one")
     if kind == "heavy":
-        return tilt.top_figure(trajectory, _weight(trajectory, "phase"))
-    if kind == "satellite":
-        return tilt.satellite_figure(trajectory)
-    return tilt.angle_figure(trajectory)
-
-
-def _scene(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
-    from polhode._figures.scene import scene_figure
-
-    return scene_figure(trajectory, view, time)
-
-
-KINDS: dict[str, Callable[[Trajectory, Any, float | None], Figure]] = {
-    "motion": _motion,
-    "polhode": _polhode,
-    "herpolhode": _herpolhode,
-    "locus": _locus,
-    "drift": _drift,
-    "phase": _phase,
-    "scene": _scene,
-}
+        return top_figure(trajectory, _weight(trajectory, "phase"))
+    return satellite_figure(trajectory) if kind == "satellite" else angle_figure(trajectory)
 
 
 # --- what acts on the body

@@ -1,155 +1,171 @@
-"""Polhodes on the inertia ellipsoid, and paths of axes on the unit sphere."""
+"""Polhodes on the inertia ellipsoid, paths of axes on the unit sphere, and families of level curves."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from polhode._algebra.constructors import vector
-from polhode._figures.camera import view_of
-from polhode._figures.style import (
-    _AXES,
-    _BLACK,
-    OTHERS,
-    POLHODE,
-    SPACE_AXES,
-    TRACE,
-    entitle,
-    explain,
-    in_our_look,
-    new_figure,
-    require_times,
-    title_of,
-)
+from polhode._figures.camera import View, view_of
+from polhode._figures.palette import AXES, BLACK, OTHERS, POLHODE, SPACE_AXES, TRACE
+from polhode._figures.style import Axes, Figure, at_rest, drawing, plotting, require_times
 from polhode._mechanics.smooth import samples
+from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array
-from polhode._support.extras import optional
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from polhode._mechanics.trajectory import Trajectory
 
 # Points of curves from formulas.
 _POINTS = 361
+# Relative difference of weights that counts as rounding.
+_EQUAL = 1e-9
 
 
-@in_our_look
-def polhode_figure(trajectory: Trajectory, wheel: Array | None = None, view: Any = None) -> Figure:
+class Frame(NamedTuple):
+    """Numbers (from 0) of axes: in the middle of a map of the sphere, to the right of it, and above."""
+
+    center: int
+    right: int
+    up: int
+    # 1 or −1: the half of the central axis that is in the middle.
+    sign: float = 1.0
+
+    def directions(self, azimuth: Array, height: Array) -> Array:
+        """Return the unit vectors (..., 3) at azimuths and heights of the map."""
+        u = np.empty((*np.shape(azimuth), 3))
+        across = np.sqrt(1 - height**2)
+        u[..., self.center] = self.sign * across * np.cos(azimuth)
+        u[..., self.right] = across * np.sin(azimuth)
+        u[..., self.up] = height
+        return u
+
+
+# --- level curves of Σ w_k u_k² and of other functions on the unit sphere
+
+
+def family(weights: Array, fractions: Sequence[float]) -> list[Array]:
+    """Return level curves (n, 3) of ``Σ w_k u_k²`` about both ends of the axes of extreme weights.
+
+    They cross the plane of such an axis c and the middle one at ``u_mid² = fraction``. ``Σ (w_c − w_k) u_k²``
+    is constant, so each is an ellipse in the plane of the other two axes, centred on axis c.
+    """
+    low, middle, high = np.argsort(weights, kind="stable")
+    s = np.linspace(0, 2 * np.pi, _POINTS)
+    curves = []
+    for c, other in ((high, low), (low, high)):
+        to_middle, to_other = abs(weights[c] - weights[middle]), abs(weights[c] - weights[other])
+        if to_middle <= _EQUAL * np.abs(weights).max():
+            continue
+        for fraction in fractions:
+            u = np.zeros((s.size, 3))
+            u[:, middle] = np.sqrt(fraction) * np.cos(s)
+            u[:, other] = np.sqrt(fraction * to_middle / to_other) * np.sin(s)
+            u[:, c] = np.sqrt(np.maximum(1 - u[:, middle] ** 2 - u[:, other] ** 2, 0.0))
+            curves += [u, -u]
+    return curves
+
+
+def separatrix(weights: Array) -> list[Array]:
+    """Return the two great circles (n, 3) where ``Σ w_k u_k²`` is the middle weight."""
+    low, middle, high = np.argsort(weights, kind="stable")
+    below, above = weights[middle] - weights[low], weights[high] - weights[middle]
+    if min(below, above) <= _EQUAL * np.abs(weights).max():
+        return []
+    s = np.linspace(0, 2 * np.pi, _POINTS)
+    circles = []
+    for sign in (1.0, -1.0):
+        u = np.zeros((s.size, 3))
+        u[:, middle] = np.sin(s)
+        u[:, low] = np.cos(s) * np.sqrt(above / (above + below))
+        u[:, high] = sign * np.cos(s) * np.sqrt(below / (above + below))
+        circles.append(u)
+    return circles
+
+
+def level_curves(
+    values: Callable[[Array], Array], levels: Callable[[Array], Array], frame: Frame
+) -> list[Array]:
+    """Return curves (n, 3) where a function of directions has the levels that its values on a grid give."""
+    azimuth, height = np.meshgrid(
+        np.linspace(-np.pi, np.pi, 241), np.sin(np.linspace(-1, 1, 161) * np.pi / 2)
+    )
+    found = values(frame.directions(azimuth, height))
+    lines = plotting("contourpy").contour_generator(azimuth, height, found)
+    return [
+        frame.directions(line[:, 0], np.clip(line[:, 1], -1, 1))
+        for level in levels(found)
+        for line in lines.lines(level)
+    ]
+
+
+class Portrait(NamedTuple):
+    """Curves (n, 3): the path of a motion, those of neighbours, and the separatrix."""
+
+    path: Array
+    family: list[Array]
+    divides: list[Array]
+
+    def styled(self) -> list[tuple[Array, dict[str, Any]]]:
+        """Return each curve with its style, the lowest first."""
+        return [
+            *((curve, {"color": OTHERS, "lw": 0.8}) for curve in self.family),
+            *((curve, {"color": BLACK, "lw": 0.9}) for curve in self.divides),
+            (self.path, {"color": POLHODE, "lw": 2.0}),
+        ]
+
+    def draw(self, axes: Axes, look: View, weights: Array, level: float, names: tuple[str, ...]) -> None:
+        """Draw the curves on the ellipsoid ``Σ w_k x_k² = level``."""
+        semi_axes = np.sqrt(level / weights)
+        look.ellipsoid(axes, semi_axes)
+        for curve, style in self.styled():
+            look.curve(axes, curve, curve * weights, **style)
+        look.dot(axes, self.path[0], self.path[0] * weights, color=POLHODE)
+        look.finish(axes, semi_axes, names, AXES)
+
+
+@drawing(5.2, 5.6, "Polhode")
+def polhode_figure(
+    figure: Figure, trajectory: Trajectory, wheel: Array | None = None, view: Any = None
+) -> str:
     """Draw the polhode on the inertia ellipsoid ``Σ i_k ω_k² = 2E`` of the start, among its neighbours.
 
     Components are about the principal axes; parts behind the ellipsoid are dashed and pale. The polhode of a
     body that loses energy is scaled to the energy of the start. With a wheel of momentum (3,) in body axes,
     the neighbours are those with the same wheel.
     """
-    require_times(trajectory)
-    figure = new_figure(5.2, 5.6)
     axes = figure.add_subplot()
-    entitle(figure, title_of(trajectory, "Polhode"))
     moments = trajectory.inertia.principal_moments
     to_principal = ~trajectory.inertia.principal_frame
     omega = to_principal(samples(trajectory).omega_body).components
     energies = 0.5 * (moments * omega**2).sum(axis=1)
     energy = float(energies[0])
     if energy == 0:
-        axes.set_axis_off()
-        axes.text(0.5, 0.5, "At rest: no polhode", ha="center", transform=axes.transAxes)
-        return figure
+        return at_rest(axes, "polhode")
     omega = omega * np.sqrt(energy / np.maximum(energies, np.finfo(float).tiny))[:, np.newaxis]
+    # ω_k = u_k √(2E / i_k) with u on the unit sphere, where |L|² = 2E Σ i_k u_k².
     semi_axes = np.sqrt(2 * energy / moments)
-    look = view_of(view)
-    look.ellipsoid(axes, semi_axes)
     if wheel is None:
-        family, divides = _polhode_family(moments, energy), _separatrix(moments, energy)
+        others, divides = family(moments, (0.1, 0.35, 0.7)), separatrix(moments)
     else:
-        family, divides = _wheel_family(moments, energy, to_principal(vector(wheel)).components), []
-    for curve in family:
-        look.curve(axes, curve, curve * moments, color=OTHERS, lw=0.8)
-    for curve in divides:
-        look.curve(axes, curve, curve * moments, color=_BLACK, lw=0.9)
-    look.curve(axes, omega, omega * moments, color=POLHODE, lw=2.0)
-    look.dot(axes, omega[0], omega[0] * moments, color=POLHODE)
-    look.finish(axes, semi_axes, ("ω₁", "ω₂", "ω₃"), _AXES)
-    explain(figure, _polhode_caption(moments, energies, bool(family), bool(divides)))
-    return figure
-
-
-def _polhode_caption(moments: Array, energies: Array, family: bool, divides: bool) -> str:
-    slowed = " (scaled up as the body slows)" if energies.min() < 0.999 * energies[0] else ""
+        h, divides = to_principal(vector(wheel)).components, []
+        others = level_curves(
+            lambda u: np.asarray(np.linalg.norm(semi_axes * u * moments + h, axis=-1)),
+            lambda sizes: sizes.min() + np.ptp(sizes) * np.linspace(0.04, 0.96, 12),
+            Frame(0, 1, 2),
+        )
+    shown = Portrait(omega, [semi_axes * u for u in others], [semi_axes * u for u in divides])
+    shown.draw(axes, view_of(view), moments, 2 * energy, ("ω₁", "ω₂", "ω₃"))
+    slowed = " (scaled up as the body slows)" if energies.min() < 0.999 * energy else ""
     caption = (
         "Thick: the angular velocity Ω_B = Σ ωₖ I eₖ about principal axes eₖ, from the dot on"
         f"{slowed}, on the ellipsoid i₁ω₁² + i₂ω₂² + i₃ω₃² = 2E with i = "
-        f"{', '.join(f'{i:.4g}' for i in moments)} kg m², E = {energies[0]:.4g} J. "
+        f"{', '.join(f'{i:.4g}' for i in moments)} kg m², E = {energy:.4g} J. "
     )
-    if family:
+    if others:
         caption += "Grey: other motions of this energy. "
     if divides:
         caption += "Black: the separatrix between rotation about the axes of least and greatest moment. "
     return caption + "Dashed: behind."
-
-
-def _polhode_family(moments: Array, energy: float) -> list[Array]:
-    """Return polhodes of one energy around the axes of least and greatest moment.
-
-    With ``u_k = ω_k √i_k`` on the sphere ``|u|² = 2E``, ``Σ (i_c − i_k) u_k² = 2E i_c − G²`` is an
-    ellipse in the plane of the other two axes; it is centred on axis c.
-    """
-    order = np.argsort(moments, kind="stable")
-    if moments[order[0]] == moments[order[2]]:
-        return []
-    s = np.linspace(0, 2 * np.pi, _POINTS)
-    curves = []
-    for c, middle, other in ((order[2], order[1], order[0]), (order[0], order[1], order[2])):
-        to_middle, to_other = abs(moments[c] - moments[middle]), abs(moments[c] - moments[other])
-        if to_middle == 0:
-            continue
-        for fraction in (0.1, 0.35, 0.7):
-            size = 2 * energy * to_middle * fraction
-            u = np.zeros((s.size, 3))
-            u[:, middle] = np.sqrt(size / to_middle) * np.cos(s)
-            u[:, other] = np.sqrt(size / to_other) * np.sin(s)
-            u[:, c] = np.sqrt(np.maximum(2 * energy - u[:, middle] ** 2 - u[:, other] ** 2, 0.0))
-            curves += [u / np.sqrt(moments), -u / np.sqrt(moments)]
-    return curves
-
-
-def _wheel_family(moments: Array, energy: float, h: Array) -> list[Array]:
-    """Return polhodes of one energy with a wheel of momentum h: level curves of ``|I(ω) + h|``.
-
-    They are taken over azimuth and height on the sphere ``u_k = ω_k √i_k``, ``|u|² = 2E``.
-    """
-    contour = optional("contourpy", "plot", "a figure").contour_generator
-
-    def rates(azimuth: Array, height: Array) -> Array:
-        across = np.sqrt(1 - height**2)
-        u = np.stack([across * np.cos(azimuth), across * np.sin(azimuth), height], axis=-1)
-        return np.asarray(np.sqrt(2 * energy / moments) * u)
-
-    azimuth, height = np.meshgrid(
-        np.linspace(-np.pi, np.pi, 181), np.sin(np.linspace(-1, 1, 121) * np.pi / 2)
-    )
-    sizes = np.linalg.norm(rates(azimuth, height) * moments + h, axis=-1)
-    levels = sizes.min() + (sizes.max() - sizes.min()) * np.linspace(0.04, 0.96, 12)
-    lines = contour(azimuth, height, sizes)
-    return [rates(line[:, 0], np.clip(line[:, 1], -1, 1)) for level in levels for line in lines.lines(level)]
-
-
-def _separatrix(moments: Array, energy: float) -> list[Array]:
-    """Return the two great circles of u where ``G² = 2E i_mid``."""
-    low, middle, high = np.argsort(moments, kind="stable")
-    below, above = moments[middle] - moments[low], moments[high] - moments[middle]
-    if below <= 0 or above <= 0:
-        return []
-    s = np.linspace(0, 2 * np.pi, _POINTS)
-    curves = []
-    for sign in (1.0, -1.0):
-        u = np.zeros((s.size, 3))
-        u[:, middle] = np.sin(s)
-        u[:, low] = np.cos(s) * np.sqrt(above / (above + below))
-        u[:, high] = sign * np.cos(s) * np.sqrt(below / (above + below))
-        curves.append(np.sqrt(2 * energy / moments) * u)
-    return curves
 
 
 def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
@@ -160,46 +176,26 @@ def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
     return path_figure(trajectory, path, caption, SPACE_AXES)
 
 
-def orbit_figure(trajectory: Trajectory, path: Array, name: str) -> Figure:
-    """Draw the path on the unit sphere of a direction (n, 3) in orbit axes: along, normal, up."""
-    require_times(trajectory)
-    caption = (
-        f"Path of {name} in orbit axes, from the dot on: up is away from the planet, along is the direction "
-        "of flight. Dashed: behind."
-    )
-    return path_figure(trajectory, path, caption, ("along", "normal", "up"))
-
-
-@in_our_look
+@drawing(5.2, 5.6, "Path of the axis")
 def path_figure(
+    figure: Figure,
     trajectory: Trajectory,
     path: Array,
     caption: str,
     names: tuple[str, str, str],
     bounds: tuple[float, ...] = (),
     view: Any = None,
-) -> Figure:
+) -> str:
     """Draw a path (n, 3) on the unit sphere; `bounds`, angles from the third axis in rad, are marked."""
-    figure = new_figure(5.2, 5.6)
     axes = figure.add_subplot()
-    look = view_of(view)
-    sphere = np.ones(3)
+    look, sphere = view_of(view), np.ones(3)
     look.ellipsoid(axes, sphere)
-    for angle in np.radians([30, 60, 90, 120, 150]):
-        look.curve(axes, *_parallel(angle), color=OTHERS, lw=0.6)
-    for angle in bounds:
-        look.curve(axes, *_parallel(angle), color=_BLACK, lw=1.0)
+    parallels = [(angle, OTHERS, 0.6) for angle in np.radians([30, 60, 90, 120, 150])]
+    for angle, colour, width in (*parallels, *((bound, BLACK, 1.0) for bound in bounds)):
+        height = np.full(_POINTS, np.cos(angle))
+        circle = Frame(0, 1, 2).directions(np.linspace(0, 2 * np.pi, _POINTS), height)
+        look.curve(axes, circle, circle, color=colour, lw=width)
     look.curve(axes, path, path, color=TRACE, lw=1.5)
     look.dot(axes, path[0], path[0], color=TRACE)
-    look.finish(axes, sphere, names, (_BLACK, _BLACK, _BLACK))
-    entitle(figure, title_of(trajectory, "Path of the axis"))
-    explain(figure, caption)
-    return figure
-
-
-def _parallel(angle: float) -> tuple[Array, Array]:
-    """Return the circle (n, 3) of the unit sphere at an angle from the third axis, and its normals."""
-    s = np.linspace(0, 2 * np.pi, _POINTS)
-    across, up = np.sin(angle), np.full_like(s, np.cos(angle))
-    circle = np.stack([across * np.cos(s), across * np.sin(s), up], axis=1)
-    return circle, circle
+    look.finish(axes, sphere, names, (BLACK, BLACK, BLACK))
+    return caption

@@ -2,34 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from polhode._algebra.constructors import bivector, vector
+from polhode._figures.palette import BLACK, OTHERS, SPACE_AXES, TRACE
 from polhode._figures.spheres import path_figure
-from polhode._figures.style import (
-    _BLACK,
-    OTHERS,
-    SPACE_AXES,
-    TRACE,
-    dress,
-    entitle,
-    explain,
-    in_our_look,
-    new_figure,
-    title_of,
-)
+from polhode._figures.style import Axes, Figure, drawing, dress, mark
 from polhode._mechanics.closed_forms import LagrangeTop
-from polhode._mechanics.smooth import rotor_at, samples
+from polhode._mechanics.smooth import samples
+from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import long_axis, main_axis
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from polhode._mechanics.trajectory import Trajectory
 
 # Numbers of tilts and rates of the grid for curves of equal energy.
 _GRID = (321, 241)
@@ -60,73 +45,54 @@ def locus_figure(trajectory: Trajectory, c: Array, view: Any = None) -> Figure:
     return path_figure(trajectory, path, caption + "Dashed: behind.", SPACE_AXES, bounds, view)
 
 
-@in_our_look
-def top_figure(trajectory: Trajectory, c: Array) -> Figure:
+@drawing(5.2, 4.6, "Phase portrait")
+def top_figure(figure: Figure, trajectory: Trajectory, c: Array) -> str:
     """Draw the tilt of a top's axis against its rate, among curves of equal energy with the same momenta."""
     theta, rate = _tilt_and_rate(trajectory, c / np.linalg.norm(c))
-    figure, axes = _portrait(trajectory)
+    axes = _portrait(figure, "tilt θ, degrees", "θ', degrees/s")
     top = _lagrange(trajectory, c)
     caption = "Tilt θ from e₃ (up) of the axis from the fixed point to the centre of mass, and its rate"
-    about = {} if top is None else top.describe()
-    fastest = float(np.nanmax(np.abs(rate), initial=0.0))
     if top is None:
-        _draw(axes, np.degrees(theta), np.degrees(rate))
-        caption += ", from the dot on."
-    elif fastest <= _STILL and not about["precession_rate"]:
-        _draw(axes, np.degrees(theta), np.nan_to_num(np.degrees(rate)))
-        caption += ": the axis stands still."
-    else:
-        _draw_energy(axes, trajectory, c, about, fastest)
-        _draw(axes, np.degrees(theta), np.degrees(rate))
-        for bound in (about["tilt_min"], about["tilt_max"]):
-            axes.axvline(np.degrees(bound), color=_BLACK, lw=0.8, ls=(0, (4, 2)), zorder=1)
-        caption += (
-            f", from the dot on. Black: the curve of its energy, {about['energy']:.5g} J; grey: others "
-            f"with the same momentum about e₃, {about['vertical_momentum']:.5g} kg m²/s, and about the axis, "
-            f"{about['axial_momentum']:.5g} kg m²/s. Dashed: the bounds of the tilt."
-        )
-    axes.set_xlabel("tilt θ, degrees")
-    axes.set_ylabel("θ', degrees/s")
-    explain(figure, caption)
-    return figure
+        _draw(axes, theta, rate)
+        return caption + ", from the dot on."
+    about, fastest = top.describe(), float(np.nanmax(np.abs(rate), initial=0.0))
+    if fastest <= _STILL and not about["precession_rate"]:
+        _draw(axes, theta, np.nan_to_num(rate))
+        return caption + ": the axis stands still."
+    _draw_energy(axes, trajectory, c, about, fastest)
+    _draw(axes, theta, rate)
+    for bound in (about["tilt_min"], about["tilt_max"]):
+        axes.axvline(np.degrees(bound), color=BLACK, lw=0.8, ls=(0, (4, 2)), zorder=1)
+    return caption + (
+        f", from the dot on. Black: the curve of its energy, {about['energy']:.5g} J; grey: others "
+        f"with the same momentum about e₃, {about['vertical_momentum']:.5g} kg m²/s, and about the axis, "
+        f"{about['axial_momentum']:.5g} kg m²/s. Dashed: the bounds of the tilt."
+    )
 
 
-@in_our_look
-def satellite_figure(trajectory: Trajectory) -> Figure:
+@drawing(5.2, 4.6, "Phase portrait")
+def satellite_figure(figure: Figure, trajectory: Trajectory) -> str:
     """Draw the angle of a satellite's long axis from up, in the orbit plane, against its rate."""
     along, _, up = long_axis(trajectory).T
     angle = np.unwrap(np.arctan2(along, up))
     rate = _rate_of(angle, trajectory.time)
-    figure, axes = _portrait(trajectory)
     turns = 2 * np.pi * np.round(angle / (2 * np.pi))
     jumps = np.flatnonzero(np.diff(turns)) + 1
-    within = np.insert(np.degrees(angle - turns), jumps, np.nan)
-    _draw(axes, within, np.insert(np.degrees(rate), jumps, np.nan))
-    axes.set_xlabel("angle from up, forward along the orbit, degrees")
-    axes.set_ylabel("its rate, degrees/s")
-    explain(
-        figure,
+    axes = _portrait(figure, "angle from up, forward along the orbit, degrees", "its rate, degrees/s")
+    _draw(axes, np.insert(angle - turns, jumps, np.nan), np.insert(rate, jumps, np.nan))
+    return (
         "The angle of the axis of least moment from up in the orbit plane, from the dot on. Its rate is from "
-        "finite differences between output times.",
+        "finite differences between output times."
     )
-    return figure
 
 
-@in_our_look
-def angle_figure(trajectory: Trajectory) -> Figure:
+@drawing(5.2, 4.6, "Phase portrait")
+def angle_figure(figure: Figure, trajectory: Trajectory) -> str:
     """Draw the angle from e3 of the main axis of rotation, against its rate."""
     number, axis = main_axis(trajectory)
-    theta, rate = _tilt_and_rate(trajectory, axis)
-    figure, axes = _portrait(trajectory)
-    _draw(axes, np.degrees(theta), np.degrees(rate))
-    name = "₁₂₃"[number - 1]
-    axes.set_xlabel(f"angle θ of principal axis {number} from e₃, degrees")
-    axes.set_ylabel("θ', degrees/s")
-    explain(
-        figure,
-        f"The angle from e₃ of the main axis of rotation, f{name}, from the dot on.",
-    )
-    return figure
+    axes = _portrait(figure, f"angle θ of principal axis {number} from e₃, degrees", "θ', degrees/s")
+    _draw(axes, *_tilt_and_rate(trajectory, axis))
+    return f"The angle from e₃ of the main axis of rotation, f{'₁₂₃'[number - 1]}, from the dot on."
 
 
 def _rate_of(angle: Array, time: Array) -> Array:
@@ -138,24 +104,25 @@ def _rate_of(angle: Array, time: Array) -> Array:
     return rate
 
 
-def _portrait(trajectory: Trajectory) -> tuple[Figure, Axes]:
-    figure = new_figure(5.2, 4.6)
-    axes = figure.add_subplot()
-    entitle(figure, title_of(trajectory, "Phase portrait"))
+def _portrait(figure: Figure, angle: str, rate: str) -> Axes:
+    """Return axes with these labels and a line at rate 0."""
+    axes: Axes = figure.add_subplot(xlabel=angle, ylabel=rate)
     dress(axes)
-    axes.axhline(0, color=_BLACK, lw=0.5, zorder=1)
-    return figure, axes
+    axes.axhline(0, color=BLACK, lw=0.5, zorder=1)
+    return axes
 
 
 def _draw(axes: Axes, angle: Array, rate: Array) -> None:
-    axes.plot(angle, rate, color=TRACE, lw=1.3, zorder=3)
-    axes.plot(angle[0], rate[0], "o", color=TRACE, ms=6, mec="white", mew=0.8, zorder=5)
+    """Draw a curve, given in rad and rad/s, in degrees."""
+    x, y = np.degrees(angle), np.degrees(rate)
+    axes.plot(x, y, color=TRACE, lw=1.3, zorder=3)
+    mark(axes, (x[0], y[0]), TRACE)
 
 
 def _lagrange(trajectory: Trajectory, c: Array) -> LagrangeTop | None:
     """Return the motion in closed form; None if the body is not symmetric about c."""
     try:
-        return LagrangeTop(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0], c)
+        return LagrangeTop(trajectory.inertia, trajectory.rotor[0], trajectory.omega_body[0], c)
     except ValueError:
         return None
 
@@ -192,7 +159,7 @@ def _draw_energy(axes: Axes, trajectory: Trajectory, c: Array, about: dict[str, 
     others = least + span * np.array([0.2, 0.6, 1.5, 2.1, 2.8, 3.6])
     x, y = np.degrees(theta), np.degrees(rate)
     axes.contour(x, y, energy, levels=others, colors=OTHERS, linewidths=0.8, zorder=1)
-    axes.contour(x, y, energy, levels=[present], colors=_BLACK, linewidths=2.6, zorder=2)
+    axes.contour(x, y, energy, levels=[present], colors=BLACK, linewidths=2.6, zorder=2)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
 
 

@@ -104,7 +104,7 @@ def agreement(walk: Walk, program: _native.Program) -> Agreement:
             length = _length(walk, value._data)
             of = _length(walk, walk.inputs[step.detail]) if step.name == "map" else length
             operands = [sizes[i] for i in step.operands]
-            size = program.term_size(number, of, operands, walk.kind.eps, _floats(walk)[0])
+            size = program.term_size(number, of, operands, walk.kind.eps, _floats(walk).xp)
             sizes.append((length, size))
         if number in sides:
             values[number] = value
@@ -112,20 +112,16 @@ def agreement(walk: Walk, program: _native.Program) -> Agreement:
     differences = [(values[a] - values[b])._data for a, b in pairs]
     if walk.symbolic:
         return Agreement(_first([_symbolic_residual(d) for d in differences]), None, 0.0)
-    xp, kind = _floats(walk)
+    kind = _floats(walk)
     found = [
-        xp.broadcast_arrays(_residual(walk, d), xp.maximum(sizes[a][1], sizes[b][1]))
+        kind.xp.broadcast_arrays(_residual(walk, d), kind.xp.maximum(sizes[a][1], sizes[b][1]))
         for d, (a, b) in zip(differences, pairs, strict=True)
     ]
-    residual, size = _worst(kind, [(r, s) for r, s in found])
+    residual, size = _worst(kind, found)
     if kind.native:
         residual, size = residual[()], size[()]
-    register_pytree(Agreement, _flattened, _restored)
+    register_pytree(Agreement, lambda of: ((of.residual, of.size), of.rtol), _restored)
     return Agreement(residual, size, _rtol(walk, differences))
-
-
-def _flattened(found: Agreement) -> tuple[tuple[Any, Any], float]:
-    return (found.residual, found.size), found.rtol
 
 
 def _restored(rtol: float, leaves: Iterable[Any]) -> Agreement:
@@ -133,10 +129,9 @@ def _restored(rtol: float, leaves: Iterable[Any]) -> Agreement:
     return Agreement(residual, size, rtol)
 
 
-def _floats(walk: Walk) -> tuple[Any, Numeric]:
-    """Return the namespace and arithmetic of sizes, which are floats; NumPy's for exact numbers."""
-    kind = Numeric(np) if walk.kind.exact or walk.kind.native else walk.kind
-    return kind.xp, kind
+def _floats(walk: Walk) -> Numeric:
+    """Return the arithmetic of sizes, which are floats; NumPy's for exact numbers."""
+    return Numeric(np) if walk.kind.exact or walk.kind.native else walk.kind
 
 
 def _rtol(walk: Walk, differences: list[Any]) -> float:
@@ -147,7 +142,7 @@ def _rtol(walk: Walk, differences: list[Any]) -> float:
     return _native.agreement_tolerance(walk.kind.eps) if rounded else 0.0
 
 
-def _worst(kind: Numeric, pairs: list[tuple[Any, Any]]) -> tuple[Any, Any]:
+def _worst(kind: Numeric, pairs: list[Any]) -> tuple[Any, Any]:
     """Return the residual that is largest relative to its size, and that size."""
     (residual, size), *others = pairs
     for r, s in others:
@@ -192,7 +187,7 @@ def _residual(walk: Walk, data: Any) -> Any:
 
 def _length(walk: Walk, data: Any) -> Any:
     """``√Σ c²``, as floats."""
-    _, kind = _floats(walk)
+    kind = _floats(walk)
     if walk.kind.exact and not is_float(data):
         data = np.frompyfunc(_float, 1, 1)(data).astype(np.float64)
     return kind.length(components(kind.asarray(data)))

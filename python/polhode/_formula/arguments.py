@@ -53,7 +53,7 @@ class Given:
 
     def narrowed(self) -> Given:
         """Return the same with single values reduced to their nonzero grades."""
-        values = [_narrowed(value) for value in self.values]
+        values = [value if _batch(value) else narrowed(value) for value in self.values]
         kinds = [(name, *_kind(value)) for (name, _, _), value in zip(self.kinds, values, strict=True)]
         return Given(self.algebra, kinds, values, self.refused)
 
@@ -76,7 +76,6 @@ class Given:
         return Multivector._of(scalars(number, like), 1, self.algebra)
 
     def _require_one_shape(self, program: _native.Program) -> None:
-        """Raise a ValueError for batches that do not broadcast."""
         used = dict.fromkeys(place for place, _, _ in program.inputs)
         shapes = {self.kinds[place][0]: _batch(self.values[place]) for place in used}
         try:
@@ -95,7 +94,7 @@ class Given:
 
 
 def _batch(value: Any) -> tuple[int, ...]:
-    return tuple(value.shape if isinstance(value, Multivector) else value.matrix.shape[:-2])
+    return value.shape if isinstance(value, Multivector | LinearMap) else ()
 
 
 def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
@@ -149,8 +148,9 @@ def _may_have(letters: set[str], name: str) -> bool:
     return {c for c in _folded(name.partition("(")[0].partition("_")[0]) if c.isalpha()} <= letters
 
 
-def _narrowed(value: Any) -> Any:
-    if not isinstance(value, Multivector) or isinstance(value, Rotor) or value.shape:
+def narrowed(value: Any) -> Any:
+    """Return a value reduced to its nonzero grades; a rotor and what is not a multivector unchanged."""
+    if not isinstance(value, Multivector) or isinstance(value, Rotor):
         return value
     held = value._held()
     return value if held in (0, value._mask) else value._part(held)
@@ -220,7 +220,6 @@ def _require_algebra(name: str, value: Multivector | LinearMap, algebra: Any, ow
 
 
 def _common_algebra(algebra: Any, values: dict[str, Multivector]) -> Any:
-    """Return the common algebra of all values; 3-d space if there are none."""
     owner = "the formula"
     for name, value in values.items():
         if algebra is None:

@@ -215,7 +215,6 @@ def evaluated(text: str, program: _native.Program, known: Given) -> Any:
 
 
 def _run(program: _native.Program, kind: tuple[int, int, bool], data: list[Any]) -> Multivector:
-    """Return the value of a program of 3-d space over floats."""
     mask, size, unit = kind
     dtypes, shapes = {x.dtype for x in data}, {x.shape[:-1] for x in data}
     dtype = dtypes.pop() if len(dtypes) == 1 else np.dtype(np.float64)  # the higher of two precisions

@@ -69,7 +69,6 @@ def _by_jax(
 
 
 def _doubles(jax: Any) -> Any:
-    """Return a context with 64-bit JAX."""
     if hasattr(jax, "enable_x64"):
         return jax.enable_x64(True)
     return optional("jax.experimental", "jax", "the gradient of a formula").enable_x64()
@@ -83,7 +82,6 @@ def _of_jax(jax: Any, value: Any) -> Any:
 
 
 def _place(program: _native.Program, known: Given, name: str) -> int:
-    """Return the index of the value with this name."""
     wanted = _native.canonical(name)
     for i, ((other, *_), value) in enumerate(zip(known.kinds, known.values, strict=True)):
         if _native.canonical(other) == wanted:

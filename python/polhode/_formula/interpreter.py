@@ -20,20 +20,9 @@ from polhode._support.arrays import is_float
 
 
 class Step(NamedTuple):
-    """An operation on earlier steps.
+    """An operation on earlier steps, `operands`; `detail` is its constant, input or power.
 
-    Attributes
-    ----------
-    name
-        The operation.
-    operands
-        The numbers of the steps that are its operands.
-    detail
-        Its constant, input or power.
-    mask, unit
-        The grades of the value, as bits, and whether it is a rotor.
-    span
-        Its place in the text, in characters.
+    Its value has the grades `mask`, as bits, and is a rotor if `unit`; `span` is its place in the text.
     """
 
     name: str
@@ -45,7 +34,6 @@ class Step(NamedTuple):
 
 
 def steps_of(program: _native.Program) -> list[Step]:
-    """Return the steps of a program."""
     return [Step(*step) for step in program.steps]
 
 
@@ -120,7 +108,6 @@ def _typed(value: Multivector, step: Step) -> Multivector:
 
 
 def _constant(walk: Walk, step: Step) -> Multivector:
-    """Return a number times a basis element."""
     value, ratio, blade = step.detail
     number = walk.number(value, ratio)
     return walk.of([number if i == blade else 0 for i in walk.algebra._indices(step.mask)], step.mask)
@@ -142,7 +129,6 @@ def _map(walk: Walk, step: Step, argument: Multivector) -> Multivector:
 
 
 def _of_scalars(walk: Walk, step: Step, a: Multivector) -> Multivector:
-    """Return the sine, cosine or tangent."""
     x = walk.kind.asarray(a._data)[..., 0]
     if not walk.kind.exact:
         walk.kind.require_finite([x])

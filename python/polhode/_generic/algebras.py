@@ -17,10 +17,8 @@ from polhode._generic.coefficients import Coefficients
 from polhode._generic.exact import by_rows, call, divide, is_symbolic, is_zero
 from polhode._generic.g3_exact import free_root
 from polhode._generic.g3_smooth import COSH, SINHC, horner
-from polhode._generic.numeric import Numeric, components, require_in_range
+from polhode._generic.numeric import Array, Numeric, components, require_in_range
 from polhode._generic.products import Term, product
-
-Array = Any
 
 # exp's series for |M| <= 1/2: the first term left out is 2⁻¹⁶/16! < 1e-18.
 _TAYLOR = [1 / math.factorial(k) for k in range(16)]

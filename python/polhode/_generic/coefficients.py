@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from polhode._generic.exact import Exact, is_coefficient, is_multiprecision
 from polhode._generic.numeric import Numeric
+from polhode._support.arrays import leaves
 from polhode._support.extras import optional
 
 Coefficients = Numeric | Exact
@@ -26,7 +26,7 @@ def of(*values: Any) -> Coefficients:
     """
     exact: list[Any] = []
     foreign: list[Any] = []
-    for leaf in _leaves(values):
+    for leaf in leaves(values):
         if _is_exact(leaf):
             exact.append(leaf)
         elif _namespace(leaf) is not None:
@@ -53,14 +53,6 @@ def _numeric(arrays: list[Any]) -> Numeric:
     # JAX places arrays itself; a traced array has no device.
     device = None if _library(arrays[0]) == "jax" else getattr(arrays[0], "device", None)
     return Numeric(xp, dtype, device)
-
-
-def _leaves(value: Any) -> Iterator[Any]:
-    if isinstance(value, list | tuple):
-        for item in value:
-            yield from _leaves(item)
-    else:
-        yield value
 
 
 def _is_exact(x: Any) -> bool:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import Any
 
 import numpy as np
 
@@ -17,13 +16,10 @@ from polhode._generic import g3_exact, g3_smooth
 from polhode._generic.coefficients import Coefficients
 from polhode._generic.exact import by_rows
 from polhode._generic.layout import ALL, eight, grades_of, indices, of_eight
-from polhode._generic.numeric import Numeric, components, require_in_range, squares
-
-Array = Any
+from polhode._generic.numeric import Array, Numeric, components, require_in_range, squares
 
 
 def _function(name: str, d: Coefficients, data: Array, mask: int) -> tuple[Array, int]:
-    """Return a function of G3 and the grades of its values."""
     result = grades_of(name, mask)
     if not isinstance(d, Numeric):
         full = of_eight(d, eight(d, data, mask), ALL)

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from polhode._generic.coefficients import Coefficients
-
-Array = Any
+from polhode._generic.numeric import Array
 
 SCALAR, VECTOR, BIVECTOR, TRIVECTOR = 0b0001, 0b0010, 0b0100, 0b1000
 EVEN, ALL = 0b0101, 0b1111

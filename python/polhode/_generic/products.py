@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from polhode._generic.coefficients import Coefficients
+from polhode._generic.numeric import Array
 
-Array = Any
 Term = tuple[int, int, int, int]
 
 # Up to this number, terms are written out as sums of component products, which compilers fuse; beyond, they

@@ -17,9 +17,8 @@ from polhode._generic import functions, g3_exact
 from polhode._generic.coefficients import Coefficients
 from polhode._generic.exact import atan2, by_rows, call, divide, is_rounding, is_symbolic, is_zero, sqrt
 from polhode._generic.layout import BIVECTOR, EVEN, eight, indices
-from polhode._generic.numeric import Numeric, components, squares
+from polhode._generic.numeric import Array, Numeric, components, squares
 
-Array = Any
 Parts = list[Any]
 
 _E12 = [0.0, 0.0, 1.0]
@@ -227,7 +226,6 @@ def plane_angle(d: Coefficients, r: Array) -> tuple[Array, Array]:
 
 
 def _exact_plane_angle(r: Parts) -> Parts:
-    """Return the unit plane and the angle."""
     s, b = r[0], r[1:]
     size = abs(g3_exact.length(b))
     plane = [0, 0, 1] if is_zero(size) else [divide(-x, size) for x in b]

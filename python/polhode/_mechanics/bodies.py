@@ -117,7 +117,6 @@ class Inertia(LinearMap):
 
 
 def _restored(matrix: Array, moments: Array, frame: Array) -> Inertia:
-    """Restore a pickled inertia."""
     return Inertia(_native.Inertia.restored(matrix, moments, frame))
 
 
@@ -325,17 +324,32 @@ def _points(masses: Any, positions: Any) -> tuple[Array, Array]:
 
 def bodies_of(body: Any) -> Any:
     """Return an object array of bodies or inertias from one or a nested sequence of them."""
+    return objects_of(body, (Body, Inertia), "body must be a Body or an Inertia")
+
+
+def objects_of(values: Any, kinds: tuple[type, ...], what: str, remedy: str = "") -> Any:
+    """Return an object array of one value or a nested sequence of values; a TypeError for other types."""
     array: Any = np.empty((), dtype=object)
-    if isinstance(body, list | tuple | np.ndarray):
-        array = np.array(body, dtype=object)
+    if not isinstance(values, list | tuple | np.ndarray):
+        array[()] = values
+    elif not isinstance(values, np.ndarray) and values and {*map(type, values)} <= {*kinds}:
+        # np.array would look for sequences in each.
+        array = np.fromiter(values, object, len(values))
     else:
-        array[()] = body
-    if not {*map(type, array.flat)} <= {Body, Inertia}:
+        array = np.array(values, dtype=object)
+    if not {*map(type, array.flat)} <= {*kinds}:
         for index, one in np.ndenumerate(array):
-            if not isinstance(one, Body | Inertia):
-                where = f"at index {index}: " if index else ""
-                raise TypeError(f"{where}body must be a Body or an Inertia, got {type(one).__name__}")
+            if not isinstance(one, kinds):
+                where, rest = (f"at index {index}: ", "") if index else ("", remedy)
+                raise TypeError(f"{where}{what}, got {type(one).__name__}{rest}")
     return array
+
+
+def inertia_of(body: Any, held: bool) -> Any:
+    """Return the inertia of a body, if it is held about the origin of its axes; anything else unchanged."""
+    if not isinstance(body, Body):
+        return body
+    return body.inertia_about(0) if held else body.inertia
 
 
 def mapped_objects(f: Callable[[Any], Any], array: Any) -> Any:

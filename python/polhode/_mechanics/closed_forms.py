@@ -28,6 +28,10 @@ class ClosedForm:
     _solution: _Solution
     _given: tuple[Inertia, Rotor, Multivector, Any]
 
+    def _solve(self, core: Any, inertia: Inertia, start: State, parameter: Any) -> None:
+        self._solution = core(inertia._core, start.rotor._data, start.omega_body._data, parameter)
+        self._given = inertia, start.rotor, start.omega_body, parameter
+
     def at(self, t: Any) -> State:
         """Return the state at time t in s; an array of times gives a state of that batch shape."""
         times = as_floats(t, "time")
@@ -88,9 +92,7 @@ class LagrangeTop(ClosedForm):
 
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, c: Any) -> None:
         start = _start(inertia, rotor, omega_body, "Body.inertia_about(pivot)")
-        c = as_point(c, "c")
-        self._solution = _native.LagrangeTop(inertia._core, start.rotor._data, start.omega_body._data, c)
-        self._given = inertia, start.rotor, start.omega_body, c
+        self._solve(_native.LagrangeTop, inertia, start, as_point(c, "c"))
 
     def describe(self) -> dict[str, Any]:
         """Return the regime, periods and invariants of the motion.
@@ -114,10 +116,7 @@ class DampedTop(ClosedForm):
     """
 
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, g: float) -> None:
-        start = _start(inertia, rotor, omega_body)
-        g = as_float(g, "g")
-        self._solution = _native.DampedTop(inertia._core, start.rotor._data, start.omega_body._data, g)
-        self._given = inertia, start.rotor, start.omega_body, g
+        self._solve(_native.DampedTop, inertia, _start(inertia, rotor, omega_body), as_float(g, "g"))
 
 
 class LarmorSphere(ClosedForm):
@@ -131,10 +130,7 @@ class LarmorSphere(ClosedForm):
     """
 
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, b: Any) -> None:
-        start = _start(inertia, rotor, omega_body)
-        b = as_point(b, "b")
-        self._solution = _native.LarmorSphere(inertia._core, start.rotor._data, start.omega_body._data, b)
-        self._given = inertia, start.rotor, start.omega_body, b
+        self._solve(_native.LarmorSphere, inertia, _start(inertia, rotor, omega_body), as_point(b, "b"))
 
 
 def _start(inertia: Inertia, rotor: Rotor, omega_body: Any, remedy: str = "Body.inertia") -> State:

@@ -13,7 +13,7 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.parameters import Batch, check_finite, common
+from polhode._mechanics.parameters import Batch, check_finite
 from polhode._mechanics.result import Certificate, Failure
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Drift, Trajectory
@@ -34,107 +34,11 @@ _NOWHERE: Any = (None, None)
 
 
 @dataclass(frozen=True, eq=False)
-class Ensemble:
-    """Bodies, their starts, torques and forces, with batch shapes that broadcast to `shape`.
-
-    `inertias` is an array of objects (...), `start_times` (...), `rotors` (..., 4), `omegas` (..., 3),
-    `positions` and `velocities` (..., 3), `masses` (...), NaN where unknown; `laws` may be batches.
-    """
-
-    shape: Shape
-    inertias: Any
-    start_times: Array
-    rotors: Array
-    omegas: Array
-    positions: Array
-    velocities: Array
-    masses: Array
-    laws: tuple[_native.Law, ...]
-    forces: tuple[_native.Force, ...]
-    times: Array
-    method: str
-    step: float | None
-    rtol: float | None
-    limits: StepLimits
-
-    @property
-    def bodies(self) -> int:
-        return math.prod(self.shape)
-
-    @property
-    def bytes(self) -> int:
-        """Memory for the results and for the computation."""
-        return _bytes(self.bodies, len(self.times), bool(self.forces))
-
-    def block(self, rows: slice) -> Ensemble:
-        """Return the bodies of some rows of the first batch axis."""
-        n = len(self.shape)
-
-        def own(array: Any, components: int = 1) -> Any:
-            leads = array.ndim - components == n and array.shape[0] > 1
-            return array[rows] if leads else array
-
-        def law(one: _native.Law) -> _native.Law:
-            if len(one.shape) < n or one.shape[0] == 1:
-                return one
-            return _native.Law(one.name, *(_rows_of(argument, rows) for argument in one.arguments))
-
-        return replace(
-            self,
-            shape=(len(range(*rows.indices(self.shape[0]))), *self.shape[1:]),
-            inertias=own(self.inertias, 0),
-            start_times=own(self.start_times, 0),
-            rotors=own(self.rotors),
-            omegas=own(self.omegas),
-            positions=own(self.positions),
-            velocities=own(self.velocities),
-            masses=own(self.masses, 0),
-            laws=tuple(map(law, self.laws)),
-        )
-
-    def run(self, threads: int | None, progress: Callable[[int, float], object] | None) -> Trajectory:
-        """Return the motions; a MemoryError, raised first, if they would not fit into memory."""
-        require(self.bodies, len(self.times), bool(self.forces))
-        results = Results(
-            self.shape,
-            self.inertias,
-            self.start_times,
-            self.positions,
-            self.velocities,
-            self.times,
-            self.method,
-        )
-        if not self.bodies:
-            return results.empty(bool(self.forces))
-        # The core needs at least one time.
-        times = self.times if len(self.times) else self.start_times.ravel()[:1]
-        centers = np.concatenate(np.broadcast_arrays(self.positions, self.velocities), axis=-1)
-        arrays, summary = _native.simulate_many(
-            self.shape,
-            ([inertia._core for inertia in self.inertias.flat], self.inertias.shape),
-            np.ascontiguousarray(self.start_times),
-            self.rotors,
-            self.omegas,
-            list(self.laws),
-            np.ascontiguousarray(centers),
-            self.masses,
-            list(self.forces),
-            times,
-            self.method,
-            self.step,
-            self.rtol,
-            self.limits,
-            threads,
-            progress,
-        )
-        trajectory = results.trajectory(arrays, summary)
-        warn_of(trajectory.certificate)
-        return trajectory
-
-
-@dataclass(frozen=True, eq=False)
 class Results:
-    """Bodies of a batch shape as in `Ensemble`, at times (n,), whose results become a trajectory."""
+    """Bodies at times (n,), whose results become a trajectory; their batch shapes broadcast to `shape`.
+
+    `inertias` is an array of objects (...), `start_times` (...), `positions` and `velocities` (..., 3).
+    """
 
     shape: Shape
     inertias: Any
@@ -181,12 +85,8 @@ class Results:
         )
 
     def _drift(self) -> Drift:
-        shape = (*self.shape, 3)
-        return Drift(
-            np.broadcast_to(self.start_times, self.shape),
-            np.broadcast_to(self.positions, shape),
-            np.broadcast_to(self.velocities, shape),
-        )
+        centers = (np.broadcast_to(x, (*self.shape, 3)) for x in (self.positions, self.velocities))
+        return Drift(np.broadcast_to(self.start_times, self.shape), *centers)
 
     def _certificate(self, summary: dict[str, Any]) -> Certificate:
         """Return the certificate of all bodies, without drifts and errors for those that failed."""
@@ -223,6 +123,83 @@ class Results:
         return tuple(Failure(tuple(index), time, message) for index, time, message in rows)
 
 
+@dataclass(frozen=True, eq=False)
+class Ensemble(Results):
+    """Bodies with their starts, torques and forces.
+
+    `rotors` (..., 4), `omegas` (..., 3), `masses` (...), NaN where unknown; `laws` may be batches.
+    """
+
+    rotors: Array
+    omegas: Array
+    masses: Array
+    laws: tuple[_native.Law, ...]
+    forces: tuple[_native.Force, ...]
+    step: float | None
+    rtol: float | None
+    limits: StepLimits
+
+    @property
+    def bodies(self) -> int:
+        return math.prod(self.shape)
+
+    @property
+    def bytes(self) -> int:
+        """Memory for the results and for the computation."""
+        return _bytes(self.bodies, len(self.times), bool(self.forces))
+
+    def block(self, rows: slice) -> Ensemble:
+        """Return the bodies of some rows of the first batch axis."""
+        n = len(self.shape)
+
+        def own(name: str, components: int = 1) -> Any:
+            array = getattr(self, name)
+            return array[rows] if array.ndim - components == n and array.shape[0] > 1 else array
+
+        def law(one: _native.Law) -> _native.Law:
+            if len(one.shape) < n or one.shape[0] == 1:
+                return one
+            return _native.Law(one.name, *(_rows_of(argument, rows) for argument in one.arguments))
+
+        return replace(
+            self,
+            shape=(len(range(*rows.indices(self.shape[0]))), *self.shape[1:]),
+            laws=tuple(map(law, self.laws)),
+            **{name: own(name, 0) for name in ("inertias", "start_times", "masses")},
+            **{name: own(name) for name in ("rotors", "omegas", "positions", "velocities")},
+        )
+
+    def run(self, threads: int | None, progress: Callable[[int, float], object] | None) -> Trajectory:
+        """Return the motions; a MemoryError, raised first, if they would not fit into memory."""
+        require(self.bodies, len(self.times), bool(self.forces))
+        if not self.bodies:
+            return self.empty(bool(self.forces))
+        # The core needs at least one time.
+        times = self.times if len(self.times) else self.start_times.ravel()[:1]
+        centers = np.concatenate(np.broadcast_arrays(self.positions, self.velocities), axis=-1)
+        arrays, summary = _native.simulate_many(
+            self.shape,
+            ([inertia._core for inertia in self.inertias.flat], self.inertias.shape),
+            np.ascontiguousarray(self.start_times),
+            self.rotors,
+            self.omegas,
+            list(self.laws),
+            np.ascontiguousarray(centers),
+            self.masses,
+            list(self.forces),
+            times,
+            self.method,
+            self.step,
+            self.rtol,
+            self.limits,
+            threads,
+            progress,
+        )
+        trajectory = self.trajectory(arrays, summary)
+        warn_of(trajectory.certificate)
+        return trajectory
+
+
 def _rows_of(argument: Any, rows: slice) -> Any:
     """Return an argument of a law for some rows; formulas have pairs of names and values."""
     if isinstance(argument, Batch):
@@ -253,12 +230,6 @@ def warn_of(certificate: Certificate) -> None:
     """Issue the warnings of the certificate to the caller of `simulate`."""
     for warning in certificate.warnings:
         warnings.warn(warning, RuntimeWarning, stacklevel=3)
-
-
-def shape_of(bodies: Any, state: State, torque_shape: Shape) -> Shape:
-    """Return the shape to which body, state and torque broadcast."""
-    shapes = {"the body": bodies.shape, **state._shapes(), "the torque": torque_shape}
-    return common(shapes, "body, state and torque")
 
 
 def check_state(state: State) -> None:

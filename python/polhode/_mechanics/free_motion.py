@@ -15,9 +15,18 @@ from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.bodies import Inertia, objects_of
 from polhode._mechanics.state import State, angular_velocity
-from polhode._support.arrays import Array, Shape, as_float, as_floats, frozen, hands_out_copies
+from polhode._support.arrays import (
+    Array,
+    Shape,
+    as_count,
+    as_float,
+    as_floats,
+    batch_index,
+    frozen,
+    hands_out_copies,
+)
 from polhode._support.memory import require
 
 if TYPE_CHECKING:
@@ -72,12 +81,9 @@ class FreeMotion:
         return self._core.shape
 
     def __getitem__(self, index: Any) -> FreeMotion:
+        parts, _, _ = batch_index(index, self.shape)
         numbers = np.arange(int(np.prod(self.shape))).reshape(self.shape)
-        try:
-            picked = numbers[index]
-        except IndexError as error:
-            raise IndexError(f"{error} (batch shape {self.shape})") from None
-        return self._picked(picked, self._core.starts())
+        return self._picked(numbers[parts], self._core.starts())
 
     def __len__(self) -> int:
         if not self.shape:
@@ -227,15 +233,7 @@ class FreeMotion:
         )
 
 
-@hands_out_copies(
-    "d_rotor_d_attitude",
-    "d_rotor_d_omega",
-    "d_rotor_d_moments",
-    "d_rotor_dt",
-    "d_omega_d_omega",
-    "d_omega_d_moments",
-    "d_omega_dt",
-)
+@hands_out_copies()
 @dataclass(frozen=True, eq=False)
 class FlowDerivatives:
     """Derivatives of the state of a free motion at time t, for a batch of times and bodies of shape (...).
@@ -297,7 +295,7 @@ def describe_free(inertia: Inertia, omega_body: Any) -> dict[str, Any]:
 
 def _batch(inertia: Any, rotor: Any, omega_body: Any) -> tuple[_native.FreeMotion, Any]:
     """Return the motions and inertias of arguments that may be batches."""
-    inertias = _inertias(inertia)
+    inertias = objects_of(inertia, (Inertia,), "inertia must be an Inertia", "; see Body.inertia")
     if not isinstance(rotor, Rotor):
         raise TypeError(f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_components")
     turns = as_coefficients(rotor._data, "the rotor", float)
@@ -318,25 +316,6 @@ def _batch(inertia: Any, rotor: Any, omega_body: Any) -> tuple[_native.FreeMotio
     turns, rates = (np.broadcast_to(x, (*shape, x.shape[-1])) for x in (turns, rates))
     core = _native.FreeMotion.batch(cores, np.ascontiguousarray(turns), np.ascontiguousarray(rates))
     return core, inertias[()] if one else inertias
-
-
-def _inertias(values: Any) -> Any:
-    """Return an object array of inertias."""
-    array: Any = np.empty((), dtype=object)
-    if isinstance(values, Inertia):
-        array[()] = values
-    elif isinstance(values, list | tuple) and set(map(type, values)) == {Inertia}:
-        # np.array would look for sequences in each.
-        array = np.fromiter(values, object, len(values))
-    elif isinstance(values, list | tuple | np.ndarray):
-        array = np.array(values, dtype=object)
-    else:
-        raise TypeError(f"inertia must be an Inertia, got {type(values).__name__}; see Body.inertia")
-    if not set(map(type, array.ravel())) <= {Inertia}:
-        for index, value in np.ndenumerate(array):
-            if not isinstance(value, Inertia):
-                raise TypeError(f"at index {index}: inertia must be an Inertia, got {type(value).__name__}")
-    return array
 
 
 def _order(bodies: Shape, shape: Shape) -> tuple[Shape, int]:
@@ -366,10 +345,7 @@ def _bivectors(numbers: Array, shape: Shape) -> Multivector:
 
 
 def _count(n: Any) -> int:
-    try:
-        count = operator.index(n)
-    except TypeError:
-        raise TypeError(f"n must be a whole number, got {type(n).__name__}") from None
+    count = as_count(n, "n")
     if count < 2:
         raise ValueError(f"n is {count}; a curve needs at least 2 points")
     return count

@@ -3,19 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, TypeVar
+from dataclasses import dataclass
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
 from polhode._algebra.coefficients import as_coefficients
-from polhode._algebra.constructors import as_bivectors, as_vectors
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._formula.arguments import narrowed
 from polhode._formula.errors import FormulaError
-from polhode._support.arrays import Array, as_float, as_floats
+from polhode._support.arrays import as_float, as_floats
 
 T = TypeVar("T")
+
+
+@dataclass(frozen=True, repr=False)
+class Sum:
+    """A sum of laws; laws are immutable values: equal if their arguments are equal, hashable, picklable."""
+
+    laws: tuple[Any, ...]
+
+    def __add__(self, other: Self) -> Self:
+        return type(self)(self.laws + other.laws) if isinstance(other, type(self)) else NotImplemented
+
+    def __radd__(self, other: object) -> Self:
+        """``0 + law``, so that ``sum(laws)`` works."""
+        return self if other == 0 else NotImplemented
 
 
 def finite(value: float, name: str) -> float:
@@ -26,22 +41,6 @@ def finite(value: float, name: str) -> float:
 
 def number(value: Any, name: str) -> float:
     return finite(as_float(value, name), name)
-
-
-def three(components: Array, name: str) -> tuple[float, ...]:
-    if components.shape != (3,):
-        raise ValueError(f"{name} must be a single value, got shape {components.shape}")
-    if not np.isfinite(components).all():
-        raise ValueError(f"{name} is {components.tolist()}; it must be finite")
-    return tuple(components.tolist())
-
-
-def vector_of(value: Any, name: str) -> tuple[float, ...]:
-    return three(as_vectors(value, name), name)
-
-
-def bivector_of(value: Any, name: str) -> tuple[float, ...]:
-    return three(as_bivectors(value, name), name)
 
 
 def formula_value(value: Any, name: str, batches: bool = False) -> Any:
@@ -65,13 +64,6 @@ def formula_value(value: Any, name: str, batches: bool = False) -> Any:
     if not np.isfinite(data).all():
         raise ValueError(f"{name} is {value}; it must be finite")
     return Rotor._from_rows(data) if isinstance(value, Rotor) else Multivector._of(data, value._mask)
-
-
-def narrowed(value: Any) -> Any:
-    if not isinstance(value, Multivector) or isinstance(value, Rotor):
-        return value
-    held = value._held()
-    return value if held in (0, value._mask) else value._part(held)
 
 
 def law_of_formula(

@@ -16,14 +16,9 @@ from polhode._support.arrays import Array, Shape, as_floats, first_index, frozen
 
 
 class Batch:
-    """A row of numbers for each body of a batch; equal if the numbers are equal.
+    """A row of numbers for each body of a batch, (*shape, k); equal if the numbers are equal.
 
-    Attributes
-    ----------
-    rows
-        The numbers, (*shape, k), read-only and in C order.
-    like
-        A single multivector of the same kind for a formula, else 1.0.
+    `like` is a single multivector of the same kind for a formula, else 1.0.
     """
 
     __slots__ = ("like", "rows")

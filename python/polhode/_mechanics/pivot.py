@@ -20,18 +20,9 @@ HOLDING = ("gravity", "heavy")
 def about_pivot(bodies: Any, laws: Laws) -> tuple[Any, Laws]:
     """Return bodies in axes whose origin is the fixed point, and the laws with `gravity` as `heavy` about it.
 
-    Parameters
-    ----------
-    bodies
-        An array of objects, each a `Body`, or an `Inertia` about the fixed point.
-    laws
-        Torque laws, which may be batches.
-
-    Raises
-    ------
-    ValueError
-        If laws hold the body at different points, if gravity was made for another body, or if c of `heavy`
-        does not point along the centre of mass.
+    `bodies` is an array of objects, each a `Body`, or an `Inertia` about the fixed point. A ValueError if
+    laws hold the body at different points, if gravity was made for another body, or if c of `heavy` does not
+    point along the centre of mass.
     """
     held = [law for law in laws if law.name in HOLDING]
     if not held:
@@ -50,7 +41,6 @@ def about_pivot(bodies: Any, laws: Laws) -> tuple[Any, Laws]:
 
 
 def _rows(argument: Any) -> Array:
-    """Return an argument of a law as an array (..., k)."""
     return argument.rows if isinstance(argument, Batch) else np.atleast_1d(np.array(argument, float))
 
 

@@ -13,22 +13,9 @@ from polhode.torque import Torque
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """The arguments of `polhode.simulate` for one body.
+    """The arguments of `polhode.simulate` for one body, whose state is the single one at the start.
 
-    Attributes
-    ----------
-    body
-        A `Body`, or the `Inertia` that determines its motion.
-    state
-        The single state at the start.
-    torque, force
-        Torque and force; None without.
-    times
-        Output times in s, (n,).
-    method, step, tolerance
-        As for `polhode.simulate`; the tolerance is the larger one of rtol and atol.
-    limits
-        `max_step`, `max_steps` and `breaks`.
+    The tolerance is the larger one of rtol and atol, `limits` are `max_step`, `max_steps` and `breaks`.
     """
 
     body: Body | Inertia

@@ -9,23 +9,12 @@ from polhode import _native
 
 @dataclass(frozen=True)
 class Argument:
-    """An argument of a law.
+    """An argument of a law: its name in Python and in the formula, and its SI unit, ``"1"`` for pure numbers.
 
-    Attributes
-    ----------
-    name
-        Its name in Python and in the formula.
-    field
-        Its field in the table of the law in a scene; empty where the law is this value alone.
-    unit
-        SI, ``"1"`` for pure numbers.
-    shape
-        ``"scalar"``, ``"vector"``, ``"bivector"``, ``"gains"`` (a number or three along the body axes),
-        ``"rotor"``, ``"numbers"``, ``"bivectors"`` or ``"word"``.
-    default
-        Its numbers where it is left out; None where it must be given.
-    words
-        The values of a word.
+    `field` is its field in the table of the law in a scene, empty where the law is this value alone. The
+    shape is ``"scalar"``, ``"vector"``, ``"bivector"``, ``"gains"`` (a number or three along the body axes),
+    ``"rotor"``, ``"numbers"``, ``"bivectors"`` or ``"word"``, one of `words`. The default is None where the
+    argument must be given.
     """
 
     name: str

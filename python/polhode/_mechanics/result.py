@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,9 +14,7 @@ from polhode._mechanics.state import State
 from polhode._support.arrays import Array, hands_out_copies
 
 
-@hands_out_copies(
-    "method", "step", "steps", "evaluations", "error_estimate", "conserved", "drift", "norm_drift"
-)
+@hands_out_copies()
 @dataclass(frozen=True)
 class Certificate:
     """How a run was computed, and its drift in conserved quantities.
@@ -69,8 +67,6 @@ class Certificate:
         return float(np.max([np.max(drift, where=where, initial=0.0) for drift, where in columns]))
 
     def _of(self, index: tuple[Any, ...]) -> Certificate:
-        """Return the certificate of some bodies of a batch."""
-
         def picked(numbers: Any) -> Any:
             found = np.asarray(numbers[index])
             return found if found.ndim else found.item()
@@ -78,16 +74,13 @@ class Certificate:
         conserved, drifts = self.conserved, self.drift
         kept = [name for name, start in conserved.items() if not np.all(np.isnan(start[index]))]
         estimate = picked(self.error_estimate)
-        return Certificate(
-            self.method if isinstance(self.method, str) else picked(self.method),
-            picked(self.step),
-            picked(self.steps),
-            picked(self.evaluations),
-            None if np.ndim(estimate) == 0 and np.isnan(estimate) else estimate,
-            {name: picked(conserved[name]) for name in kept},
-            {name: picked(drifts[name]) for name in kept},
-            picked(self.norm_drift),
-            self.warnings,
+        return replace(
+            self,
+            method=self.method if isinstance(self.method, str) else picked(self.method),
+            error_estimate=None if np.ndim(estimate) == 0 and np.isnan(estimate) else estimate,
+            conserved={name: picked(conserved[name]) for name in kept},
+            drift={name: picked(drifts[name]) for name in kept},
+            **{name: picked(getattr(self, name)) for name in ("step", "steps", "evaluations", "norm_drift")},
         )
 
 

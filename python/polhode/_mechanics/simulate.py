@@ -13,8 +13,9 @@ from polhode import force as forces
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import as_point, vector
 from polhode._algebra.multivector import Multivector
-from polhode._mechanics.bodies import Body, Inertia, bodies_of, mapped_objects
-from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, shape_of, warn_of
+from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of, mapped_objects
+from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, warn_of
+from polhode._mechanics.parameters import common
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
@@ -206,27 +207,18 @@ def simulate_blocks(
         raise ValueError("simulate_blocks needs a batch of bodies, got one body; use simulate")
     if block is not None and as_count(block, "block") < 1:
         raise ValueError(f"block must be at least 1, got {block}")
-    checked_threads(threads)
-    rows = ensemble.shape[0]
-    size = block or max(1, _BLOCK * rows // max(ensemble.bytes, 1))
-    return _blocks(ensemble, [slice(i, min(i + size, rows)) for i in range(0, rows, size)], threads, progress)
+    count, length = checked_threads(threads), ensemble.shape[0]
+    size = block or max(1, _BLOCK * length // max(ensemble.bytes, 1))
 
-
-def _blocks(
-    ensemble: Ensemble,
-    blocks: list[slice],
-    threads: int | None,
-    progress: Callable[[int, float], object] | None,
-) -> Iterator[tuple[slice, Trajectory]]:
-    count = checked_threads(threads)
-    for rows in blocks:
-
-        def of_all(number: int, fraction: float, rows: slice = rows) -> None:
-            done = rows.start + fraction * (rows.stop - rows.start)
+    def motion(rows: slice) -> Trajectory:
+        def of_all(number: int, fraction: float) -> None:
             if progress is not None:
-                progress(number, done / ensemble.shape[0])
+                progress(number, (rows.start + fraction * (rows.stop - rows.start)) / length)
 
-        yield rows, ensemble.block(rows).run(count, of_all if progress else None)
+        return ensemble.block(rows).run(count, of_all if progress else None)
+
+    blocks = (slice(i, min(i + size, length)) for i in range(0, length, size))
+    return ((rows, motion(rows)) for rows in blocks)
 
 
 def _ensemble(
@@ -253,20 +245,21 @@ def _ensemble(
         raise ValueError("ph.torque.gravity and heavy fix a point of the body; leave force out")
     if thrust is not None:
         torque = thrust if torque is None else torque + thrust
+    shapes = {"the body": bodies.shape, **state._shapes(), "the torque": torque.shape if torque else ()}
     masses = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
     return Ensemble(
-        shape_of(bodies, state, torque.shape if torque else ()),
-        mapped_objects(lambda one: _inertia_of(one, held), bodies),
+        common(shapes, "body, state and torque"),
+        mapped_objects(lambda one: inertia_of(one, held), bodies),
         np.array(state.time),
-        as_coefficients(state.rotor._data, "the rotor", float),
-        state.omega_body._data,
         state.position._data,
         state.velocity._data,
+        np.ascontiguousarray(when),
+        method,
+        as_coefficients(state.rotor._data, "the rotor", float),
+        state.omega_body._data,
         np.array(masses).reshape(bodies.shape),
         torque.laws if torque else (),
         tuple(pushes),
-        np.ascontiguousarray(when),
-        method,
         None if step is None else as_float(step, "step"),
         _tolerance(rtol, atol),
         limits,
@@ -312,13 +305,6 @@ def _tolerance(rtol: float | None, atol: float | None) -> float | None:
         if not (x > 0 and np.isfinite(x)):
             raise ValueError(f"{name} must be positive and finite, got {x}")
     return max(given.values(), default=None)
-
-
-def _inertia_of(body: Body | Inertia, held: bool) -> Inertia:
-    """Return the inertia about the fixed point, the origin of the body's axes, if the body is held."""
-    if isinstance(body, Inertia):
-        return body
-    return body.inertia_about(0) if held else body.inertia
 
 
 def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None]:

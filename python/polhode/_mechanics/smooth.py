@@ -43,9 +43,3 @@ def samples(trajectory: Trajectory) -> Samples:
     times = np.append(starts + within * np.repeat(steps / parts, parts), time[-1])
     state = trajectory.at(times)
     return Samples(times, state.rotor, state.omega_body)
-
-
-def rotor_at(trajectory: Trajectory, k: int) -> Rotor:
-    """Return the rotor at an output time, by index."""
-    rotor: Rotor = Rotor._from_rows(trajectory.rotor._data[k])
-    return rotor

@@ -12,7 +12,7 @@ from polhode._algebra.constructors import as_bivectors, as_vectors, bivector, ve
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.parameters import common
-from polhode._support.arrays import Array, Shape, as_floats, frozen
+from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -129,13 +129,8 @@ class State:
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
 
     def __getitem__(self, index: Any) -> State:
-        parts, shape = index if isinstance(index, tuple) else (index,), self.shape
-        try:
-            time = np.broadcast_to(self.time, shape)[parts]
-        except IndexError as error:
-            raise IndexError(f"{error} (batch shape {shape})") from None
-        # Keep the index off the axis of components.
-        rows = (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
+        shape = self.shape
+        parts, rows, _ = batch_index(index, shape)
 
         def picked(value: Multivector) -> Array:
             components = value.components
@@ -146,7 +141,7 @@ class State:
             bivector(picked(self.omega_body)),
             vector(picked(self.position)),
             vector(picked(self.velocity)),
-            time=time,
+            time=np.broadcast_to(self.time, shape)[parts],
         )
 
     def __len__(self) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,17 +25,11 @@ class Moments:
         Axis of `values` to reduce.
     """
 
-    __slots__ = ("_axis", "_count", "_maximum", "_mean", "_minimum", "_missing", "_squares")
-    _count: Array | None
-    _missing: Array
-    _mean: Array
-    _squares: Array
-    _minimum: Array
-    _maximum: Array
+    __slots__ = ("_axis", "_found")
+    _found: _Found | None
 
     def __init__(self, axis: int = 0) -> None:
-        self._axis = operator.index(axis)
-        self._count = None
+        self._axis, self._found = operator.index(axis), None
 
     def add(self, values: Any) -> Moments:
         """Add values, an array or a multivector (its components), and return self.
@@ -45,59 +39,38 @@ class Moments:
         array = as_floats(values._data if isinstance(values, Multivector) else values, "values")
         if not -array.ndim <= self._axis < array.ndim:
             raise ValueError(f"values of shape {array.shape} have no axis {self._axis}")
-        self._merge(_of(array, self._axis))
+        self._found = _merged(self._found, _of(array, self._axis))
         return self
 
     def __add__(self, other: Moments) -> Moments:
         if not isinstance(other, Moments):
             return NotImplemented
         both = Moments(self._axis)
-        for one in (self, other):
-            if one._count is not None:
-                both._merge(one)
+        both._found = _merged(self._found, other._found)
         return both
-
-    def _merge(self, other: Moments) -> None:
-        if self._count is None:
-            for name in self.__slots__[1:]:
-                setattr(self, name, getattr(other, name))
-            return
-        if self._count.shape != other.count.shape:
-            raise ValueError(
-                f"cannot merge moments of shape {other.count.shape} into shape {self._count.shape}"
-            )
-        # Chan: M2 = M2a + M2b + δ² na nb / n, δ the difference of the means.
-        count = self._count + other.count
-        share = other.count / np.maximum(count, 1)
-        with np.errstate(invalid="ignore", over="ignore"):  # infinite values have no deviation
-            change = other._mean - self._mean
-            self._squares = self._squares + other._squares + change * change * self._count * share
-            mean = np.where(share == 1, other._mean, self._mean + change * share)
-            self._mean = np.where(np.isfinite(change), mean, self._mean + other._mean)
-        self._count, self._missing = count, self._missing + other._missing
-        self._minimum = np.fmin(self._minimum, other._minimum)
-        self._maximum = np.fmax(self._maximum, other._maximum)
 
     @property
     def count(self) -> Array:
         """Number of values added, without NaN."""
-        return self._result("_count")
+        return np.array(self._known().number)
 
     @property
     def missing(self) -> Array:
         """Number of NaN values."""
-        return self._result("_missing")
+        return np.array(self._known().missing)
 
     @property
     def mean(self) -> Array:
         """The mean; NaN where no value was added."""
-        return self._result("_mean", empty=np.nan)
+        found = self._known()
+        return np.where(found.number == 0, np.nan, found.mean)
 
     @property
     def variance(self) -> Array:
         """The mean square of the deviation from the mean, as `numpy.var`."""
-        variance = self._result("_squares", empty=np.nan) / np.maximum(self.count, 1)
-        return np.asarray(variance)
+        found = self._known()
+        squares = np.where(found.number == 0, np.nan, found.squares)
+        return np.asarray(squares / np.maximum(found.number, 1))
 
     @property
     def std(self) -> Array:
@@ -107,29 +80,54 @@ class Moments:
     @property
     def minimum(self) -> Array:
         """The minimum; NaN where no value was added."""
-        return self._result("_minimum")
+        return np.array(self._known().minimum)
 
     @property
     def maximum(self) -> Array:
         """The maximum; NaN where no value was added."""
-        return self._result("_maximum")
+        return np.array(self._known().maximum)
 
-    def _result(self, name: str, empty: float | None = None) -> Array:
-        if self._count is None:
+    def _known(self) -> _Found:
+        if self._found is None:
             raise ValueError("no values were added; call add first")
-        array = np.array(getattr(self, name))
-        return array if empty is None else np.where(self._count == 0, empty, array)
+        return self._found
 
     def __repr__(self) -> str:
-        if self._count is None:
+        if self._found is None:
             return "Moments(empty)"
-        most = int(self._count.max(initial=0))
-        return f"Moments(of {most}, shape {self._count.shape}, {int(self._missing.sum())} missing)"
+        count, missing = self._found.number, int(self._found.missing.sum())
+        return f"Moments(of {int(count.max(initial=0))}, shape {count.shape}, {missing} missing)"
 
 
-def _of(array: Array, axis: int) -> Moments:
-    """Return the moments of one array."""
-    one = Moments(axis)
+class _Found(NamedTuple):
+    """Moments of the values so far; `squares` is the sum of the squared deviations from the mean."""
+
+    number: Array
+    missing: Array
+    mean: Array
+    squares: Array
+    minimum: Array
+    maximum: Array
+
+
+def _merged(a: _Found | None, b: _Found | None) -> _Found | None:
+    if a is None or b is None:
+        return b if a is None else a
+    if a.number.shape != b.number.shape:
+        raise ValueError(f"cannot merge moments of shape {b.number.shape} into shape {a.number.shape}")
+    # Chan: M2 = M2a + M2b + δ² na nb / n, δ the difference of the means.
+    count = a.number + b.number
+    share = b.number / np.maximum(count, 1)
+    with np.errstate(invalid="ignore", over="ignore"):  # infinite values have no deviation
+        change = b.mean - a.mean
+        squares = a.squares + b.squares + change * change * a.number * share
+        mean = np.where(share == 1, b.mean, a.mean + change * share)
+        mean = np.where(np.isfinite(change), mean, a.mean + b.mean)
+    extremes = np.fmin(a.minimum, b.minimum), np.fmax(a.maximum, b.maximum)
+    return _Found(count, a.missing + b.missing, mean, squares, *extremes)
+
+
+def _of(array: Array, axis: int) -> _Found:
     known = ~np.isnan(array)
     count = known.sum(axis=axis)
     size = np.maximum(count, 1)
@@ -138,8 +136,6 @@ def _of(array: Array, axis: int) -> Moments:
         apart = array - np.expand_dims(mean, axis)
         # The sum of the deviations, which rounding of the mean leaves nonzero.
         rest = np.sum(apart, axis=axis, where=known)
-        one._squares = np.sum(apart * apart, axis=axis, where=known) - rest * rest / size
-    one._count, one._mean, one._missing = count, mean, array.shape[axis] - count
-    one._minimum = np.fmin.reduce(array, axis=axis, initial=np.nan)
-    one._maximum = np.fmax.reduce(array, axis=axis, initial=np.nan)
-    return one
+        squares = np.sum(apart * apart, axis=axis, where=known) - rest * rest / size
+    extremes = (f.reduce(array, axis=axis, initial=np.nan) for f in (np.fmin, np.fmax))
+    return _Found(count, array.shape[axis] - count, mean, squares, *extremes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.result import Certificate, Crossings, Failure
 from polhode._mechanics.state import State
-from polhode._support.arrays import Array, Shape, as_floats, frozen, hands_out_copies
+from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen, hands_out_copies
 
 if TYPE_CHECKING:
     from polhode import _outputs
@@ -90,27 +90,15 @@ class Trajectory:
 
     @staticmethod
     def _of(
-        motion: _native.Motion,
-        inertia: Inertia,
-        names: Sequence[str],
-        origin: Scene | Problem,
+        motion: _native.Motion, inertia: Inertia, names: Sequence[str], origin: Scene | Problem
     ) -> Trajectory:
         which, rising, points = motion.events()
         happened = _Points.of(points)
-        chosen = [
-            np.array([k for k, event in enumerate(which) if event == i], int) for i in range(len(names))
-        ]
         ways = np.array(rising, bool)
+        chosen = (np.flatnonzero(np.array(which, int) == i) for i in range(len(names)))
         events = (happened.crossings(name, k, ways[k]) for name, k in zip(names, chosen, strict=True))
-        at = _Points.of(motion.states())
         return Trajectory(
-            at.time,
-            at.rotor,
-            at.omega_body,
-            at.momentum_space,
-            at.energy,
-            at.position,
-            at.velocity,
+            *_Points.of(motion.states()),
             inertia,
             Certificate(**motion.certificate()),
             tuple(events),
@@ -144,18 +132,12 @@ class Trajectory:
 
     def __getitem__(self, index: Any) -> Trajectory:
         """Return the motions of some bodies of a batch, by an index of NumPy over the batch's axes."""
-        parts = index if isinstance(index, tuple) else (index,)
-        try:
-            picked = np.broadcast_to(np.False_, self.shape)[parts].shape
-        except IndexError as error:
-            raise IndexError(f"{error} (batch shape {self.shape})") from None
-        # Keep the index off the axis of time.
-        rows = (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
+        parts, rows, picked = batch_index(index, self.shape)
         drift = None if self._drift is None else self._drift[parts]
         center: list[Any] = [None, None] if drift else [self.position[rows], self.velocity[rows]]
         return replace(
             self,
-            rotor=Rotor._from_rows(self.rotor[rows]._data),
+            rotor=self.rotor[rows],
             omega_body=self.omega_body[rows],
             momentum_space=self.momentum_space[rows],
             energy=self.energy[rows],
@@ -201,14 +183,8 @@ class Trajectory:
             )
         times = as_floats(t, "time")
         found = _Points.of(self._motion.at(np.ascontiguousarray(times.ravel())))
-        shape = times.shape
-        return State(
-            Rotor._from_rows(found.rotor._data.reshape(*shape, 4)),
-            bivector(found.omega_body._data.reshape(*shape, 3)),
-            vector(found.position._data.reshape(*shape, 3)),
-            vector(found.velocity._data.reshape(*shape, 3)),
-            time=times,
-        )
+        parts = found.omega_body, found.position, found.velocity
+        return State(found.rotor.reshape(times.shape), *(x.reshape(times.shape) for x in parts), time=times)
 
     @property
     def final(self) -> State:
@@ -218,13 +194,8 @@ class Trajectory:
         """
         if not len(self.time):
             raise ValueError("the motion has no output times, so it has no final state")
-        return State(
-            Rotor._from_rows(np.ascontiguousarray(self.rotor._data[..., -1, :])),
-            bivector(self.omega_body._data[..., -1, :]),
-            vector(self.position._data[..., -1, :]),
-            vector(self.velocity._data[..., -1, :]),
-            time=float(self.time[-1]),
-        )
+        last = (x[..., -1] for x in (self.omega_body, self.position, self.velocity))
+        return State(self.rotor[..., -1], *last, time=float(self.time[-1]))
 
     def drifts(self) -> dict[str, Array]:
         """Return the change of each conserved quantity since the start, (n,), relative as in the certificate.
@@ -282,8 +253,7 @@ class Drift:
         return np.broadcast_to(rates, (*rates.shape[:-2], len(times), 3))
 
 
-@dataclass(frozen=True, eq=False)
-class _Points:
+class _Points(NamedTuple):
     """Arrays of the core as values."""
 
     time: Array
@@ -307,12 +277,12 @@ class _Points:
             vector(velocity, copy=False),
         )
 
-    def crossings(self, name: str, chosen: Array, rising: Array) -> Crossings:
+    def crossings(self, name: str, chosen: Any, rising: Array) -> Crossings:
         return Crossings(
             name,
             frozen(self.time[chosen]),
             frozen(rising),
-            Rotor._from_rows(self.rotor._data[chosen]),
+            self.rotor[chosen],
             self.omega_body[chosen],
             self.position[chosen],
             self.velocity[chosen],

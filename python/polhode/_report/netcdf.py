@@ -6,19 +6,21 @@ import io
 import json
 import math
 import os
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode import _native
+from polhode._algebra.constructors import bivector, vector
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.result import Certificate, Crossings
+from polhode._mechanics.trajectory import Trajectory
+from polhode._support.arrays import Array
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
     import xarray
-
-    from polhode._mechanics.result import Crossings
-    from polhode._mechanics.trajectory import Trajectory
 
 CONVENTIONS = (
     "Right-handed e1, e2, e3; I = e1e2e3. Rotor R = exp(-B theta/2) turns body axes to space axes, "
@@ -30,36 +32,43 @@ CONVENTIONS = (
 )
 
 
+# Dimensions, unit and description of the quantities of a motion.
+MOTION: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "attitude": (("quaternion",), "1", "attitude, body to space"),
+    "omega_body": (("axis",), "rad/s", "angular velocity in body axes"),
+    "momentum_space": (("axis",), "kg m^2/s", "angular momentum in space axes"),
+    "position": (("axis",), "m", "centre of mass in space"),
+    "velocity": (("axis",), "m/s", "velocity of the centre of mass"),
+    "energy": ((), "J", "rotational kinetic and potential energy"),
+    "inertia": (("axis", "axis_"), "kg m^2", "inertia matrix in body axes"),
+}
+
+
+def components(states: Trajectory | Crossings, name: str) -> Array:
+    """Return the components (..., m) of a quantity of states."""
+    if name == "attitude":
+        return np.asarray(states.rotor.to_quaternion(order="wxyz"))
+    x = getattr(states, name)
+    return np.asarray(getattr(x, "_data", x))
+
+
 def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
     """Return a dataset with dimensions time, quaternion and axis, units and conventions.
 
     A batch has the first dimension `body`, its batch axes flattened.
     """
     xr = optional("xarray", "io", "labelled data")
-    body = ("body",) if trajectory.shape else ()
-    count = math.prod(trajectory.shape)
-
-    def variable(dims: tuple[str, ...], data: Any, units: str, text: str) -> Any:
-        return (dims, np.array(data), {"units": units, "long_name": text})
-
-    def moving(dims: tuple[str, ...], data: Any, units: str, text: str) -> Any:
-        array = np.asarray(data)
-        flat = array.reshape(count, *array.shape[len(trajectory.shape) :]) if body else array
-        return variable((*body, "time", *dims), flat, units, text)
-
-    along, axes = (), ("axis",)
-    omega, momentum = trajectory.omega_body._data, trajectory.momentum_space._data
-    variables = {
-        "attitude": moving(
-            ("quaternion",), trajectory.rotor.to_quaternion(order="wxyz"), "1", "attitude, body to space"
-        ),
-        "omega_body": moving(axes, omega, "rad/s", "angular velocity in body axes"),
-        "momentum_space": moving(axes, momentum, "kg m^2/s", "angular momentum in space axes"),
-        "position": moving(axes, trajectory.position._data, "m", "centre of mass in space"),
-        "velocity": moving(axes, trajectory.velocity._data, "m/s", "velocity of the centre of mass"),
-        "energy": moving(along, trajectory.energy, "J", "rotational kinetic and potential energy"),
-        "inertia": _inertia(trajectory, variable),
-    }
+    shape, count = trajectory.shape, math.prod(trajectory.shape)
+    variables = {}
+    for name in list(MOTION)[:-1]:
+        values = components(trajectory, name)
+        flat = values.reshape(count, *values.shape[len(shape) :]) if shape else values
+        variables[name] = _quantity(name, ("body", "time") if shape else ("time",), flat)
+    if isinstance(trajectory.inertia, np.ndarray):
+        matrices = np.array([inertia.matrix for inertia in trajectory.inertia.flat]).reshape(count, 3, 3)
+        variables["inertia"] = _quantity("inertia", ("body",), matrices)
+    else:
+        variables["inertia"] = _quantity("inertia", (), trajectory.inertia.matrix)
     coordinates: dict[str, Any] = {
         "time": ("time", trajectory.time, {"units": "s", "long_name": "time", "axis": "T"}),
         "quaternion": ["w", "x", "y", "z"],
@@ -67,76 +76,66 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
         "axis_": ["x", "y", "z"],
     }
     if trajectory.events:
-        variables |= _events(trajectory, variable)
-    if trajectory.shape:
+        variables |= _events(trajectory.events)
+    if shape:
         coordinates["body"] = np.arange(count)
-        variables |= _bodies(trajectory, variable)
+        variables |= _bodies(trajectory)
     dataset: xarray.Dataset = xr.Dataset(variables, coordinates, _attributes(trajectory))
     return dataset
 
 
-def _inertia(trajectory: Trajectory, variable: Callable[..., Any]) -> Any:
-    one, own = ("axis", "axis_"), trajectory.inertia
-    text = "inertia matrix in body axes"
-    if not isinstance(own, np.ndarray):
-        return variable(one, own.matrix, "kg m^2", text)
-    matrices = np.array([inertia.matrix for inertia in own.flat]).reshape(own.size, 3, 3)
-    return variable(("body", *one), matrices, "kg m^2", text)
+def _variable(dims: tuple[str, ...], data: Any, units: str, text: str) -> Any:
+    return (dims, np.array(data), {"units": units, "long_name": text})
 
 
-def _bodies(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, Any]:
+def _quantity(name: str, over: tuple[str, ...], data: Any) -> Any:
+    dims, units, text = MOTION[name]
+    return _variable((*over, *dims), data, units, text)
+
+
+def _bodies(trajectory: Trajectory) -> dict[str, Any]:
     """Return certificate and failure of each body of a batch."""
-    proof, along = trajectory.certificate, ("body",)
-
-    def column(numbers: Any, units: str, text: str) -> Any:
-        return variable(along, np.ravel(numbers), units, text)
-
+    proof = trajectory.certificate
     failed = np.full(trajectory.shape, np.nan)
     messages = np.full(trajectory.shape, "", dtype=object)
     for failure in trajectory.failures:
         failed[failure.index], messages[failure.index] = failure.time, failure.message
-    columns = {
-        "step": column(proof.step, "s", "longest step"),
-        "steps": column(proof.steps, "1", "steps of all passes"),
-        "evaluations": column(proof.evaluations, "1", "evaluations of the torque"),
-        "error_estimate": column(proof.error_estimate, "1", "estimate of the relative error"),
-        "rotor_norm_drift": column(proof.norm_drift, "1", "largest abs(|R| - 1)"),
-        "failure_time": column(failed, "s", "time up to which a failed body was computed"),
-        "failure": (along, messages.ravel(), {"long_name": "error of a failed body"}),
+    columns: dict[str, tuple[Any, str, str]] = {
+        "step": (proof.step, "s", "longest step"),
+        "steps": (proof.steps, "1", "steps of all passes"),
+        "evaluations": (proof.evaluations, "1", "evaluations of the torque"),
+        "error_estimate": (proof.error_estimate, "1", "estimate of the relative error"),
+        "rotor_norm_drift": (proof.norm_drift, "1", "largest abs(|R| - 1)"),
+        "failure_time": (failed, "s", "time up to which a failed body was computed"),
     }
-    if not isinstance(proof.method, str):
-        names = proof.method.astype(object).ravel()
-        columns["method"] = (along, names, {"long_name": "method"})
     for name, start in proof.conserved.items():
-        columns[f"{name}_start"] = column(start, "SI", f"{name} at the start")
-        columns[f"{name}_drift"] = column(proof.drift[name], "1", f"largest relative change of the {name}")
-    return columns
+        columns[f"{name}_start"] = (start, "SI", f"{name} at the start")
+        columns[f"{name}_drift"] = (proof.drift[name], "1", f"largest relative change of the {name}")
+    texts = {"failure": (messages, "error of a failed body")}
+    if not isinstance(proof.method, str):
+        texts["method"] = (proof.method.astype(object), "method")
+    along = ("body",)
+    return {
+        **{name: _variable(along, np.ravel(x), units, text) for name, (x, units, text) in columns.items()},
+        **{name: (along, x.ravel(), {"long_name": text}) for name, (x, text) in texts.items()},
+    }
 
 
-def _events(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, Any]:
+def _events(events: tuple[Crossings, ...]) -> dict[str, Any]:
     """Return all events in one dimension."""
-    events, along, axes = trajectory.events, ("event",), ("event", "axis")
-
-    def joined(part: Callable[[Crossings], Any]) -> Any:
-        return np.concatenate([part(event) for event in events])
-
+    along = ("event",)
     names = np.array([event.name for event in events for _ in event.time], dtype=object)
-    attitude = joined(lambda event: event.rotor.to_quaternion(order="wxyz"))
-    omega = joined(lambda event: event.omega_body._data)
+    times, rising = (
+        np.concatenate([getattr(event, name) for event in events]) for name in ("time", "rising")
+    )
     return {
         "event_name": (along, names, {"long_name": "name of the event"}),
-        "event_time": variable(along, joined(lambda event: event.time), "s", "time of the event"),
-        "event_rising": variable(
-            along, joined(lambda event: event.rising), "1", "whether the event function was rising"
-        ),
-        "event_attitude": variable(("event", "quaternion"), attitude, "1", "attitude, body to space"),
-        "event_omega_body": variable(axes, omega, "rad/s", "angular velocity in body axes"),
-        "event_position": variable(
-            axes, joined(lambda event: event.position._data), "m", "centre of mass in space"
-        ),
-        "event_velocity": variable(
-            axes, joined(lambda event: event.velocity._data), "m/s", "velocity of the centre of mass"
-        ),
+        "event_time": _variable(along, times, "s", "time of the event"),
+        "event_rising": _variable(along, rising, "1", "whether the event function was rising"),
+        **{
+            f"event_{name}": _quantity(name, along, np.concatenate([components(x, name) for x in events]))
+            for name in ("attitude", "omega_body", "position", "velocity")
+        },
     }
 
 
@@ -158,10 +157,7 @@ def netcdf(trajectory: Trajectory) -> bytes:
 def _attributes(trajectory: Trajectory) -> dict[str, Any]:
     """Return attributes: flat text and numbers, which every netCDF reader shows."""
     proof = trajectory.certificate
-    attributes: dict[str, Any] = {
-        "conventions": CONVENTIONS,
-        "source": f"polhode {_native.__version__}",
-    }
+    attributes: dict[str, Any] = {"conventions": CONVENTIONS, "source": f"polhode {_native.__version__}"}
     if isinstance(proof.method, str):
         attributes["method"] = proof.method
     if trajectory.shape:
@@ -184,7 +180,7 @@ def _attributes(trajectory: Trajectory) -> dict[str, Any]:
 # --- reading
 
 # Foreign files may have any size: nothing else is read.
-_READ = {"time", "attitude", "omega_body", "momentum_space", "energy", "position", "velocity", "inertia"}
+_READ = {"time", *MOTION}
 # Attributes written here or by the library; all others are the user's.
 _OWN = {
     *("conventions", "source", "method", "step_s", "steps", "evaluations", "conserved", "drift"),
@@ -194,10 +190,6 @@ _OWN = {
 
 def read(path: str | os.PathLike[str]) -> Trajectory:
     """Return the motion in a netCDF file, as `Trajectory.read`."""
-    from polhode._algebra.constructors import bivector, vector
-    from polhode._mechanics.bodies import Inertia
-    from polhode._mechanics.trajectory import Trajectory
-
     fields, attributes = _content(path)
     try:
         return Trajectory(
@@ -253,14 +245,10 @@ def _array(name: str, variable: Any) -> Any:
 
 def _rotors(quaternions: Any) -> Any:
     """Return the rotors of quaternions wxyz: three signs change, without rounding."""
-    from polhode._algebra.rotor import Rotor
-
     return Rotor._from_rows(np.ascontiguousarray(quaternions * [1.0, -1.0, -1.0, -1.0]))
 
 
 def _certificate(attributes: dict[str, Any]) -> Any:
-    from polhode._mechanics.result import Certificate
-
     drift = json.loads(attributes["drift"])
     norm_drift = drift.pop("rotor_norm")
     return Certificate(
@@ -278,24 +266,19 @@ def _certificate(attributes: dict[str, Any]) -> Any:
 
 def _crossings(fields: dict[str, Any]) -> tuple[Crossings, ...]:
     """Return the events, grouped by name."""
-    from polhode._algebra.constructors import bivector, vector
-    from polhode._mechanics.result import Crossings
-
     if "event_name" not in fields:
         return ()
     names = fields["event_name"]
-    found = []
-    for name in dict.fromkeys(names):
-        at = names == name
-        found.append(
-            Crossings(
-                name,
-                fields["event_time"][at],
-                fields["event_rising"][at].astype(bool),
-                _rotors(fields["event_attitude"][at]),
-                bivector(fields["event_omega_body"][at]),
-                vector(fields["event_position"][at]),
-                vector(fields["event_velocity"][at]),
-            )
+    rows = [(name, names == name) for name in dict.fromkeys(names)]
+    return tuple(
+        Crossings(
+            name,
+            fields["event_time"][at],
+            fields["event_rising"][at].astype(bool),
+            _rotors(fields["event_attitude"][at]),
+            bivector(fields["event_omega_body"][at]),
+            vector(fields["event_position"][at]),
+            vector(fields["event_velocity"][at]),
         )
-    return tuple(found)
+        for name, at in rows
+    )

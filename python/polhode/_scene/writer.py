@@ -56,17 +56,14 @@ def _body(problem: Problem) -> dict[str, Any]:
 
 
 def _initial(problem: Problem) -> dict[str, Any]:
+    state = problem.state
     fields: dict[str, Any] = {
-        "attitude": {"rotor": problem.state.rotor.components},
-        "spin": {"bivector": problem.state.omega_body.components},
+        "attitude": {"rotor": state.rotor.components},
+        "spin": {"bivector": state.omega_body.components},
     }
-    for name in ("position", "velocity"):
-        components = getattr(problem.state, name).components
-        if components.any():
-            fields[name] = components
-    if problem.state.time:
-        fields["time"] = problem.state.time
-    return fields
+    moving = {"position": state.position.components, "velocity": state.velocity.components}
+    fields |= {name: components for name, components in moving.items() if components.any()}
+    return fields | ({"time": state.time} if state.time else {})
 
 
 def _run(problem: Problem) -> dict[str, Any]:
@@ -80,22 +77,20 @@ def _run(problem: Problem) -> dict[str, Any]:
 
 
 def _method(problem: Problem) -> dict[str, Any]:
-    fields: dict[str, Any] = {}
-    # Without a method, scenes use a closed form if there is one.
-    if problem.method not in ("auto", "exact"):
-        fields["name"] = problem.method
-    if problem.step is not None:
-        fields["step"] = problem.step
-    if problem.tolerance is not None:
-        if problem.tolerance >= 1:
-            raise UnwritableError(f"tolerance must be less than 1 in a scene, got {problem.tolerance}")
-        fields["rtol"] = problem.tolerance
+    if problem.tolerance is not None and problem.tolerance >= 1:
+        raise UnwritableError(f"tolerance must be less than 1 in a scene, got {problem.tolerance}")
     max_step, max_steps, breaks = problem.limits
     if breaks:
         raise UnwritableError("breaks cannot be written to a scene file; use max_step")
-    given = {"max_step": max_step, "max_steps": max_steps}
-    fields |= {name: value for name, value in given.items() if value is not None}
-    return fields
+    fields = {
+        # Without a method, scenes use a closed form if there is one.
+        "name": None if problem.method in ("auto", "exact") else problem.method,
+        "step": problem.step,
+        "rtol": problem.tolerance,
+        "max_step": max_step,
+        "max_steps": max_steps,
+    }
+    return {name: value for name, value in fields.items() if value is not None}
 
 
 # --- laws, as the fields of [torque] and [force]

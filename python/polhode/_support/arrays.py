@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -38,6 +38,15 @@ def as_floats(values: Any, what: str) -> Array:
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}")
     return array.astype(np.float64, copy=False)
+
+
+def leaves(value: Any) -> Iterator[Any]:
+    """Yield the items of nested lists and tuples."""
+    if isinstance(value, list | tuple):
+        for item in value:
+            yield from leaves(item)
+    else:
+        yield value
 
 
 def as_float(value: Any, what: str) -> float:
@@ -127,13 +136,13 @@ def copied(value: Any) -> Any:
 
 
 def hands_out_copies(*names: str) -> Callable[[type[T]], type[T]]:
-    """Make these fields of a frozen dataclass return copies of the arrays they hold."""
+    """Make these fields of a frozen dataclass, by default all, return copies of the arrays they hold."""
 
     def copying(name: str) -> property:
         return property(lambda self: copied(vars(self)[name]), lambda self, x: vars(self).update({name: x}))
 
     def with_copies(cls: type[T]) -> type[T]:
-        for name in names:
+        for name in names or cls.__annotations__:
             setattr(cls, name, copying(name))
         return cls
 
@@ -173,6 +182,16 @@ def batch_shape(shape: Any) -> Shape:
         return tuple(operator.index(length) for length in shape)
     except TypeError as error:
         raise TypeError(f"a batch shape is a whole number or a tuple of them, got {shape!r}") from error
+
+
+def batch_index(index: Any, shape: Shape) -> tuple[tuple[Any, ...], tuple[Any, ...], Shape]:
+    """Return an index of NumPy over a batch as a tuple, one that leaves a last axis, and the shape picked."""
+    parts = index if isinstance(index, tuple) else (index,)
+    try:
+        picked = np.broadcast_to(np.False_, shape)[parts].shape
+    except IndexError as error:
+        raise IndexError(f"{error} (batch shape {shape})") from None
+    return parts, (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts, picked
 
 
 def joined(*parts: Array) -> Array:

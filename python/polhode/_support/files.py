@@ -9,6 +9,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 
+class UnreadableError(Exception):
+    """A file given to the command cannot be read or shown; the message gives the reason."""
+
+
 def write_atomically(contents: Mapping[Path, bytes | Path]) -> None:
     """Write files atomically: each path holds either its old content or all of the new.
 

@@ -73,7 +73,6 @@ def _left(root: Path, inner: Path, names: tuple[str, str, str]) -> Iterator[int]
 
 
 def _lines(path: Path) -> list[str]:
-    """Return the lines of a file; none if it does not exist."""
     try:
         return path.read_text().splitlines()
     except OSError:

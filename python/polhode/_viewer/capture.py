@@ -57,23 +57,8 @@ def studio(
 ) -> Iterator[Studio]:
     """Open the viewer on a motion, for pictures at these times (n,) in s; the browser ends with the block.
 
-    Parameters
-    ----------
-    size
-        Width and height of the pictures, in pixels.
-    view
-        Azimuth and elevation of the camera in degrees; None for those of the viewer.
-    what
-        What needs the browser, for errors: ``"a film"``.
-
-    Raises
-    ------
-    ImportError
-        Without Playwright.
-    OSError
-        Without a browser, or without the bundle of the viewer.
-    ValueError
-        If the viewer cannot show the motion.
+    `size` is in pixels, `view` azimuth and elevation in degrees or None for those of the viewer. Errors name
+    `what` needs the browser: an ImportError without Playwright, an OSError without a browser or the bundle.
     """
     playwright = optional("playwright.sync_api", "film", what)
     text = page(of_trajectory(trajectory, times=times), bare=True)

@@ -50,28 +50,11 @@ def document(
     *,
     duration: float | None = None,
 ) -> Document:
-    """Return the document of a scene or a motion.
-
-    Parameters
-    ----------
-    x
-        - A `Scene`, or the path of a scene file.
-        - A `Trajectory` of one body, or the path of a netCDF file of one.
-        - A `FreeMotion`, `LagrangeTop`, `DampedTop` or `LarmorSphere`.
-        - A `Body` or an `Inertia`, with a state, and a torque and a force as for `polhode.simulate`.
-    duration
-        Duration in s of motions without an end of their own; None for 20 turns at the initial rate.
+    """Return the document of what `polhode.view` shows, with its arguments and errors.
 
     The page solves scenes itself. An exact motion is given as a scene alone; a stepped one as a scene with
     its states at up to 20,000 times, so that the page need not integrate it before something is changed. A
     motion that no scene can describe, such as one under a Python function, is given by its states alone.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For values that cannot be shown, and for inconsistent arguments.
-    SceneError, OSError
-        For files that cannot be read.
     """
     if isinstance(x, (Body, Inertia)):
         if state is None:
@@ -116,12 +99,21 @@ def of_text(text: str, path: Path) -> Document:
     The page reports what is wrong with the scene.
     """
     shown: Document = {"format": 1, "scene": text, "name": path.name}
-    name = _mesh(text)
-    if name is not None:
+    body = _parsed(text).get("body")
+    name = body.get("mesh") if isinstance(body, dict) else None
+    if isinstance(name, str) and name:
         # A ValueError: the name is not a valid file name.
         with contextlib.suppress(OSError, ValueError):
             shown["files"] = {name: packed((path.parent / name).read_bytes())}
     return shown
+
+
+def _parsed(text: str) -> dict[str, Any]:
+    """Return the tables of a scene; none if it is not TOML."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        return {}
 
 
 def of_file(path: Path) -> Document:
@@ -134,10 +126,9 @@ def of_file(path: Path) -> Document:
 def of_trajectory(
     trajectory: Trajectory, path: Path = Path("motion.nc"), times: Array | None = None
 ) -> Document:
-    """Return the document of one body's motion, read from a path.
+    """Return the document of one body's motion, read from a path; its mesh is beside that file.
 
-    The mesh of a scene in a file is looked for beside that file. At `times` (n,), in s, the page shows the
-    states of `Trajectory.at`, if the motion has states between the output times.
+    At `times` (n,), in s, the page shows the states of `Trajectory.at`, if there are any.
     """
     trajectory._require_one("the viewer")
     shown, origin = _live(trajectory, path)
@@ -148,24 +139,22 @@ def of_trajectory(
 
 def _live(trajectory: Trajectory, path: Path) -> tuple[Document, Scene | Problem | None]:
     """Return a document with the scene of a motion, if it has one, and the problem that was solved."""
-    origin = trajectory._origin
+    origin, text = trajectory._origin, trajectory.attributes.get("scene")
     if isinstance(origin, Scene):
         return of_scene(origin), origin
-    nothing: Document = {"format": 1, "name": path.name}
-    if origin is not None:
-        try:
+    with contextlib.suppress(UnwritableError, SceneError):
+        if origin is not None:
             # An event may have ended it before the last output time.
-            scene = scene_text(replace(origin, times=trajectory.time))
-            return {"format": 1, "scene": scene, "name": "motion.toml"}, origin
-        except UnwritableError:
-            return nothing, origin
-    if not isinstance(trajectory.attributes.get("scene"), str):
-        return nothing, None
-    shown = of_text(trajectory.attributes["scene"], path)
-    try:
-        return shown, scene_of(shown)
-    except SceneError:
-        return nothing, None
+            return _of_scene_text(replace(origin, times=trajectory.time)), origin
+        if isinstance(text, str):
+            shown = of_text(text, path)
+            return shown, scene_of(shown)
+    return {"format": 1, "name": path.name}, origin
+
+
+def _of_scene_text(problem: Problem) -> Document:
+    """Return the document of a problem; an UnwritableError if no scene can describe it."""
+    return {"format": 1, "scene": scene_text(problem), "name": "motion.toml"}
 
 
 def scene_of(shown: Document) -> Scene:
@@ -193,22 +182,11 @@ def scene_of(shown: Document) -> Scene:
 
 def title_of(shown: Document) -> str:
     """Return the title of a page with this document."""
-    title = None
     if "recorded" in shown:
         title = json.loads(shown["recorded"]["about"])["title"]
-    elif "scene" in shown:
-        with contextlib.suppress(tomllib.TOMLDecodeError):
-            title = tomllib.loads(shown["scene"]).get("title")
+    else:
+        title = _parsed(shown.get("scene", "")).get("title")
     return title if isinstance(title, str) else Path(shown.get("name") or "Polhode").stem
-
-
-def _mesh(text: str) -> str | None:
-    """Return the name of the mesh file in the text of a scene, which may be invalid."""
-    try:
-        name = tomllib.loads(text).get("body", {}).get("mesh")
-    except (tomllib.TOMLDecodeError, AttributeError):
-        return None
-    return name if isinstance(name, str) and name else None
 
 
 # --- motions given as problems
@@ -229,7 +207,7 @@ def _of_problem(problem: Problem) -> Document:
     """Return the document of a problem; if no scene can describe it, it is solved here."""
     _refuse_batch(problem.state, problem.torque)
     try:
-        return {"format": 1, "scene": scene_text(problem), "name": "motion.toml"}
+        return _of_scene_text(problem)
     except UnwritableError:
         motion = simulate(problem.body, problem.state, problem.times, problem.torque, problem.force)
         return of_trajectory(motion)

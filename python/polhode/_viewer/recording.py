@@ -37,31 +37,16 @@ def recorded(
     """Return the recorded motion of one body, as the page needs it to show the motion without solving it.
 
     It has at most 20,000 rows, evenly chosen from the output times. If the motion has states between these,
-    and the body turns far from one to the next, rows are added between them.
-
-    Parameters
-    ----------
-    trajectory
-        The motion.
-    origin
-        The problem that was solved; None if it is not known.
-    mesh
-        Whether the document has the mesh of its scene.
-    times
-        More times (n,), in s, to have rows of, if the motion has states between the output times.
-
-    Raises
-    ------
-    ValueError
-        If the motion has no time after its start, or numbers that are not finite.
+    rows are added: at `times` (n,), and wherever the body turns far from one row to the next. `origin` is the
+    problem that was solved, if it is known; `mesh`, whether the document has the mesh of its scene. A
+    ValueError if the motion has no time after its start, or numbers that are not finite.
     """
     points = _points(trajectory, origin, np.empty(0) if times is None else times)
     rows = _rows(points)
     if not (finite := np.isfinite(rows).all(axis=1)).all():
         when = points.time[np.argmin(finite)]
         raise ValueError(f"the viewer needs finite numbers; this motion has others at t = {when:g} s")
-    about = _about(trajectory, origin, points)
-    about["body"]["mesh"] = mesh
+    about = _about(trajectory, origin, points, mesh)
     return {"about": json.dumps(about, allow_nan=False), "rows": packed(rows.astype("<f8").tobytes())}
 
 
@@ -112,11 +97,7 @@ def _points(trajectory: Trajectory, origin: Scene | Problem | None, more: Array)
     if len(rising) < 2:
         raise ValueError(f"the viewer needs two output times or more from {first:g} s on")
     kept = rising[_evenly(len(rising))]
-    return _Points(
-        times[kept],
-        *(getattr(trajectory, name)[kept] for name in ("rotor", "omega_body", "momentum_space", "energy")),
-        *(getattr(trajectory, name)[kept] for name in ("position", "velocity")),
-    )
+    return _Points(*(getattr(trajectory, name)[kept] for name in _Points._fields))
 
 
 def _evenly(count: int) -> Any:
@@ -126,40 +107,39 @@ def _evenly(count: int) -> Any:
 
 def _rows(points: _Points) -> Array:
     """Return the rows of `State`, (n, 24)."""
-    rotor = points.rotor
+    rotor, omega, momentum = points.rotor, points.omega_body, points.momentum_space
+    before = (rotor, omega, rotor(omega), (~rotor)(momentum), momentum)
     columns = [
         points.time[:, np.newaxis],
-        rotor.components,
-        points.omega_body.components,
-        rotor(points.omega_body).components,
-        (~rotor)(points.momentum_space).components,
-        points.momentum_space.components,
+        *(x.components for x in before),
         points.energy[:, np.newaxis],
-        points.position.components,
-        points.velocity.components,
+        *(x.components for x in (points.position, points.velocity)),
     ]
     return np.concatenate(columns, axis=1)
 
 
-def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any]:
+def _about(
+    trajectory: Trajectory, origin: Scene | Problem | None, points: _Points, mesh: bool
+) -> dict[str, Any]:
+    """Return the description `About` of the recorded states."""
     proof, inertia = trajectory.certificate, trajectory.inertia
-    start = None if origin is None else origin.state
-    if start is not None and start.time != points.time[0]:
-        # Read from a file without the start.
-        start = None
-    body = _body(origin)
+    # A file may have been read that does not have the start.
+    known = origin is not None and origin.state.time == points.time[0]
+    rotor = origin.state.rotor if origin and known else points.rotor[0]
+    omega_body = origin.state.omega_body if origin and known else points.omega_body[0]
     return {
         "title": origin.title if isinstance(origin, Scene) else trajectory.attributes.get("title"),
         "body": {
-            **body,
+            **_body(origin),
             "moments": inertia.principal_moments.tolist(),
             "frame": inertia.principal_frame.components.tolist(),
+            "mesh": mesh,
         },
         **_facts(trajectory, origin),
         "laws": _laws(origin),
         "start": {
-            "rotor": (start.rotor if start else points.rotor[0]).components.tolist(),
-            "omega_body": (start.omega_body if start else points.omega_body[0]).components.tolist(),
+            "rotor": rotor.components.tolist(),
+            "omega_body": omega_body.components.tolist(),
             "time": float(points.time[0]),
         },
         "duration": float(points.time[-1] - points.time[0]),
@@ -189,16 +169,15 @@ def _facts(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, 
 
 def _body(origin: Scene | Problem | None) -> dict[str, Any]:
     """Return mass, centre of mass and solid, if they are known."""
-    whole = origin.body if origin is not None and isinstance(origin.body, Body) else None
-    if whole is None:
-        return {"mass": None, "center_of_mass": [0.0] * 3, "solid": None, "solid_at": [0.0] * 3}
-    center = whole.center_of_mass.components
-    has_mass = not isinstance(origin, Scene) or origin.tells_mass
+    zero = [0.0] * 3
+    if origin is None or not isinstance(origin.body, Body):
+        return {"mass": None, "center_of_mass": zero, "solid": None, "solid_at": zero}
+    body, scene = origin.body, origin if isinstance(origin, Scene) else None
     return {
-        "mass": whole.mass if has_mass else None,
-        "center_of_mass": center.tolist(),
-        "solid": origin.solid if isinstance(origin, Scene) else None,
-        "solid_at": origin.shift.tolist() if isinstance(origin, Scene) else [0.0] * 3,
+        "mass": body.mass if scene is None or scene.tells_mass else None,
+        "center_of_mass": body.center_of_mass.components.tolist(),
+        "solid": scene.solid if scene else None,
+        "solid_at": scene.shift.tolist() if scene else zero,
     }
 
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.scene import Scene
-from polhode._support.files import check_target
+from polhode._support.files import UnreadableError, check_target
 from polhode._viewer.document import Document, of_file, of_scene, of_text, of_trajectory
 from polhode._viewer.html import bundle_path, page, served_page
 
@@ -33,10 +33,6 @@ _HEADERS = {
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
 }
-
-
-class UnreadableError(Exception):
-    """A file cannot be shown; the message gives the reason."""
 
 
 # --- run --html
@@ -65,15 +61,7 @@ Bar = Callable[[str], AbstractContextManager[Callable[[int, float], object] | No
 
 
 def run(options: argparse.Namespace, bar: Bar) -> int:
-    """Serve a file until Ctrl-C, which ends it with a KeyboardInterrupt.
-
-    Raises
-    ------
-    UnreadableError, SceneError
-        If the file cannot be shown.
-    OSError, ValueError
-        If the port cannot be used, the viewer was not built, or the motion fails.
-    """
+    """Serve a file until Ctrl-C, which ends it with a KeyboardInterrupt."""
     path = Path(options.file)
     script = bundle_path().read_bytes()
     source = Source(path)

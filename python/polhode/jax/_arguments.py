@@ -7,9 +7,7 @@ from typing import Any, NamedTuple
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Inertia
 from polhode.jax._components import Four, compose, joined, reverse, split, turned
-from polhode.jax._library import jnp
-
-Array = Any
+from polhode.jax._library import Array, jnp
 
 
 class Start(NamedTuple):
@@ -43,8 +41,8 @@ class Start(NamedTuple):
 def start(inertia: Any, rotor: Any, omega_body: Any) -> Start:
     """Return bodies and initial states from the arguments of the functions of this package."""
     moments, frame = _body(inertia)
-    r = _floats(rotor, 4, "the rotor")
-    w = _floats(omega_body, 3, "the angular velocity")
+    r = rows(rotor, 4, "the rotor")
+    w = rows(omega_body, 3, "the angular velocity")
     dtype = jnp.result_type(moments, r, w)
     moments, r, w = (x.astype(dtype) for x in (moments, r, w))
     if frame is not None:
@@ -61,13 +59,18 @@ def _body(inertia: Any) -> tuple[Array, Four | None]:
         frame = tuple(inertia.principal_frame.components.tolist())
         moments = jnp.asarray(inertia.principal_moments)
         return moments, None if frame == (1.0, 0.0, 0.0, 0.0) else frame
-    return _floats(inertia, 3, "inertia: principal moments, or an Inertia,"), None
+    return rows(inertia, 3, "inertia: principal moments, or an Inertia,"), None
 
 
-def _floats(value: Any, size: int, what: str) -> Array:
-    if isinstance(value, Multivector):
-        value = value._data
-    array = jnp.asarray(value)
+def as_array(value: Any, _name: str = "") -> Array:
+    """Return an array of floats from numbers or a multivector."""
+    array = jnp.asarray(value._data if isinstance(value, Multivector) else value)
+    return array if jnp.issubdtype(array.dtype, jnp.floating) else array.astype(jnp.result_type(float))
+
+
+def rows(value: Any, size: int, what: str) -> Array:
+    """Return an array of floats (..., size)."""
+    array = as_array(value)
     if array.shape[-1:] != (size,):
         raise ValueError(f"{what} needs {size} components in the last axis, got shape {array.shape}")
-    return array if jnp.issubdtype(array.dtype, jnp.floating) else array.astype(jnp.result_type(float))
+    return array

@@ -8,11 +8,9 @@ those of its axial vector; sums are in the order of the compiled core, so that b
 from __future__ import annotations
 
 import math
-from typing import Any
 
-from polhode.jax._library import jnp
+from polhode.jax._library import Array, jnp
 
-Array = Any
 Three = tuple[Array, Array, Array]
 Four = tuple[Array, Array, Array, Array]
 

@@ -13,14 +13,13 @@ from polhode._algebra.constructors import bivector, scalar
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._formula.arguments import narrowed
 from polhode._formula.errors import FormulaError
 from polhode._formula.formula import formula
 from polhode._formula.interpreter import Walk, steps_of
-from polhode._mechanics.laws import narrowed
 from polhode.jax._components import Four, Three, compose, joined, reverse, split, turned
-from polhode.jax._laws import Law, pytree, static
+from polhode.jax._laws import Gyrostat, Law, Phase, pytree, static
 from polhode.jax._library import jnp
-from polhode.jax._phase import Gyrostat, Phase
 
 _VALUE, _ROTOR, _MAP = 0, 1, 2
 _SCALAR, _BIVECTOR, _EVEN = 0b0001, 0b0100, 0b0101

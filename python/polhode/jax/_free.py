@@ -19,9 +19,7 @@ from polhode import _native
 from polhode.jax import _theta
 from polhode.jax._arguments import start
 from polhode.jax._components import compose, joined, reverse, split
-from polhode.jax._library import jax, jnp
-
-Array = Any
+from polhode.jax._library import Array, jax, jnp
 
 METHODS = ("native", "jax")
 

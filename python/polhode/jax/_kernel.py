@@ -16,13 +16,11 @@ from polhode._support.extras import optional
 from polhode.jax._arguments import Start
 from polhode.jax._components import joined, normalized, split
 from polhode.jax._formula_law import Formula
-from polhode.jax._laws import Function, Torque
-from polhode.jax._library import jax, jnp, lax
-from polhode.jax._phase import Gyrostat
-from polhode.jax._simulate import compiled, prepared, stepper, table_of
+from polhode.jax._laws import Function, Gyrostat, Torque
+from polhode.jax._library import Array, jax, jnp, lax
+from polhode.jax._simulate import compiled, prepared
+from polhode.jax._steppers import stepper, table_of
 from polhode.jax._table import Table
-
-Array = Any
 
 # One body per thread of four warps: the state and the slopes of a step fill the registers of a thread.
 BLOCK = 128
@@ -76,7 +74,6 @@ def advance(
 
 
 def _scanned(method: str, steps: int, given: Start, torque: Torque, span: Array) -> tuple[Array, Array]:
-    """Return the result of `advance` by the steps of `simulate`."""
     counts = np.array([steps])
     found = compiled(given, torque, span[1:], counts, span[0], method=method, most=steps, even=True)
     return found[0][..., 1, :], found[1][..., 1, :]
@@ -85,7 +82,6 @@ def _scanned(method: str, steps: int, given: Start, torque: Torque, span: Array)
 @partial(jax.custom_jvp, nondiff_argnums=(0, 1))
 @partial(jax.jit, static_argnums=(0, 1))
 def _advanced(method: str, steps: int, given: Start, torque: Torque, span: Array) -> tuple[Array, Array]:
-    """Return the result of `advance` by the kernel."""
     dtype = given.rotor.dtype
     inputs = split(given.moments), normalized(split(given.rotor)), split(given.omega), torque
     leaves, tree = jax.tree.flatten(jax.tree.map(lambda x: jnp.asarray(x, dtype), inputs))
@@ -112,7 +108,6 @@ def _advanced_jvp(method: str, steps: int, primals: tuple[Any, ...], tangents: t
 def _walk(
     method: str, steps: int, tree: Any, leaves: list[Array], begin: Array, end: Array, table: Array
 ) -> tuple[Array, ...]:
-    """Take all steps of a block of bodies."""
     moments, rotor, omega, torque = jax.tree.unflatten(tree, leaves)
     moves = stepper(method, Gyrostat(moments, torque.wheel()), torque, table)
     point = moves.start(rotor, omega, begin)

@@ -1,7 +1,7 @@
 """Torque laws as pytrees, with their parameters as leaves for differentiation and mapping.
 
 They compute what `crates/rigid/src/laws/torque/mod.rs` does, in the same order: the torque in principal axes,
-without damping ``−g I(Ω)`` and the reaction of a wheel, which steps add. A law without a class here is
+without damping ``−g I(Ω)`` and the reaction of a wheel, which steps add. A law without a function here is
 computed by its formula in the registry of laws.
 """
 
@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, TypeVar, dataclass_transform
+from typing import Any, NamedTuple, TypeVar, dataclass_transform
 
 from polhode._generic.g3_smooth import log_even
 from polhode._generic.numeric import Numeric
+from polhode._mechanics.laws import Sum
 from polhode.jax._components import (
     Four,
     Three,
@@ -27,11 +28,58 @@ from polhode.jax._components import (
     times,
     turned,
 )
-from polhode.jax._library import jax, jnp
-from polhode.jax._phase import Gyrostat, Phase
+from polhode.jax._library import Array, jax, jnp
 
-Array = Any
 T = TypeVar("T")
+
+
+# --- bodies and states
+
+
+class Phase(NamedTuple):
+    """A state in principal axes: rotor R to space, momentum with that of a wheel, time in s."""
+
+    rotor: Four
+    momentum: Three
+    time: Array
+
+    def vertical(self) -> Three:
+        """``γ = ~R e3 R``: the vertical in body axes."""
+        s, x, y, z = self.rotor
+        return 2.0 * (x * z + s * y), 2.0 * (y * z - s * x), s * s + z * z - (x * x + y * y)
+
+
+class Gyrostat(NamedTuple):
+    """Principal moments, and the momentum h of a wheel relative to the body (None without a wheel)."""
+
+    moments: Three
+    wheel: Three | None = None
+
+    def carried(self, omega: Three) -> Three:
+        """``I(Ω)``."""
+        i = self.moments
+        return i[0] * omega[0], i[1] * omega[1], i[2] * omega[2]
+
+    def momentum(self, omega: Three) -> Three:
+        """``m = I(Ω) + h``."""
+        carried = self.carried(omega)
+        return carried if self.wheel is None else plus(carried, self.wheel)
+
+    def omega(self, momentum: Three) -> Three:
+        """``Ω = I⁻¹(m − h)``."""
+        i, m = self.moments, momentum
+        if self.wheel is not None:
+            m = minus(m, self.wheel)
+        return m[0] / i[0], m[1] / i[1], m[2] / i[2]
+
+    def rate(self, omega: Three, torque: Three) -> Three:
+        """``Ω'`` by Euler's equations, handout eq. (4.21)."""
+        i, turned = self.moments, cross(self.momentum(omega), omega)
+        total = plus(turned, torque)
+        return total[0] / i[0], total[1] / i[1], total[2] / i[2]
+
+
+# --- laws
 
 
 def static(**options: Any) -> Any:
@@ -67,174 +115,148 @@ class Law:
         raise NotImplementedError
 
 
-class DependsOnRate(Law):
-    """A law whose torque depends on the angular velocity."""
-
-    @property
-    def depends_on_rate(self) -> bool:
-        """True."""
-        return True
-
-
 def zero(phase: Phase) -> Three:
     """Return a zero torque."""
     none = jnp.zeros_like(phase.momentum[0])
     return none, none, none
 
 
-@pytree
-class Heavy(Law):
-    """``γ∧c``."""
+class At(NamedTuple):
+    """A body at a phase; `frame` is the rotor from principal to body axes, where gains need it."""
 
-    c: Three
-
-    def in_axes(self, frame: Four) -> Law:
-        return Heavy(turned(reverse(frame), self.c))
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        return cross(phase.vertical(), self.c)
-
-
-@pytree
-class ConstantBody(Law):
-    """N in body axes."""
-
-    N: Three
-
-    def in_axes(self, frame: Four) -> Law:
-        return ConstantBody(turned(reverse(frame), self.N))
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        return plus(zero(phase), self.N)
-
-
-@pytree
-class ConstantSpace(Law):
-    """N in space."""
-
-    N: Three
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        return turned(reverse(phase.rotor), self.N)
-
-
-@pytree
-class Magnetic(Law):
-    """``m∧b``, b the field in the body."""
-
-    dipole: Three
-    B: Three
-
-    def in_axes(self, frame: Four) -> Law:
-        return replace(self, dipole=turned(reverse(frame), self.dipole))
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        return cross(self.dipole, turned(reverse(phase.rotor), self.B))
-
-
-@pytree
-class Larmor(DependsOnRate):
-    """``L x b``."""
-
-    b: Three
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        return cross(phase.momentum, turned(reverse(phase.rotor), self.b))
-
-
-@pytree
-class TorsionSpring(Law):
-    """``−k Θ``."""
-
-    k: Array
-    rest: Four
-
-    def in_axes(self, frame: Four) -> Law:
-        return replace(self, rest=compose(self.rest, frame))
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        return times(turn_from(self.rest, phase.rotor), -self.k)
-
-
-@pytree
-class Control(Law):
-    """``−kp Θ − kd Ω``, with gains along the body axes; `frame` is the rotor from principal to body axes."""
-
-    kp: Three
-    kd: Three
-    target: Four
+    body: Gyrostat
+    phase: Phase
     frame: Four | None
-    damped: bool = static()
+
+    @property
+    def omega(self) -> Three:
+        """The angular velocity."""
+        return self.body.omega(self.phase.momentum)
+
+    def in_body(self, v: Three) -> Three:
+        """Return a vector given in space."""
+        return turned(reverse(self.phase.rotor), v)
+
+    def along(self, gains: Three, b: Three) -> Three:
+        """Multiply by gains along the body axes."""
+        if self.frame is not None:
+            b = turned(self.frame, b)
+        b = b[0] * gains[0], b[1] * gains[1], b[2] * gains[2]
+        return b if self.frame is None else turned(reverse(self.frame), b)
+
+
+@pytree
+class Kernel(Law):
+    """A law whose torque is a function of `At` and its arguments.
+
+    `kinds` says how arguments change with the body axes: ``"body"``, a vector in them, ``"rotor"`` from them
+    to space, ``"gains"`` along the given axes; others do not.
+    """
+
+    f: Callable[..., Three] = static()
+    arguments: tuple[Any, ...]
+    kinds: tuple[str, ...] = static()
+    rate: bool = static()
+    frame: Four | None
 
     @property
     def depends_on_rate(self) -> bool:
-        return self.damped
+        return self.rate
 
     def in_axes(self, frame: Four) -> Law:
-        return replace(self, target=compose(self.target, frame), frame=frame)
+        changed: dict[str, Any] = {
+            "body": lambda v: turned(reverse(frame), v),
+            "rotor": lambda r: compose(r, frame),
+        }
+        arguments = zip(self.kinds, self.arguments, strict=True)
+        return replace(
+            self,
+            arguments=tuple(changed[kind](x) if kind in changed else x for kind, x in arguments),
+            frame=frame if "gains" in self.kinds else None,
+        )
 
     def value(self, body: Gyrostat, phase: Phase) -> Three:
-        pull = along(self.kp, self.frame, turn_from(self.target, phase.rotor))
-        if self.damped:
-            pull = plus(pull, along(self.kd, self.frame, body.omega(phase.momentum)))
-        return times(pull, -1.0)
+        return self.f(At(body, phase, self.frame), *self.arguments)
 
 
-@pytree
-class Damping(Law):
-    """``−g I(Ω)``, which steps add."""
-
-    g: Array
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        return zero(phase)
+def kernel(f: Callable[..., Three], *kinds: str, rate: bool = False) -> Callable[..., Kernel]:
+    """Return the constructor of a law from arguments of these kinds; `rate` as `Law.depends_on_rate`."""
+    return lambda *arguments: Kernel(f=f, arguments=arguments, kinds=kinds, rate=rate, frame=None)
 
 
-@pytree
-class ViscousDamping(DependsOnRate):
+def weight(at: At, c: Three) -> Three:
+    """``γ∧c``."""
+    return cross(at.phase.vertical(), c)
+
+
+def fixed_in_body(at: At, N: Three) -> Three:
+    """N in body axes."""
+    return plus(zero(at.phase), N)
+
+
+def fixed_in_space(at: At, N: Three) -> Three:
+    """N in space."""
+    return at.in_body(N)
+
+
+def dipole(at: At, m: Three, B: Three) -> Three:
+    """``m∧b``, b the field in the body."""
+    return cross(m, at.in_body(B))
+
+
+def precession(at: At, b: Three) -> Three:
+    """``L x b``."""
+    return cross(at.phase.momentum, at.in_body(b))
+
+
+def stiffness(at: At, k: Array, rest: Four) -> Three:
+    """``−k Θ``."""
+    return times(turn_from(rest, at.phase.rotor), -k)
+
+
+def undamped_control(at: At, kp: Three, kd: Three, target: Four) -> Three:
+    """``−kp Θ``."""
+    return times(at.along(kp, turn_from(target, at.phase.rotor)), -1.0)
+
+
+def control(at: At, kp: Three, kd: Three, target: Four) -> Three:
+    """``−kp Θ − kd Ω``."""
+    pull = at.along(kp, turn_from(target, at.phase.rotor))
+    return times(plus(pull, at.along(kd, at.omega)), -1.0)
+
+
+def viscous(at: At, d: Three) -> Three:
     """``−d Ω``."""
-
-    d: Three
-    frame: Four | None
-
-    def in_axes(self, frame: Four) -> Law:
-        return replace(self, frame=frame)
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        return times(along(self.d, self.frame, body.omega(phase.momentum)), -1.0)
+    return times(at.along(d, at.omega), -1.0)
 
 
-@pytree
-class QuadraticDamping(DependsOnRate):
+def quadratic(at: At, k: Array) -> Three:
     """``−k |Ω| Ω``."""
-
-    k: Array
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        omega = body.omega(phase.momentum)
-        return times(omega, -self.k * length(omega))
+    omega = at.omega
+    return times(omega, -k * length(omega))
 
 
-@pytree
-class Wheel(Law):
-    """A wheel, a part of the body."""
+def damped_momentum(at: At, g: Array) -> Three:
+    """``−g I(Ω)``, which steps add."""
+    return zero(at.phase)
 
-    h: Three
 
-    def in_axes(self, frame: Four) -> Law:
-        return Wheel(turned(reverse(frame), self.h))
-
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        return zero(phase)
+def wheel(at: At, h: Three) -> Three:
+    """The reaction of a wheel, a part of the body, which steps add."""
+    return zero(at.phase)
 
 
 @pytree
-class Function(DependsOnRate):
+class Function(Law):
     """``f(t, rotor, omega_body)`` of arrays: a function, or a ``jax.tree_util.Partial`` with leaves."""
 
     f: Callable[..., Any] | None = static()
     partial: Any
     frame: Four | None
+
+    @property
+    def depends_on_rate(self) -> bool:
+        return True
 
     def in_axes(self, frame: Four) -> Law:
         return replace(self, frame=frame)
@@ -252,14 +274,6 @@ class Function(DependsOnRate):
         return torque if self.frame is None else turned(reverse(self.frame), torque)
 
 
-def along(gains: Three, frame: Four | None, b: Three) -> Three:
-    """Multiply by gains along the body axes."""
-    if frame is not None:
-        b = turned(frame, b)
-    b = b[0] * gains[0], b[1] * gains[1], b[2] * gains[2]
-    return b if frame is None else turned(reverse(frame), b)
-
-
 def turn_from(rest: Four, rotor: Four) -> Three:
     """``Θ`` with ``R = rest exp(−½Θ)`` and ``|Θ| <= π``, differentiable at 0."""
     s, x, y, z = compose(reverse(rest), rotor)
@@ -270,51 +284,48 @@ def turn_from(rest: Four, rotor: Four) -> Three:
 
 
 @pytree
-class Torque:
+class Torque(Sum):
     """A sum of laws, returned by the functions of `polhode.jax.torque`: a pytree of their parameters."""
 
     laws: tuple[Any, ...]
-
-    def __add__(self, other: Torque) -> Torque:
-        return Torque(self.laws + other.laws) if isinstance(other, Torque) else NotImplemented
-
-    def __radd__(self, other: object) -> Torque:
-        return self if other == 0 else NotImplemented
 
     @property
     def depends_on_rate(self) -> bool:
         """Whether a law depends on the angular velocity."""
         return any(law.depends_on_rate for law in self.laws)
 
+    def arguments_of(self, f: Callable[..., Three]) -> list[tuple[Any, ...]]:
+        """Return the arguments of the laws with this function."""
+        return [law.arguments for law in self.laws if isinstance(law, Kernel) and law.f is f]
+
     @property
     def turns_nothing(self) -> bool:
         """Whether L is constant in space: no laws, or wheels alone."""
-        return all(isinstance(law, Wheel) for law in self.laws)
+        return len(self.arguments_of(wheel)) == len(self.laws)
 
     @property
     def holds(self) -> bool:
         """Whether a law holds the body at the origin of its axes."""
-        return any(isinstance(law, Heavy) for law in self.laws)
+        return bool(self.arguments_of(weight))
 
     def in_axes(self, frame: Four) -> Torque:
-        """Return the same laws in other body axes."""
         return Torque(tuple(law.in_axes(frame) for law in self.laws))
 
     def wheel(self) -> Three | None:
         """Return the total momentum of the wheels; None without one."""
-        wheels = [law.h for law in self.laws if isinstance(law, Wheel)]
+        wheels = [h for (h,) in self.arguments_of(wheel)]
         return None if not wheels else tuple(sum(h) for h in zip(*wheels, strict=True))
 
     def damping(self) -> Array | None:
         """Return the g of damping ``−g I(Ω)``; None without damping."""
-        rates = [law.g for law in self.laws if isinstance(law, Damping)]
+        rates = [g for (g,) in self.arguments_of(damped_momentum)]
         return sum(rates[1:], rates[0]) if rates else None
 
     def value(self, body: Gyrostat, phase: Phase) -> Three:
         """Return the torque of all laws, without damping and wheels."""
         total = zero(phase)
         for law in self.laws:
-            if not isinstance(law, Damping | Wheel):
+            if not (isinstance(law, Kernel) and law.f in (damped_momentum, wheel)):
                 total = plus(total, law.value(body, phase))
         return total
 

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-from polhode.jax._components import Three, cross, horner, reverse, times, turned
-from polhode.jax._laws import Law, pytree
-from polhode.jax._library import jnp, lax
-from polhode.jax._phase import Gyrostat, Phase
-
-Array = Any
+from polhode.jax._components import Three, cross, horner, times
+from polhode.jax._laws import At
+from polhode.jax._library import Array, jnp, lax
 
 # 2π in two parts, the first of 33 bits: its product with a number of turns is exact.
 _TWO_PI = (6.2831853069365025, 2.4308402025215864e-10)
@@ -20,35 +16,25 @@ _LESS_SINE = [(-1) ** k / math.factorial(2 * k + 3) for k in range(11)]
 _STEPS = 12
 
 
-@pytree
-class GravityGradient(Law):
-    """``3n² (a/r)³ u∧I(u)``."""
+def tide(at: At, n: Array, eccentricity: Array, mean_anomaly: Array) -> Three:
+    """``3n² (a/r)³ u∧I(u)``, u the direction from planet to body."""
+    # n t + M0 less whole turns, in [−π, π].
+    mean = n * at.phase.time + mean_anomaly
+    turns = lax.stop_gradient(jnp.floor(mean * (0.5 / math.pi) + 0.5))
+    u, nearness = _place((mean - turns * _TWO_PI[0]) - turns * _TWO_PI[1], eccentricity)
+    u = at.in_body(u)
+    return times(cross(u, at.body.carried(u)), 3.0 * n * n * nearness)
 
-    n: Array
-    eccentricity: Array
-    mean_anomaly: Array
 
-    def value(self, body: Gyrostat, phase: Phase) -> Three:
-        u, nearness = self._place(phase.time)
-        u = turned(reverse(phase.rotor), u)
-        return times(cross(u, body.carried(u)), 3.0 * self.n * self.n * nearness)
-
-    def _place(self, time: Array) -> tuple[Three, Array]:
-        """The direction from planet to body, and ``(a/r)³``; both differences by the small ``1 − cos E``."""
-        e = self.eccentricity
-        anomaly = eccentric_anomaly(self._mean_anomaly(time), e)
-        sine = jnp.sin(0.5 * anomaly)
-        versine = 2.0 * sine * sine
-        distance = (1.0 - e) + e * versine
-        along, across = (1.0 - e) - versine, jnp.sqrt((1.0 - e) * (1.0 + e)) * jnp.sin(anomaly)
-        u = along / distance, across / distance, jnp.zeros_like(along)
-        return u, 1.0 / (distance * distance * distance)
-
-    def _mean_anomaly(self, time: Array) -> Array:
-        """``n t + M0`` less whole turns, in [−π, π]."""
-        mean = self.n * time + self.mean_anomaly
-        turns = lax.stop_gradient(jnp.floor(mean * (0.5 / math.pi) + 0.5))
-        return (mean - turns * _TWO_PI[0]) - turns * _TWO_PI[1]
+def _place(mean: Array, e: Array) -> tuple[Three, Array]:
+    """The direction from planet to body, and ``(a/r)³``; both differences by the small ``1 − cos E``."""
+    anomaly = eccentric_anomaly(mean, e)
+    sine = jnp.sin(0.5 * anomaly)
+    versine = 2.0 * sine * sine
+    distance = (1.0 - e) + e * versine
+    along, across = (1.0 - e) - versine, jnp.sqrt((1.0 - e) * (1.0 + e)) * jnp.sin(anomaly)
+    u = along / distance, across / distance, jnp.zeros_like(along)
+    return u, 1.0 / (distance * distance * distance)
 
 
 def eccentric_anomaly(mean: Array, e: Array) -> Array:

@@ -8,20 +8,14 @@ from typing import Any
 import numpy as np
 
 from polhode import torque as native
-from polhode._mechanics.bodies import Body, bodies_of
+from polhode._mechanics.bodies import Body, bodies_of, inertia_of
 from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
 from polhode.jax._components import Four, Three, joined, normalized, split
-from polhode.jax._laws import Function, Heavy, Torque
-from polhode.jax._library import jax, jnp, lax
-from polhode.jax._phase import Gyrostat, Phase
-from polhode.jax._rk4 import RungeKutta
-from polhode.jax._splitting import COMPOSITIONS, Splitting, stages
+from polhode.jax._laws import Function, Gyrostat, Phase, Torque, weight
+from polhode.jax._library import Array, jax, jnp, lax
+from polhode.jax._steppers import METHODS, stepper, table_of
 from polhode.jax._steps import ways
-
-Array = Any
-
-METHODS = (*COMPOSITIONS, "rk4")
 
 
 def simulate(
@@ -99,26 +93,15 @@ def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str
     _check(method, force)
     if isinstance(inertia, Body):
         _check_weights(inertia, force)
-        inertia = inertia.inertia_about(0) if force.holds else inertia.inertia
-    given = start(inertia, rotor, omega_body)
+    given = start(inertia_of(inertia, force.holds), rotor, omega_body)
     return given, force if given.frame is None else force.in_axes(given.frame)
 
 
 def _check_weights(body: Body, torque: Torque) -> None:
     """Raise for weights that do not point along the centre of mass, unless they are traced."""
-    for law in torque.laws:
-        if isinstance(law, Heavy) and not any(isinstance(x, jax.core.Tracer) for x in law.c):
-            native.settled(bodies_of(body), native.heavy(np.stack(law.c, axis=-1)))
-
-
-def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Any:
-    """Return the stepper with the coefficients of `table_of`."""
-    return RungeKutta(body, torque) if method == "rk4" else Splitting(method, body, torque, table)
-
-
-def table_of(method: str) -> list[float]:
-    """Return the coefficients of the stages of a method."""
-    return [] if method == "rk4" else [x for stage in stages(method) for x in stage]
+    for (c,) in torque.arguments_of(weight):
+        if not any(isinstance(x, jax.core.Tracer) for x in c):
+            native.settled(bodies_of(body), native.heavy(np.stack(c, axis=-1)))
 
 
 def simulate_principal(

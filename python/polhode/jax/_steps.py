@@ -8,11 +8,8 @@ import numpy as np
 
 from polhode._support.arrays import as_float, check_line, output_times
 from polhode.jax._laws import Torque
-from polhode.jax._library import jax
+from polhode.jax._library import Array, jax
 from polhode.jax._table import Table
-
-Array = Any
-
 
 # Each step has its time and length in memory, 16 bytes.
 _MOST_STEPS = 1e8
@@ -53,7 +50,9 @@ def ways(
         return start, [(Way(when, counts, steps, True, tuple(range(1, when.size + 1))), False)]
     when, begin = output_times(times), as_float(start, "start_time")
     _check(when, tables, begin)
-    length = _positive(step)
+    length = None if step is None else as_float(step, "step")
+    if length is not None and not 0 < length < np.inf:
+        raise ValueError(f"step is {length}; it must be positive and finite")
     breaks = np.unique([t for law in tables for t in law.times])
     back, forth = when[when < begin][::-1], when[when >= begin]
     found = [(_way(begin, forth, breaks, length, steps), False)]
@@ -101,12 +100,3 @@ def _check(when: Any, tables: list[Table], start: float) -> None:
                 f"the table of torques spans {law.times[0]} s to {law.times[-1]} s, the motion {first} s to "
                 f"{last} s; add rows for all times of the simulation"
             )
-
-
-def _positive(step: float | None) -> float | None:
-    if step is None:
-        return None
-    length = as_float(step, "step")
-    if not (length > 0 and np.isfinite(length)):
-        raise ValueError(f"step is {length}; it must be positive and finite")
-    return length

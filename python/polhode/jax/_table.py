@@ -8,11 +8,8 @@ from typing import Any
 import numpy as np
 
 from polhode.jax._components import Four, Three, joined, reverse, split, turned
-from polhode.jax._laws import Law, pytree, static
-from polhode.jax._library import jnp, lax
-from polhode.jax._phase import Gyrostat, Phase
-
-Array = Any
+from polhode.jax._laws import Gyrostat, Law, Phase, pytree, static
+from polhode.jax._library import Array, jnp, lax
 
 
 @pytree

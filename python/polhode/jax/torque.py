@@ -19,12 +19,13 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.registry import TORQUES
 from polhode._support.arrays import as_floats
-from polhode.jax import _laws
+from polhode.jax import _laws as laws
+from polhode.jax._arguments import as_array, rows
 from polhode.jax._components import Four, Three, joined, normalized, split
 from polhode.jax._formula_law import Formula, value_of
-from polhode.jax._laws import Torque
-from polhode.jax._library import jax, jnp
-from polhode.jax._orbit import GravityGradient
+from polhode.jax._laws import Torque, kernel
+from polhode.jax._library import jax
+from polhode.jax._orbit import tide
 from polhode.jax._table import Table, spline_slopes
 
 __all__ = [
@@ -83,9 +84,10 @@ def _named(value: Any, shape: str) -> Multivector:
     return make.get(shape, Rotor._from_rows)(joined(value))
 
 
-def _control(kp: Three, kd: Three, target: Four) -> _laws.Control:
+def _control(kp: Three, kd: Three, target: Four) -> laws.Kernel:
     damped = any(isinstance(x, jax.core.Tracer) or bool(np.any(np.asarray(x) != 0)) for x in kd)
-    return _laws.Control(kp, kd, target, None, damped)
+    f = laws.control if damped else laws.undamped_control
+    return kernel(f, "gains", "gains", "rotor", rate=damped)(kp, kd, target)
 
 
 def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
@@ -94,11 +96,11 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
     The times (n,) are constants, the torques (n, 3) may be traced. Outside the times the torque is NaN. Steps
     end at the times unless the output times are traced.
     """
-    when, rows = as_floats(times, "times"), _array(torques)
+    when, table = as_floats(times, "times"), as_array(torques)
     # Raises for wrong times, frame and kind.
-    native.tabulated(when, np.zeros((*rows.shape[:-1], 3)), frame, kind)
-    slopes = spline_slopes(when, rows) if kind == "cubic" and when.size > 2 else None
-    return Torque((Table(rows, slopes, tuple(when.tolist()), frame),))
+    native.tabulated(when, np.zeros((*table.shape[:-1], 3)), frame, kind)
+    slopes = spline_slopes(when, table) if kind == "cubic" and when.size > 2 else None
+    return Torque((Table(table, slopes, tuple(when.tolist()), frame),))
 
 
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
@@ -122,8 +124,8 @@ def function(f: Callable[[Any, Any, Any], Any]) -> Torque:
     if not callable(f):
         raise TypeError(f"expected a function of t, rotor and omega_body, got {type(f).__name__}")
     if isinstance(f, jax.tree_util.Partial):
-        return Torque((_laws.Function(partial=f, frame=None, f=None),))
-    return Torque((_laws.Function(partial=None, frame=None, f=f),))
+        return Torque((laws.Function(partial=f, frame=None, f=None),))
+    return Torque((laws.Function(partial=None, frame=None, f=f),))
 
 
 def of(torque: Any) -> Torque:
@@ -153,28 +155,15 @@ def _of_native(law: Any) -> Torque:
     return torque
 
 
-def _array(value: Any, name: str = "") -> Any:
-    data = value._data if isinstance(value, Multivector) else value
-    array = jnp.asarray(data)
-    return array if jnp.issubdtype(array.dtype, jnp.floating) else array.astype(jnp.result_type(float))
-
-
-def _three(value: Any, name: str) -> Three:
-    array = _array(value)
-    if array.shape[-1:] != (3,):
-        raise ValueError(f"{name} needs 3 components in the last axis, got shape {array.shape}")
-    return split(array)
-
-
 def _gains(value: Any, name: str) -> Three:
-    array = _array(value)
+    array = as_array(value)
     return split(array) if array.shape[-1:] == (3,) else (array,) * 3
 
 
 def _rotor(value: Any, name: str) -> Four:
     if value is None:
-        return split(_array([1.0, 0.0, 0.0, 0.0]))
-    array = _array(value)
+        return split(as_array([1.0, 0.0, 0.0, 0.0]))
+    array = as_array(value)
     if array.shape[-1:] != (4,):
         raise ValueError(
             f"{name} needs the 4 components of a rotor in the last axis, got shape {array.shape}"
@@ -183,23 +172,23 @@ def _rotor(value: Any, name: str) -> Four:
 
 
 _CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
-    "scalar": _array,
-    "vector": _three,
-    "bivector": _three,
+    "scalar": as_array,
+    "vector": lambda value, name: split(rows(value, 3, name)),
+    "bivector": lambda value, name: split(rows(value, 3, name)),
     "gains": _gains,
     "rotor": _rotor,
 }
 
-constant_body = _law(native.constant_body, _laws.ConstantBody)
-constant_space = _law(native.constant_space, _laws.ConstantSpace)
-damping = _law(native.damping, _laws.Damping)
-gravity_gradient = _law(native.gravity_gradient, GravityGradient)
-gyrostat = _law(native.gyrostat, _laws.Wheel)
-heavy = _law(native.heavy, _laws.Heavy)
-larmor = _law(native.larmor, _laws.Larmor)
-magnetic = _law(native.magnetic, _laws.Magnetic)
+constant_body = _law(native.constant_body, kernel(laws.fixed_in_body, "body"))
+constant_space = _law(native.constant_space, kernel(laws.fixed_in_space, "space"))
+damping = _law(native.damping, kernel(laws.damped_momentum, "scalar"))
+gravity_gradient = _law(native.gravity_gradient, kernel(tide, "scalar", "scalar", "scalar"))
+gyrostat = _law(native.gyrostat, kernel(laws.wheel, "body"))
+heavy = _law(native.heavy, kernel(laws.weight, "body"))
+larmor = _law(native.larmor, kernel(laws.precession, "space", rate=True))
+magnetic = _law(native.magnetic, kernel(laws.dipole, "body", "space"))
 pd_control = _law(native.pd_control, _control)
-quadratic_damping = _law(native.quadratic_damping, _laws.QuadraticDamping)
+quadratic_damping = _law(native.quadratic_damping, kernel(laws.quadratic, "scalar", rate=True))
 radiation_pressure = _law(native.radiation_pressure)
-torsion_spring = _law(native.torsion_spring, _laws.TorsionSpring)
-viscous_damping = _law(native.viscous_damping, lambda d: _laws.ViscousDamping(d, None))
+torsion_spring = _law(native.torsion_spring, kernel(laws.stiffness, "scalar", "rotor"))
+viscous_damping = _law(native.viscous_damping, kernel(laws.viscous, "gains", rate=True))

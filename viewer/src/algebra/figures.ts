@@ -1,6 +1,7 @@
 import { Vector3 } from "three";
 import type { Screen } from "../stage/ribbon.ts";
-import { across, arc, Shapes } from "./shapes.ts";
+import { across, arc, circle, ROUND } from "../stage/shapes.ts";
+import { Blades } from "./blades.ts";
 import type { Drawable } from "./drawables.ts";
 
 /** The point of a label, and the text of the label after the name. */
@@ -14,7 +15,7 @@ export interface Mark {
 /** The shapes and the label of a item, in drawn units: `unit` times the values. */
 export interface Figure {
   item: Drawable;
-  shapes: Shapes;
+  shapes: Blades;
   mark: Mark;
 }
 
@@ -29,7 +30,7 @@ export function figureOf(
   colour: string,
   unit: number,
 ): Figure {
-  const shapes = new Shapes(screen, colour);
+  const shapes = new Blades(screen, colour);
   let mark: Mark = { at: new Vector3(), note: "" };
   const scaled = (vector: Vector3) => vector.clone().multiplyScalar(unit);
   const [a, b, c] = item.edges.map(scaled);
@@ -61,7 +62,7 @@ export function figureOf(
     }
   }
   if (item.vector) {
-    shapes.arrow(scaled(item.vector));
+    shapes.arrow(scaled(item.vector), { width: 2.8, behind: 0.35, order: 4 });
     mark = { at: scaled(item.vector), note: mark.note };
   }
   return { item, shapes, mark };
@@ -75,10 +76,8 @@ export function extent(item: Drawable): Vector3[] {
   if (a && b) points.push(a, b, a.clone().add(b));
   if (a && b && c) points.push(c, ...[a, b, a.clone().add(b)].map((point) => point.clone().add(c)));
   if (item.bivector && !b) {
-    const radius = discRadius(item.bivector);
-    const right = across(item.bivector).multiplyScalar(radius);
-    const up = item.bivector.clone().normalize().cross(right);
-    points.push(right, up, right.clone().negate(), up.clone().negate());
+    const rim = circle(item.bivector, discRadius(item.bivector));
+    points.push(...rim.filter((_, k) => k % (ROUND / 4) === 0));
   }
   if (item.trivector !== null && !c) {
     const half = Math.cbrt(Math.abs(item.trivector)) / 2;
@@ -97,7 +96,7 @@ function discRadius(bivector: Vector3): number {
 
 /** The angle of a rotor in its plane, and the arcs of the vectors that it turns; if `alone`, with their projections. */
 function turn(
-  shapes: Shapes,
+  shapes: Blades,
   { axis, angle, turned }: NonNullable<Drawable["rotor"]>,
   unit: number,
   alone: boolean,
@@ -119,7 +118,7 @@ function turn(
 }
 
 /** The projection of a vector on the plane of a turn, before and after. */
-function projections(shapes: Shapes, axis: Vector3, from: Vector3, angle: number): void {
+function projections(shapes: Blades, axis: Vector3, from: Vector3, angle: number): void {
   const to = from.clone().applyAxisAngle(axis, angle);
   for (const tip of [from, to]) {
     const inPlane = tip.clone().projectOnPlane(axis);
@@ -132,7 +131,7 @@ function projections(shapes: Shapes, axis: Vector3, from: Vector3, angle: number
 }
 
 /** A cube with the volume of a trivector; the rim of its base and then its height give the orientation. */
-function cube(shapes: Shapes, trivector: number, unit: number): Vector3 {
+function cube(shapes: Blades, trivector: number, unit: number): Vector3 {
   const side = Math.cbrt(Math.abs(trivector)) * unit;
   const [x, y, z] = [0, 1, 2].map((k) => new Vector3().setComponent(k, side)) as [Vector3, Vector3, Vector3];
   const corner = new Vector3(-side / 2, -side / 2, -side / 2);

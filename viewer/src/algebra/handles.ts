@@ -1,4 +1,5 @@
-import { type Camera, Plane, Raycaster, Vector2, Vector3 } from "three";
+import { type Camera, Vector2, Vector3 } from "three";
+import { onScreen } from "../stage/labels.ts";
 import { AXES } from "../stage/rotor.ts";
 import type { Triple } from "../core/core.ts";
 import type { Drawable } from "./drawables.ts";
@@ -45,12 +46,11 @@ export class Handles {
     });
   }
 
-  place(camera: Camera, width: number, height: number): void {
+  place(camera: Camera, size: Vector2): void {
     this.camera = camera;
-    this.size.set(width, height);
+    this.size.copy(size);
     for (const { button, item } of this.buttons) {
-      const at = this.tip(item).project(camera);
-      const [x, y] = [((1 + at.x) * width) / 2, ((1 - at.y) * height) / 2];
+      const { x, y } = onScreen(this.tip(item), camera, size.x, size.y);
       button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
     }
   }
@@ -89,16 +89,11 @@ export class Handles {
   /** The tip moved with the pointer by some pixels. */
   private dragged(tip: Vector3, dx: number, dy: number, along: boolean): Vector3 {
     const camera = this.camera!;
-    const view = camera.getWorldDirection(new Vector3());
     const at = tip.clone().project(camera);
-    const to = new Vector2(at.x + (2 * dx) / this.size.x, at.y - (2 * dy) / this.size.y);
-    const caster = new Raycaster();
-    caster.setFromCamera(to, camera);
-    const plane = new Plane().setFromNormalAndCoplanarPoint(view, tip);
-    const moved = caster.ray.intersectPlane(plane, new Vector3()) ?? tip.clone();
+    const moved = at.add(new Vector3((2 * dx) / this.size.x, (-2 * dy) / this.size.y, 0)).unproject(camera);
     if (!along) return moved;
     const up = new Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
-    return tip.clone().addScaledVector(view, moved.sub(tip).dot(up));
+    return tip.clone().addScaledVector(camera.getWorldDirection(new Vector3()), moved.sub(tip).dot(up));
   }
 
   /** Moves a vector along the axis nearest to right or up on the screen, or with Shift to the view. */

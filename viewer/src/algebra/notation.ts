@@ -1,5 +1,6 @@
 /** Values in mathematical notation. */
 
+import type { Line } from "../core/core.ts";
 import { exponentOf, powerOfTen } from "../format/numbers.ts";
 
 /** A term of a value: its sign, the magnitude of its coefficient (empty for 1 before a blade), and its blade. */
@@ -36,13 +37,7 @@ export function terms(components: readonly number[]): Term[] {
 }
 
 /** The grades that are not zero up to rounding. */
-export function nonzeroGrades({
-  components,
-  grades,
-}: {
-  components: readonly number[];
-  grades: readonly number[];
-}): number[] {
+export function nonzeroGrades({ components, grades }: NonNullable<Line["value"]>): number[] {
   const largest = Math.max(...components.map(Math.abs));
   const found = grades.filter((grade) =>
     components.slice(STARTS[grade], STARTS[grade + 1]).some((x) => Math.abs(x) > ROUNDING * largest),

@@ -1,6 +1,7 @@
 import { type ReadonlySignal, useComputed, useSignal } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { IconButton } from "../inputs/button.tsx";
+import { Choices } from "../inputs/fields.tsx";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import styles from "./algebra.css?inline";
@@ -30,7 +31,7 @@ export function AlgebraPage({ model, palette }: { model: Model; palette: Readonl
   return (
     <div class="algebra">
       <style>{styles}</style>
-      <Choice model={model} />
+      <Presets model={model} />
       <Picture
         items={items}
         palette={palette}
@@ -42,7 +43,7 @@ export function AlgebraPage({ model, palette }: { model: Model; palette: Readonl
 }
 
 /** The list of presets, and the description of the current one. Handles and sliders change only literals. */
-function Choice({ model }: { model: Model }) {
+function Presets({ model }: { model: Model }) {
   const chosen = useComputed(() => {
     const written = outline(model.lines.value);
     return ALGEBRA_PRESETS.find(({ lines }) => outline(lines) === written) ?? null;
@@ -50,28 +51,16 @@ function Choice({ model }: { model: Model }) {
   const preset = chosen.value;
   return (
     <section class="choice" aria-label="Figure">
-      <label>
-        <span class="hidden">Figure</span>
-        <select
-          id="figure"
-          value={preset?.id ?? ""}
-          onChange={(event) => {
-            const next = ALGEBRA_PRESETS.find(({ id }) => id === event.currentTarget.value);
-            if (next) model.lines.value = next.lines;
-          }}
-        >
-          {preset === null && (
-            <option value="" disabled>
-              Your lines
-            </option>
-          )}
-          {ALGEBRA_PRESETS.map(({ id, title }) => (
-            <option key={id} value={id}>
-              {title}
-            </option>
-          ))}
-        </select>
+      <label for="figure" class="hidden">
+        Figure
       </label>
+      <Choices
+        id="figure"
+        value={preset?.id ?? null}
+        options={ALGEBRA_PRESETS.map(({ id, title }) => [id, title])}
+        other="Your lines"
+        onChange={(id) => (model.lines.value = ALGEBRA_PRESETS.find((next) => next.id === id)!.lines)}
+      />
       <p class="about" aria-live="polite">
         {preset?.about ?? "Define a name or a function, V(x) = ½ x·x, or check whether an equation holds."}
       </p>

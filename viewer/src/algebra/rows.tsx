@@ -2,10 +2,13 @@ import type { ReadonlySignal, Signal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Line } from "../core/core.ts";
 import { scalarLiteral, withScalar } from "./literal.ts";
+import { numberText } from "./notation.ts";
 import { Kind, Result } from "./result.tsx";
-import { ScalarSlider } from "./slider.tsx";
 import type { Drawable } from "./drawables.ts";
 import { highlighted } from "./highlight.tsx";
+
+/** Positions of the slider of a number. */
+const STEPS = 200;
 
 type Change = (line: number, text: (old: string) => string) => void;
 
@@ -110,13 +113,7 @@ export function Rows({ text, lines, items, tones, change }: Props) {
           );
         })}
       </ol>
-      <button
-        class="quiet more"
-        onClick={() => {
-          const all = text.peek();
-          replace(all.split("\n").length, 0, "", 0);
-        }}
-      >
+      <button class="quiet more" onClick={() => replace(text.peek().split("\n").length, 0, "", 0)}>
         + Line
       </button>
     </section>
@@ -127,4 +124,41 @@ function focusAt(list: HTMLOListElement | null, row: number, column: number): vo
   const area = list?.children[row]?.querySelector("textarea");
   area?.focus();
   area?.setSelectionRange(column, column);
+}
+
+/** A slider for the number of a line such as `θ = 60 deg`. */
+function ScalarSlider(props: {
+  name: string;
+  number: number;
+  unit: string;
+  onChange: (number: number) => void;
+}) {
+  const { name, number, unit, onChange } = props;
+  const kept = useRef(rangeOf(number, unit));
+  // The range is kept while it contains the number, so that the slider does not move during a drag.
+  const { min, max } = kept.current;
+  if (kept.current.unit !== unit || number < min || number > max) kept.current = rangeOf(number, unit);
+  const { unit: _, ...range } = kept.current;
+  return (
+    <input
+      class="scalar"
+      type="range"
+      {...range}
+      value={number}
+      aria-label={unit ? `${name}, ${unit}` : name}
+      aria-valuetext={`${numberText(number)} ${unit}`}
+      onInput={(event) => onChange(event.currentTarget.valueAsNumber)}
+    />
+  );
+}
+
+/** A full turn for angles; otherwise from 0 to a round number, or symmetric about 0 for negative numbers. */
+function rangeOf(number: number, unit: string): { min: number; max: number; step: number; unit: string } {
+  const angle = unit === "deg" || unit === "°";
+  if (angle && Math.abs(number) <= 180) return { min: -180, max: 180, step: 1, unit };
+  const size = 1.5 * Math.abs(number) || 1;
+  const power = 10 ** Math.floor(Math.log10(size));
+  const max = power * [1, 2, 5, 10].find((first) => first * power >= size * 0.999)!;
+  const min = number < 0 ? -max : 0;
+  return { min, max, step: (max - min) / STEPS, unit };
 }

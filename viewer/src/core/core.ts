@@ -34,6 +34,11 @@ export const State = {
   velocity: 21,
 } as const;
 
+/** The size of the vector or bivector at an offset. */
+export function sizeAt(numbers: ArrayLike<number>, at: number): number {
+  return Math.hypot(numbers[at]!, numbers[at + 1]!, numbers[at + 2]!);
+}
+
 /** A triangle mesh, m: vertices (n × 3), triangles (m × 3), and a tint per triangle (see crates/rigid, `Tint`). */
 export interface Surface {
   vertices: Float64Array;

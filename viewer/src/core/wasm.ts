@@ -47,14 +47,16 @@ export async function loadCore(): Promise<Core> {
   return new Core(instance.exports as unknown as Exports);
 }
 
+type Given = string | Uint8Array | Float64Array | readonly number[];
+
 /** The core. What a call takes is put into rooms first; its reply is read afterwards. */
 export class Core {
   /** The torque laws of the registry. */
   readonly laws: readonly LawEntry[];
 
   constructor(readonly exports: Exports) {
-    this.checked(() => exports.law_registry());
-    this.laws = JSON.parse(this.text()) as LawEntry[];
+    this.call(exports.law_registry);
+    this.laws = this.json();
   }
 
   /** Solves a scene. A Problem if the scene is wrong or takes longer than `budget` seconds. */
@@ -66,10 +68,9 @@ export class Core {
       budget = BUDGET,
     }: Partial<{ name: string; files: Files; budget: number }> = {},
   ): Motion {
-    this.putScene(scene, name, files);
-    const handle = this.checked(() => this.exports.open(budget));
-    this.checked(() => this.exports.about_motion(handle));
-    return new Motion(this, handle, JSON.parse(this.text()) as About);
+    const handle = this.call(() => this.exports.open(budget), scene, name, ...[...files].flat());
+    this.call(() => this.exports.about_motion(handle));
+    return new Motion(this, handle, this.json());
   }
 
   /**
@@ -77,10 +78,8 @@ export class Core {
    * text; the scene gives the surface of the body.
    */
   recorded(about: string, rows: Float64Array, of?: { scene: string; name: string; files: Files }): Motion {
-    this.put(rows);
-    if (of) this.putScene(of.scene, of.name, of.files);
-    const handle = this.checked(() => this.exports.record());
-    return new Motion(this, handle, JSON.parse(about) as About);
+    const scene = of ? [of.scene, of.name, ...[...of.files].flat()] : [];
+    return new Motion(this, this.call(this.exports.record, rows, ...scene), JSON.parse(about) as About);
   }
 
   /**
@@ -88,25 +87,20 @@ export class Core {
    * key such as `run.samples` replaces one field.
    */
   merged(scene: string, change: string): string {
-    this.putText(scene);
-    this.putText(change);
-    this.checked(() => this.exports.merge());
+    this.call(this.exports.merge, scene, change);
     return this.text();
   }
 
   /** Evaluates lines of formulas, each with the names that earlier lines define. */
   evaluated(lines: string): Line[] {
-    this.putText(lines);
-    this.checked(() => this.exports.evaluate());
-    return JSON.parse(this.text()) as Line[];
+    this.call(this.exports.evaluate, lines);
+    return this.json();
   }
 
   /** The solid of a kind that fills a box of these side lengths, m. */
   solid(kind: string, lengths: Triple): Solid {
-    this.putText(kind);
-    this.put(Float64Array.from(lengths));
-    this.checked(() => this.exports.solid());
-    return JSON.parse(this.text()) as Solid;
+    this.call(this.exports.solid, kind, lengths);
+    return this.json();
   }
 
   /**
@@ -114,51 +108,52 @@ export class Core {
    * they are principal axes, with a null frame, and along the principal axes otherwise.
    */
   secondMoments(moments: Triple, frame: Quadruple): { spread: Triple; frame: Quadruple | null } {
-    const [a, b, c, ...rest] = this.numbers(this.exports.second_moments, [...moments, ...frame]);
+    this.call(this.exports.second_moments, [...moments, ...frame]);
+    const [a, b, c, ...rest] = this.floats();
     return { spread: [a!, b!, c!], frame: rest.length > 0 ? (rest as Quadruple) : null };
   }
 
   /** The inertia matrix in body axes of a body with second moments along axes, which a rotor takes to body axes. */
   inertia(spread: Triple, frame: Quadruple): Triple[] {
-    const rows = this.numbers(this.exports.inertia, [...spread, ...frame]);
+    this.call(this.exports.inertia, [...spread, ...frame]);
+    const rows = [...this.floats()];
     return [0, 3, 6].map((k) => rows.slice(k, k + 3) as Triple);
   }
 
   /** The angles of the rotor exp(−½ turn e1e2) exp(−½ tilt e2e3) exp(−½ roll e1e2), rad. */
   attitude(rotor: Quadruple): { turn: number; tilt: number; roll: number } {
-    const [turn, tilt, roll] = this.numbers(this.exports.attitude, rotor) as Triple;
+    this.call(this.exports.attitude, rotor);
+    const [turn, tilt, roll] = [...this.floats()] as Triple;
     return { turn, tilt, roll };
   }
 
   /** The unit plane and the angle, from 0 to 2π, of a rotor. */
   planeAngle(rotor: Quadruple): { plane: Triple; angle: number } {
-    const [x, y, z, angle] = this.numbers(this.exports.plane_angle, rotor) as Quadruple;
+    this.call(this.exports.plane_angle, rotor);
+    const [x, y, z, angle] = [...this.floats()] as Quadruple;
     return { plane: [x, y, z], angle };
   }
 
-  /** Calls an export that takes numbers and replies with numbers. */
-  private numbers(call: () => number, given: number[]): number[] {
-    this.put(Float64Array.from(given));
-    this.checked(call);
-    return Array.from(this.floats());
-  }
-
-  put({ buffer, byteOffset, byteLength }: Uint8Array | Float64Array): void {
-    const place = this.exports.room(byteLength);
-    new Uint8Array(this.exports.memory.buffer, place).set(new Uint8Array(buffer, byteOffset, byteLength));
-  }
-
-  putText(text: string): void {
-    this.put(new TextEncoder().encode(text));
-  }
-
-  private putScene(scene: string, name: string, files: Files): void {
-    this.putText(scene);
-    this.putText(name);
-    for (const [file, content] of files) {
-      this.putText(file);
-      this.put(content);
+  /**
+   * Puts what an export takes, calls it, and returns its code. A Problem if the call reports one, or if the core crashed
+   * and cannot be used again.
+   */
+  call(run: () => number, ...given: Given[]): number {
+    for (const one of given) {
+      const content = typeof one === "string" ? new TextEncoder().encode(one) : one;
+      const { buffer, byteOffset, byteLength } =
+        content instanceof Array ? Float64Array.from(content) : content;
+      const place = this.exports.room(byteLength);
+      new Uint8Array(this.exports.memory.buffer, place).set(new Uint8Array(buffer, byteOffset, byteLength));
     }
+    let code: number;
+    try {
+      code = run();
+    } catch (error) {
+      throw new Problem(`the core failed (${String(error)}); reload the page`);
+    }
+    if (code < 0) throw new Problem(this.text());
+    return code;
   }
 
   /** A copy of the reply. */
@@ -167,24 +162,16 @@ export class Core {
     return memory.buffer.slice(reply(), reply() + reply_size());
   }
 
-  text(): string {
-    return new TextDecoder().decode(this.bytes());
-  }
-
   floats(): Float64Array {
     return new Float64Array(this.bytes());
   }
 
-  /** The return code of a call. A Problem if the call reports one, or if the core crashed and cannot be used again. */
-  checked(call: () => number): number {
-    let code: number;
-    try {
-      code = call();
-    } catch (error) {
-      throw new Problem(`the core failed (${String(error)}); reload the page`);
-    }
-    if (code < 0) throw new Problem(this.text());
-    return code;
+  private text(): string {
+    return new TextDecoder().decode(this.bytes());
+  }
+
+  private json<T>(): T {
+    return JSON.parse(this.text()) as T;
   }
 }
 
@@ -201,8 +188,7 @@ export class Motion {
    * within `about.horizon` of the start, others for `about.duration` from the start on.
    */
   states(times: ArrayLike<number>): Float64Array {
-    this.core.put(Float64Array.from(times));
-    this.core.checked(() => this.core.exports.states(this.handle));
+    this.core.call(() => this.core.exports.states(this.handle), Float64Array.from(times));
     return this.core.floats();
   }
 
@@ -211,8 +197,7 @@ export class Motion {
    * top. `arm` points from the fixed point to the centre of mass, m.
    */
   surface(arm: Triple): Surface {
-    this.putBody(arm);
-    const size = 3 * this.core.checked(() => this.core.exports.surface(this.handle));
+    const size = 3 * this.core.call(() => this.core.exports.surface(this.handle), this.body(arm));
     const reply = this.core.bytes();
     const rest = new Uint32Array(reply, 8 * size);
     const faces = (3 * rest.length) / 4;
@@ -225,14 +210,13 @@ export class Motion {
 
   /** The side lengths of a box around the body, m. */
   extents(): Triple {
-    this.putBody([0, 0, 0]);
-    this.core.checked(() => this.core.exports.extents(this.handle));
-    return Array.from(this.core.floats()) as Triple;
+    this.core.call(() => this.core.exports.extents(this.handle), this.body([0, 0, 0]));
+    return [...this.core.floats()] as Triple;
   }
 
   /** The first bodies of an ensemble: rotors (n × 4) at a time, body axes to space axes; n at most `count`. */
   bodies(time: number, count: number): Float64Array {
-    this.core.checked(() => this.core.exports.bodies(this.handle, time, count, BUDGET));
+    this.core.call(() => this.core.exports.bodies(this.handle, time, count, BUDGET));
     return this.core.floats();
   }
 
@@ -241,8 +225,8 @@ export class Motion {
   }
 
   /** Where the surface of the body is not known, it follows from these. */
-  private putBody(arm: Triple): void {
+  private body(arm: Triple): number[] {
     const { mass, moments, frame } = this.about.body;
-    this.core.put(Float64Array.from([mass ?? 1, ...moments, ...frame, ...arm]));
+    return [mass ?? 1, ...moments, ...frame, ...arm];
   }
 }

@@ -1,5 +1,5 @@
 import { batch, computed, signal } from "@preact/signals";
-import { type About, type Files, Problem, ROW, State } from "../core/core.ts";
+import { type About, type Files, Problem, sizeAt, State } from "../core/core.ts";
 import type { Core, Motion } from "../core/wasm.ts";
 import type { CameraName, PageDocument, Shown, ViewState } from "../document.ts";
 import { unpacked } from "../packed.ts";
@@ -103,18 +103,8 @@ export class Model {
       return;
     }
     batch(() => {
-      if (options) {
-        this.name = name;
-        this.files = files;
-        this.original = scene;
-        this.caption.value = null;
-      }
-      this.pending = null;
-      this.draft.value = null;
-      this.base = scene;
-      this.opened.value = this.about.value;
-      this.time.value = this.about.value?.start.time ?? 0;
-      this.speed.value = defaultSpeed(this.motion.value);
+      if (options) this.take(scene, options);
+      this.begin(scene, this.about.value?.start.time ?? 0);
     });
   }
 
@@ -217,16 +207,24 @@ export class Model {
     const of = scene === undefined ? undefined : { scene, name, files };
     const motion = this.core.recorded(recorded?.about ?? "", rows, of);
     this.become(motion, scene ?? null);
-    this.name = name;
-    this.files = files;
-    this.opened.value = motion.about;
+    this.take(scene ?? null, { name, files });
+    this.begin(scene ?? null, rows[State.time] ?? 0);
+  }
+
+  /** Remembers a scene as it was given. */
+  private take(scene: string | null, { name, files }: Opened): void {
+    [this.name, this.files, this.original] = [name, files, scene];
     this.caption.value = null;
-    this.original = scene ?? null;
-    this.base = scene ?? null;
-    this.draft.value = null;
+  }
+
+  /** Starts the motion of a scene. */
+  private begin(scene: string | null, time: number): void {
     this.pending = null;
-    this.time.value = rows[State.time] ?? 0;
-    this.speed.value = defaultSpeed(motion);
+    this.draft.value = null;
+    this.base = scene;
+    this.opened.value = this.about.value;
+    this.time.value = time;
+    this.speed.value = defaultSpeed(this.motion.value);
   }
 
   private become(motion: Motion, scene: string | null): void {
@@ -260,8 +258,8 @@ export function span(about: About): [number, number] {
  */
 function defaultSpeed(motion: Motion | null): number {
   const row = motion && firstRow(motion);
-  if (!motion || !row || row.length < ROW) return 1;
-  const rate = Math.hypot(...row.subarray(State.omegaSpace, State.omegaSpace + 3));
+  if (!motion || !row) return 1;
+  const rate = sizeAt(row, State.omegaSpace);
   const calm = rate > 0 ? (2 * Math.PI) / rate / 3 : motion.about.duration / 20;
   const wanted = Math.min(Math.max((motion.about.free?.flip_time ?? 0) / 6, calm), 3 * calm);
   const power = 10 ** Math.floor(Math.log10(wanted));

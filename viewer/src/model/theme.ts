@@ -19,20 +19,11 @@ export function paletteOf(model: Model): { palette: ReadonlySignal<Palette>; dis
 
 /** A palette as CSS variables. */
 export function variables(palette: Palette): [string, string][] {
+  const { axes, ...others } = palette;
   return [
     ["color-scheme", palette === DARK ? "dark" : "light"],
-    ["--background", palette.background],
-    ["--surface", palette.surface],
-    ["--text", palette.text],
-    ["--faint", palette.faint],
-    ["--axis-1", palette.axes[0]],
-    ["--axis-2", palette.axes[1]],
-    ["--axis-3", palette.axes[2]],
-    ["--omega", palette.omega],
-    ["--momentum", palette.momentum],
-    ["--trace", palette.trace],
-    ["--polhode", palette.polhode],
-    ["--herpolhode", palette.herpolhode],
+    ...axes.map((colour, k): [string, string] => [`--axis-${k + 1}`, colour]),
+    ...Object.entries(others).map(([name, colour]): [string, string] => [`--${name}`, colour]),
     ["--on-accent", palette === DARK ? palette.background : palette.surface],
   ];
 }

@@ -1,11 +1,10 @@
-import { type ReadonlySignal, useComputed, useSignal } from "@preact/signals";
-import type { ComponentChildren } from "preact";
+import { type ReadonlySignal, useSignal } from "@preact/signals";
+import { Component, type ComponentChildren } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
 import { AlgebraPage } from "../algebra/page.tsx";
-import type { Model } from "../model/model.ts";
+import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { Controls } from "../vary/controls.ts";
-import { Boundary } from "./boundary.tsx";
 import { BodyPanel } from "./body.tsx";
 import { Editor } from "./editor.tsx";
 import { Facts, regimeOf } from "./facts.tsx";
@@ -93,7 +92,10 @@ function MotionPage(props: Props & { controls: Controls; folds: Folds }) {
             ),
         )}
       </aside>
-      <Announcement model={model} />
+      {/* Announces to screen readers when the regime changes. */}
+      <p class="hidden" aria-live="polite">
+        {regimeOf(model.about.value)}
+      </p>
     </main>
   );
 }
@@ -125,12 +127,21 @@ function Panel(props: {
   );
 }
 
-/** Announces to screen readers when the regime changes. */
-function Announcement({ model }: { model: Model }) {
-  const regime = useComputed(() => regimeOf(model.about.value));
-  return (
-    <p class="hidden" aria-live="polite">
-      {regime}
-    </p>
-  );
+/** Shows its children, or the error raised while they were rendered; the rest of the page keeps working. */
+class Boundary extends Component<{ children: ComponentChildren }, { problem: string | null }> {
+  override state = { problem: null };
+
+  static override getDerivedStateFromError(error: unknown): { problem: string } {
+    return { problem: words(error) };
+  }
+
+  render() {
+    if (this.state.problem === null) return this.props.children;
+    return (
+      <div class="notice" role="alert">
+        <p>This page cannot be shown.</p>
+        <pre>{this.state.problem}</pre>
+      </div>
+    );
+  }
 }

@@ -1,8 +1,7 @@
 import type { Solid } from "../core/core.ts";
 import { DENSITY, lengthUnit, massUnit, si } from "../format/units.ts";
+import { Select, Slider } from "../inputs/fields.tsx";
 import { around, type Range } from "../inputs/range.ts";
-import { Select } from "../inputs/select.tsx";
-import { Slider } from "../inputs/slider.tsx";
 import { type BodyChoice, dimensions, isThin, reshaped, resized, sizeOf } from "../vary/body.ts";
 import type { Controls } from "../vary/controls.ts";
 

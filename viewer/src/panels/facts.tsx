@@ -5,16 +5,19 @@ import { DEGREE, duration } from "../format/units.ts";
 import type { Model } from "../model/model.ts";
 import { HOLDING } from "../vary/laws.ts";
 
-type Fact = [name: string, value: ComponentChildren];
+type Fact = [name: string, value: ComponentChildren, id?: string];
 
 /** Properties of the whole motion: regime, laws, periods, and accuracy. */
 export function Facts({ model }: { model: Model }) {
   const about = model.about.value;
   if (!about) return null;
   const { body, free, top } = about;
+  const regime = regimeOf(about);
+  const circles = free && free.period !== null && circled(body.moments, free.axis);
   const facts: Fact[] = [
+    ["Regime", regime && [regime, circles], "regime"],
     ...about.laws.map(({ name, text }): Fact => {
-      const shown = about.heavy && HOLDING.has(name) ? `m g l = ${weight(about.heavy)}` : shortened(text);
+      const shown = about.heavy && HOLDING.has(name) ? `m g l = (${list(about.heavy)}) N m` : shortened(text);
       return [labelOf(name, model.core.laws), <code>{shown}</code>];
     }),
     ...(free ? freeFacts(free) : []),
@@ -24,25 +27,15 @@ export function Facts({ model }: { model: Model }) {
     ["Bodies", about.ensemble?.toLocaleString("en")],
     ["Method", methodOf(about)],
   ];
-  const regime = regimeOf(about);
   return (
     <>
       <dl class="facts">
-        {regime && (
-          <div class="fact">
-            <dt>Regime</dt>
-            <dd id="regime">
-              {regime}
-              {free && free.period !== null && circled(body.moments, free.axis)}
-            </dd>
-          </div>
-        )}
         {facts.map(
-          ([name, value], k) =>
+          ([name, value, id], k) =>
             value && (
               <div class="fact" key={k}>
                 <dt>{name}</dt>
-                <dd>{value}</dd>
+                <dd id={id}>{value}</dd>
               </div>
             ),
         )}
@@ -60,11 +53,6 @@ export function labelOf(name: string, registry: readonly LawEntry[]): string {
     torque_space: "Torque, in space",
   };
   return registry.find((law) => law.name === name)?.label ?? others[name] ?? name;
-}
-
-/** The vector m g l, in N m. */
-function weight(heavy: Triple): string {
-  return `(${list(heavy)}) N m`;
 }
 
 /** Periods of a free body. */
@@ -120,6 +108,11 @@ export function methodOf(about: About): string {
 }
 
 function Conserved({ about }: { about: About }) {
+  const rows = about.conserved.map(({ name, value, drift }) => ({
+    name: name.replaceAll("_", " "),
+    value: significant(value, 7),
+    drift,
+  }));
   return (
     <table class="conserved">
       <thead>
@@ -130,18 +123,13 @@ function Conserved({ about }: { about: About }) {
         </tr>
       </thead>
       <tbody>
-        {about.conserved.map(({ name, value, drift }) => (
+        {[...rows, { name: "|R| − 1", value: "0", drift: about.norm_drift }].map(({ name, value, drift }) => (
           <tr key={name}>
-            <th scope="row">{name.replaceAll("_", " ")}</th>
-            <td class="digits">{significant(value, 7)}</td>
+            <th scope="row">{name}</th>
+            <td class="digits">{value}</td>
             <td class="digits">{small(drift)}</td>
           </tr>
         ))}
-        <tr>
-          <th scope="row">|R| − 1</th>
-          <td class="digits">0</td>
-          <td class="digits">{small(about.norm_drift)}</td>
-        </tr>
       </tbody>
     </table>
   );

@@ -1,8 +1,9 @@
 import { useRef } from "preact/hooks";
-import { IconButton } from "../inputs/button.tsx";
+import { Icon, IconButton } from "../inputs/button.tsx";
+import { Choices } from "../inputs/fields.tsx";
 import type { Model } from "../model/model.ts";
 import { openPreset, PRESETS } from "../presets/index.ts";
-import { Help } from "./help.tsx";
+import { KEYS } from "./keys.ts";
 import { ACCEPTED, openFiles } from "./open.ts";
 
 const PAGES = ["motion", "algebra"] as const;
@@ -57,25 +58,18 @@ function Scenes({ model }: { model: Model }) {
       <label for="preset" class="hidden">
         Scene
       </label>
-      <select
+      <Choices
         id="preset"
-        value={chosen?.name ?? ""}
-        onChange={(event) => {
-          const preset = PRESETS.find(({ name }) => name === event.currentTarget.value);
-          if (preset) openPreset(model, preset);
-        }}
-      >
-        {!chosen && (
-          <option value="" disabled>
-            Scenes…
-          </option>
-        )}
-        {PRESETS.map(({ name, title }) => (
-          <option value={name} key={name}>
-            {title}
-          </option>
-        ))}
-      </select>
+        value={chosen?.name ?? null}
+        options={PRESETS.map(({ name, title }) => [name, title])}
+        other="Scenes…"
+        onChange={(name) =>
+          openPreset(
+            model,
+            PRESETS.find((preset) => preset.name === name)!,
+          )
+        }
+      />
       <IconButton
         id="open"
         class="quiet"
@@ -99,5 +93,50 @@ function Scenes({ model }: { model: Model }) {
         }}
       />
     </div>
+  );
+}
+
+/** A button that opens the list of keys. */
+function Help() {
+  const dialog = useRef<HTMLDialogElement>(null);
+  return (
+    <>
+      <button
+        id="help"
+        class="quiet"
+        aria-label="Keys"
+        title="Keys (?)"
+        aria-haspopup="dialog"
+        onClick={() => dialog.current?.showModal()}
+      >
+        ?
+      </button>
+      <dialog
+        ref={dialog}
+        aria-labelledby="help-title"
+        onClick={(event) => {
+          if (event.target === event.currentTarget) event.currentTarget.close();
+        }}
+      >
+        <div class="dialog">
+          <h2 id="help-title">Keys</h2>
+          <dl class="keys">
+            {KEYS.map(([keys, action]) => (
+              <div key={keys}>
+                <dt>{keys.split(" ").map((key) => (key === "–" ? " – " : <kbd key={key}>{key}</kbd>))}</dt>
+                <dd>{action}</dd>
+              </div>
+            ))}
+          </dl>
+          <p class="note">
+            Drag to rotate the picture; pinch or scroll to zoom. Drop a scene (.toml) anywhere to open it,
+            together with the mesh that it names.
+          </p>
+          <button id="help-close" onClick={() => dialog.current?.close()}>
+            <Icon name="close" /> Close
+          </button>
+        </div>
+      </dialog>
+    </>
   );
 }

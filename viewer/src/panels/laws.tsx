@@ -1,6 +1,5 @@
 import { PLANES } from "../format/numbers.ts";
-import { Select } from "../inputs/select.tsx";
-import { Slider } from "../inputs/slider.tsx";
+import { Check, Select, Slider } from "../inputs/fields.tsx";
 import type { Controls } from "../vary/controls.ts";
 import { AXIS, key, type LawForm, type LawsChoice, type Parameter } from "../vary/laws.ts";
 import { labelOf } from "./facts.tsx";
@@ -42,10 +41,7 @@ function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; cont
     controls.setLaws({ ...choice, values: { ...choice.values, [key(law, parameter)]: value } });
   return (
     <div class="law">
-      <label class="check">
-        <input id={`law-${law.name}`} type="checkbox" checked={on} onChange={toggle} />
-        {law.label}
-      </label>
+      <Check id={`law-${law.name}`} label={law.label} checked={on} onChange={toggle} />
       {on &&
         law.parameters.map((parameter) => {
           const common = {

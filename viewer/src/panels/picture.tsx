@@ -1,11 +1,11 @@
-import { effect, type ReadonlySignal, useSignal } from "@preact/signals";
+import { type ReadonlySignal, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { State } from "../core/core.ts";
+import { sizeAt, State } from "../core/core.ts";
 import { typed } from "../format/numbers.ts";
-import { runClock } from "../model/clock.ts";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { Stage } from "../stage/stage.ts";
+import { LONGEST_STEP } from "../stage/viewport.ts";
 
 /** The picture, its caption, and error messages. */
 export function Picture({ model, palette }: { model: Model; palette: ReadonlySignal<Palette> }) {
@@ -14,14 +14,7 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
   useEffect(() => {
     try {
       const stage = new Stage(place.current!, model, palette);
-      const before = model.fitted.peek();
-      const unsubscribe = effect(() => {
-        if (model.fitted.value > before) stage.fit();
-      });
-      return () => {
-        unsubscribe();
-        stage.dispose();
-      };
+      return () => stage.dispose();
     } catch (error) {
       missing.value = words(error);
       // Without a stage, which advances the time, a clock does.
@@ -39,6 +32,19 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
       {model.caption.value !== null && <p class="caption">{model.caption.value}</p>}
     </section>
   );
+}
+
+/** Advances the model's time while it plays; returns the function that stops it. */
+function runClock(model: Model): () => void {
+  let frame = 0;
+  let before = performance.now();
+  const tick = (now: number): void => {
+    model.tick(Math.min(Math.max((now - before) / 1000, 0), LONGEST_STEP));
+    before = now;
+    frame = requestAnimationFrame(tick);
+  };
+  tick(before);
+  return () => cancelAnimationFrame(frame);
 }
 
 /** An error in the scene or in a file; the picture still shows the last motion. */
@@ -69,7 +75,7 @@ const FRAME_RATE = 60;
 function Strobe({ model }: { model: Model }) {
   const row = model.row.value;
   if (!row || !model.playing.value) return null;
-  const rate = Math.hypot(...row.subarray(State.omegaSpace, State.omegaSpace + 3));
+  const rate = sizeAt(row, State.omegaSpace);
   const faithful = (Math.PI / 2) * (FRAME_RATE / rate);
   if (!(Math.abs(model.speed.value) > faithful)) return null;
   // One digit, rounded down.

@@ -3,7 +3,7 @@ import type { About } from "../core/core.ts";
 import { typed } from "../format/numbers.ts";
 import { duration, timeUnit } from "../format/units.ts";
 import { IconButton, type IconName } from "../inputs/button.tsx";
-import { NumberField } from "../inputs/number.tsx";
+import { NumberField } from "../inputs/fields.tsx";
 import { type Model, span } from "../model/model.ts";
 import { methodOf } from "./facts.tsx";
 import { changeSpeed, step } from "./keys.ts";
@@ -37,7 +37,9 @@ export function Playback({ model }: { model: Model }) {
         </div>
         <TimeSlider model={model} about={about} />
         <TimeField model={model} about={about} />
-        <MethodBadge about={about} />
+        <span class={about.exact ? "badge exact" : "badge"} title={methodOf(about)} id="method">
+          {about.exact ? "exact" : about.method === "recorded" ? "recorded" : "stepped"}
+        </span>
         <Speed model={model} />
       </div>
     </section>
@@ -92,15 +94,6 @@ function TimeField({ model, about }: { model: Model; about: About }) {
       />
       <span class="unit">{unit.label}</span>
     </div>
-  );
-}
-
-/** Whether the motion is exact, stepped or recorded. */
-function MethodBadge({ about }: { about: About }) {
-  return (
-    <span class={about.exact ? "badge exact" : "badge"} title={methodOf(about)} id="method">
-      {about.exact ? "exact" : about.method === "recorded" ? "recorded" : "stepped"}
-    </span>
   );
 }
 

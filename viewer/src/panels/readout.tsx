@@ -1,8 +1,8 @@
 import { useComputed } from "@preact/signals";
-import { State } from "../core/core.ts";
-import { PLANES, type Scale, scaleFor, significant, small } from "../format/numbers.ts";
+import type { ComponentChildren } from "preact";
+import { sizeAt, State } from "../core/core.ts";
+import { PLANES, type Scale, scaled, scaleFor, significant, small } from "../format/numbers.ts";
 import { firstRow, type Model } from "../model/model.ts";
-import { Quantity, Symbol, Terms } from "./quantity.tsx";
 
 const ROTOR: Scale = { factor: 1, decimals: 4, width: 6, power: "" };
 
@@ -23,8 +23,8 @@ export function Readout({ model }: { model: Model }) {
       </Quantity>
     );
   };
-  const omega = length(first, State.omegaBody);
-  const momentum = length(first, State.momentumSpace);
+  const omega = sizeAt(first, State.omegaBody);
+  const momentum = sizeAt(first, State.momentumSpace);
   const drifts = new Map(about.conserved.map(({ name, drift }) => [name, drift]));
   return (
     <>
@@ -46,7 +46,7 @@ export function Readout({ model }: { model: Model }) {
           unit="kg m²/s"
         >
           <Value
-            value={length(row, State.momentumSpace)}
+            value={sizeAt(row, State.momentumSpace)}
             start={momentum}
             drift={drifts.get("angular_momentum")}
           />
@@ -71,6 +71,51 @@ function Value({ value, start, drift }: { value: number; start: number; drift: n
   );
 }
 
-function length(row: Float64Array, at: number): number {
-  return Math.hypot(row[at]!, row[at + 1]!, row[at + 2]!);
+/** A sum of blades, `3.1 e₂∧e₃ + 0.2 e₃∧e₁ − 1.0 e₁∧e₂`, in which each digit keeps its place. */
+function Terms({ values, blades, scale }: { values: ArrayLike<number>; blades: string[]; scale: Scale }) {
+  return (
+    <span class="terms">
+      {blades.map((blade, k) => {
+        const { negative, digits } = scaled(values[k] ?? 0, scale);
+        const sign = negative ? "−" : k > 0 ? "+" : "";
+        return (
+          <span class="term" key={blade}>
+            <span class="sign">{sign}</span>
+            <span class="digits">{digits}</span>
+            {blade && <span class="blade">{` ${blade}`}</span>}
+          </span>
+        );
+      })}
+    </span>
+  );
+}
+
+/** A symbol in italics with a subscript, such as Ω with B. */
+function Symbol({ name, sub }: { name: string; sub?: string }) {
+  return (
+    <i class="symbol">
+      {name}
+      {sub && <sub>{sub}</sub>}
+    </i>
+  );
+}
+
+/** The symbol, description and unit of a quantity, and its value below. */
+function Quantity(props: {
+  symbol: ComponentChildren;
+  note?: string;
+  unit: string;
+  mark?: string;
+  children: ComponentChildren;
+}) {
+  return (
+    <div class="quantity">
+      <dt>
+        {props.mark && <span class={`mark ${props.mark}`} aria-hidden="true" />}
+        {props.symbol} <span class="note">{props.note}</span>
+        <span class="unit">{props.unit}</span>
+      </dt>
+      <dd>{props.children}</dd>
+    </div>
+  );
 }

@@ -1,8 +1,7 @@
 import { PLANES } from "../format/numbers.ts";
 import { DEGREE, rateUnit, timeUnit } from "../format/units.ts";
+import { Select, Slider } from "../inputs/fields.tsx";
 import { around, type Range } from "../inputs/range.ts";
-import { Select } from "../inputs/select.tsx";
-import { Slider } from "../inputs/slider.tsx";
 import type { Controls } from "../vary/controls.ts";
 import type { Attitude, Spin } from "../vary/start.ts";
 
@@ -22,25 +21,12 @@ export function StartPanel({ controls }: { controls: Controls }) {
   const { spin, rotor } = start;
   const usual = Math.hypot(...about.start.omega_body) || (2 * Math.PI) / about.duration;
   const attitude = start.attitude ?? controls.model.core.attitude(rotor);
-  const spinAngle = (name: keyof Spin, label: string, range: Range) => (
-    <Slider
-      id={name}
-      label={label}
-      value={spin[name]}
-      range={range}
-      unit={DEGREE}
-      onChange={(value) => controls.setStart({ ...start, spin: { ...spin, [name]: value } })}
-    />
-  );
-  const attitudeAngle = (name: keyof Attitude, label: string, range: Range) => (
-    <Slider
-      id={name}
-      label={label}
-      value={attitude[name]}
-      range={range}
-      unit={DEGREE}
-      onChange={(value) => controls.setStart({ ...start, attitude: { ...attitude, [name]: value } })}
-    />
+  const setSpin = (change: Partial<Spin>): void =>
+    controls.setStart({ ...start, spin: { ...spin, ...change } });
+  const setAttitude = (change: Partial<Attitude>): void =>
+    controls.setStart({ ...start, attitude: { ...attitude, ...change } });
+  const angle = (id: string, label: string, value: number, range: Range, set: (value: number) => void) => (
+    <Slider id={id} label={label} value={value} range={range} unit={DEGREE} onChange={set} />
   );
   return (
     <>
@@ -49,7 +35,7 @@ export function StartPanel({ controls }: { controls: Controls }) {
         label="Spin plane"
         value={spin.plane}
         options={SENSES}
-        onChange={(plane) => controls.setStart({ ...start, spin: { ...spin, plane } })}
+        onChange={(plane) => setSpin({ plane })}
       />
       <Slider
         id="rate"
@@ -57,13 +43,13 @@ export function StartPanel({ controls }: { controls: Controls }) {
         value={spin.rate}
         range={{ min: usual / 100, max: usual * 10, scale: "log", zero: true }}
         unit={rateUnit(usual)}
-        onChange={(rate) => controls.setStart({ ...start, spin: { ...spin, rate } })}
+        onChange={(rate) => setSpin({ rate })}
       />
-      {spinAngle("off", "Off-axis angle", OFF)}
-      {spinAngle("toward", "Azimuth", CIRCLE)}
-      {attitudeAngle("tilt", "Tilt of f₃ from e₃", HALF)}
-      {attitudeAngle("turn", "Turn about e₃", CIRCLE)}
-      {attitudeAngle("roll", "Roll about f₃", CIRCLE)}
+      {angle("off", "Off-axis angle", spin.off, OFF, (off) => setSpin({ off }))}
+      {angle("toward", "Azimuth", spin.toward, CIRCLE, (toward) => setSpin({ toward }))}
+      {angle("tilt", "Tilt of f₃ from e₃", attitude.tilt, HALF, (tilt) => setAttitude({ tilt }))}
+      {angle("turn", "Turn about e₃", attitude.turn, CIRCLE, (turn) => setAttitude({ turn }))}
+      {angle("roll", "Roll about f₃", attitude.roll, CIRCLE, (roll) => setAttitude({ roll }))}
       <Slider
         id="duration"
         label="Duration"

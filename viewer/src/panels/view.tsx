@@ -1,5 +1,5 @@
 import { CAMERAS, type Shown, type ViewState } from "../document.ts";
-import { Select } from "../inputs/select.tsx";
+import { Check, Select } from "../inputs/fields.tsx";
 import type { Model } from "../model/model.ts";
 
 const THINGS: [keyof Shown, string][] = [
@@ -31,15 +31,13 @@ export function ViewPanel({ model }: { model: Model }) {
       <fieldset class="checks">
         <legend>Show</legend>
         {THINGS.map(([thing, label]) => (
-          <label class="check" key={thing}>
-            <input
-              id={`show-${thing}`}
-              type="checkbox"
-              checked={shown[thing]}
-              onChange={() => model.toggle(thing)}
-            />
-            {label}
-          </label>
+          <Check
+            key={thing}
+            id={`show-${thing}`}
+            label={label}
+            checked={shown[thing]}
+            onChange={() => model.toggle(thing)}
+          />
         ))}
       </fieldset>
       <Select

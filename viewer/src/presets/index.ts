@@ -1,6 +1,7 @@
 import type { Files } from "../core/core.ts";
 import type { ViewState } from "../document.ts";
 import { type Model, SHOWN } from "../model/model.ts";
+import { decoded } from "../packed.ts";
 import plate from "../../../examples/feynman-plate.toml?raw";
 import gyroscope from "../../../examples/gyroscope.toml?raw";
 import loops from "../../../examples/nutating-top.toml?raw";
@@ -22,15 +23,13 @@ export interface Preset {
   scene: string;
   /** Files that the scene names, in base64. */
   files?: Record<string, string>;
+  /** Differences from the default view. */
   view: Partial<ViewState>;
   caption: string;
 }
 
 /** The view of a top: the path of its axis, without the polhode. */
-const TOP: Partial<ViewState> = {
-  speed: 0.5,
-  shown: { gravity: true, trace: true, polhode: false, omega: false, momentum: true },
-};
+const TOP: Partial<ViewState> = { speed: 0.5, shown: { polhode: false, omega: false } };
 
 export const PRESETS: Preset[] = [
   {
@@ -38,7 +37,7 @@ export const PRESETS: Preset[] = [
     title: "Dzhanibekov’s T-handle",
     scene: handle,
     files: { "t-handle.stl": handleMesh },
-    view: { speed: 0.2, shown: { polhode: true, trace: true, omega: true, momentum: true } },
+    view: { speed: 0.2 },
     caption:
       "The handle spins about its intermediate axis and flips again and again. L is constant in space; in the body, Ω moves " +
       "along the polhode from one end of the axis to the other.",
@@ -47,7 +46,7 @@ export const PRESETS: Preset[] = [
     name: "racket.toml",
     title: "Tennis-racket theorem: a book",
     scene: racket,
-    view: { speed: 0.5, shown: { polhode: true, trace: true, omega: true, momentum: true } },
+    view: { speed: 0.5 },
     caption:
       "A book spins steadily about its longest or its shortest side; about the middle one it flips, however small the " +
       "perturbation. Choose the axis under “Spin plane” and the perturbation by “Off-axis angle”.",
@@ -75,7 +74,7 @@ export const PRESETS: Preset[] = [
     name: "free-top.toml",
     title: "Symmetric top",
     scene: symmetric,
-    view: { speed: 0.1, shown: { polhode: true, herpolhode: true, omega: true, momentum: true } },
+    view: { speed: 0.1, shown: { herpolhode: true } },
     caption:
       "The motion is a product of two steady rotations: R(t) = exp(−½Ωₗ t) R(0) exp(−½Ωᵣ t), handout eq. (4.35). The axis " +
       "precesses about L while the body rotates about its axis.",
@@ -117,7 +116,7 @@ export const PRESETS: Preset[] = [
     name: "gyroscope.toml",
     title: "Gyroscope on a point",
     scene: gyroscope,
-    view: { ...TOP, speed: 1, shown: { ...TOP.shown, axial: false } },
+    view: { ...TOP, speed: 1 },
     caption:
       "At a hundred revolutions per second, the axis precesses about the vertical at nearly m g l / (i₃ ω₃). Its nutation is " +
       "too small to be seen; reduce the spin to make it visible.",
@@ -126,14 +125,14 @@ export const PRESETS: Preset[] = [
     name: "feynman-plate.toml",
     title: "Feynman’s plate",
     scene: plate,
-    view: { speed: 0.1, shown: { polhode: false, trace: true, omega: true, momentum: true } },
+    view: { speed: 0.1, shown: { polhode: false } },
     caption: "A plate thrown with a wobble: it wobbles twice per revolution, as Feynman saw in a cafeteria.",
   },
   {
     name: "toutatis.toml",
     title: "Asteroid Toutatis",
     scene: toutatis,
-    view: { speed: 86_400, shown: { polhode: true, herpolhode: true, trace: true, momentum: true } },
+    view: { speed: 86_400, shown: { herpolhode: true } },
     caption:
       "4179 Toutatis tumbles: it rotates about its long axis in 5.4 days, while that axis precesses about L in 7.35 days. No " +
       "two of its days are alike.",
@@ -147,18 +146,12 @@ export function mayAutoplay(): boolean {
 
 /** Opens a preset and plays it, unless the user prefers reduced motion. */
 export function openPreset(model: Model, preset: Preset): void {
-  const files: Files = new Map(Object.entries(preset.files ?? {}).map(([name, text]) => [name, bytes(text)]));
+  const files: Files = new Map(
+    Object.entries(preset.files ?? {}).map(([name, text]) => [name, decoded(text)]),
+  );
   model.open(preset.scene, { name: preset.name, files });
   if (model.problem.value !== null) return;
   model.caption.value = preset.caption;
   model.shown.value = SHOWN;
-  model.look({
-    camera: "oblique",
-    playing: mayAutoplay(),
-    ...preset.view,
-  });
-}
-
-function bytes(base64: string): Uint8Array {
-  return Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+  model.look({ camera: "oblique", playing: mayAutoplay(), ...preset.view });
 }

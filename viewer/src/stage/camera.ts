@@ -1,4 +1,4 @@
-import { PerspectiveCamera, Quaternion, Spherical, Vector3 } from "three";
+import { MathUtils, PerspectiveCamera, Quaternion, Spherical, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { CameraName } from "../document.ts";
 import { AXES } from "./rotor.ts";
@@ -21,6 +21,17 @@ const OBLIQUE = new Vector3(Math.cos(0.33) * Math.cos(0.6), Math.cos(0.33) * Mat
 /** Three's spherical coordinates have their pole along y, ours along e3. */
 const TO_Y = new Quaternion().setFromUnitVectors(AXES[2], AXES[1]);
 const FROM_Y = TO_Y.clone().invert();
+
+/** Keys that move the camera: by angles, and the factor of the distance. */
+const KEYS: Record<string, [theta: number, phi: number, closer: number]> = {
+  ArrowLeft: [-STEP, 0, 1],
+  ArrowRight: [STEP, 0, 1],
+  ArrowUp: [0, -STEP, 1],
+  ArrowDown: [0, STEP, 1],
+  "+": [0, 0, 1.1],
+  "=": [0, 0, 1.1],
+  "-": [0, 0, 1 / 1.1],
+};
 
 interface Move {
   from: Spherical;
@@ -59,8 +70,8 @@ export class Viewpoint {
 
   /** Moves to a preset; `momentum` is the axial vector of L. */
   go(name: CameraName, momentum: Vector3, atOnce: boolean): void {
-    const to = this.spherical(direction(name, momentum).multiplyScalar(this.fit));
-    const from = this.spherical(this.camera.position.clone().sub(this.controls.target));
+    const to = spherical(direction(name, momentum).multiplyScalar(this.fit));
+    const from = this.here;
     // The shorter way around.
     to.theta += 2 * Math.PI * Math.round((from.theta - to.theta) / (2 * Math.PI));
     const withTo = name === "with the body" ? 1 : 0;
@@ -87,14 +98,15 @@ export class Viewpoint {
     if (!move) return;
     move.passed += seconds;
     const part = Math.min(move.passed / MOVE, 1);
-    const eased = part * part * (3 - 2 * part);
-    const between = (a: number, b: number) => a + (b - a) * eased;
+    const eased = MathUtils.smoothstep(part, 0, 1);
+    const between = (a: number, b: number) => MathUtils.lerp(a, b, eased);
+    const { from, to } = move;
     this.withBody = between(move.withFrom, move.withTo);
     this.stand(
       new Spherical(
-        between(move.from.radius, move.to.radius),
-        between(move.from.phi, move.to.phi),
-        between(move.from.theta, move.to.theta),
+        between(from.radius, to.radius),
+        between(from.phi, to.phi),
+        between(from.theta, to.theta),
       ),
     );
     if (part === 1) this.move = null;
@@ -106,9 +118,8 @@ export class Viewpoint {
     this.camera.aspect = aspect;
     const half = Math.tan((LENS * Math.PI) / 360) * Math.min(aspect, 1);
     const fit = FIT / Math.sin(Math.atan(half));
-    const at = this.spherical(this.camera.position.clone().sub(this.controls.target));
-    at.radius *= fit / this.fit;
-    if (this.move) for (const end of [this.move.from, this.move.to]) end.radius *= fit / this.fit;
+    const at = this.here;
+    for (const end of [at, this.move?.from, this.move?.to]) if (end) end.radius *= fit / this.fit;
     this.fit = fit;
     this.controls.minDistance = NEAREST * fit;
     this.controls.maxDistance = FARTHEST * fit;
@@ -138,15 +149,11 @@ export class Viewpoint {
 
   private readonly pressed = (event: KeyboardEvent): void => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const at = this.spherical(this.camera.position.clone().sub(this.controls.target));
-    if (event.key === "ArrowLeft") at.theta -= STEP;
-    else if (event.key === "ArrowRight") at.theta += STEP;
-    else if (event.key === "ArrowUp") at.phi -= STEP;
-    else if (event.key === "ArrowDown") at.phi += STEP;
-    else if (event.key === "+" || event.key === "=") at.radius /= 1.1;
-    else if (event.key === "-") at.radius *= 1.1;
-    else if (event.key === "Home") return this.home();
-    else return;
+    if (event.key === "Home") return this.home();
+    const by = KEYS[event.key];
+    if (!by) return;
+    const at = this.here;
+    at.set(at.radius / by[2], at.phi + by[1], at.theta + by[0]);
     event.preventDefault();
     this.grabbed();
     this.stand(at);
@@ -159,24 +166,20 @@ export class Viewpoint {
     this.controls.update();
   }
 
-  private spherical(from: Vector3): Spherical {
-    return new Spherical().setFromVector3(from.applyQuaternion(TO_Y)).makeSafe();
+  /** The place of the camera around the point that it looks at. */
+  private get here(): Spherical {
+    return spherical(this.camera.position.clone().sub(this.controls.target));
   }
+}
+
+function spherical(from: Vector3): Spherical {
+  return new Spherical().setFromVector3(from.applyQuaternion(TO_Y)).makeSafe();
 }
 
 /** The direction of a preset from the middle of the figure, a unit vector in space axes. */
 function direction(name: CameraName, momentum: Vector3): Vector3 {
-  switch (name) {
-    case "along e1":
-      return AXES[0].clone();
-    case "along e2":
-      return AXES[1].clone();
-    case "along e3":
-      return AXES[2].clone();
-    case "along L":
-      return momentum.length() > 0 ? momentum.clone().normalize() : AXES[2].clone();
-    case "oblique":
-    case "with the body":
-      return OBLIQUE.clone();
-  }
+  const axis = ["along e1", "along e2", "along e3"].indexOf(name);
+  if (axis >= 0) return AXES[axis as 0 | 1 | 2].clone();
+  if (name !== "along L") return OBLIQUE.clone();
+  return momentum.length() > 0 ? momentum.clone().normalize() : AXES[2].clone();
 }

@@ -1,9 +1,7 @@
-import { BoxGeometry, Group, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion, Vector3 } from "three";
+import { Box3, BoxGeometry, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion, Vector3 } from "three";
 import { Problem } from "../core/core.ts";
-import type { Motion } from "../core/wasm.ts";
-import type { Palette } from "../palette.ts";
-import { type Figure, REACH } from "./figure.ts";
-import type { Instant, Part } from "./part.ts";
+import { REACH } from "./figure.ts";
+import type { Part, Setting } from "./part.ts";
 import { quaternion } from "./rotor.ts";
 
 /** Maximum number of bodies. */
@@ -15,89 +13,43 @@ const SIZE = 0.06;
  * The bodies of an ensemble: small boxes on the sphere around the nominal body, each with its own attitude and in the
  * direction of its own axis. They start together and spread over the sphere.
  */
-export class Crowd implements Part {
-  readonly inSpace = new Group();
-  private readonly material = new MeshLambertMaterial({ emissiveIntensity: 0.15 });
-  private bodies: InstancedMesh<BoxGeometry, MeshLambertMaterial> | null = null;
-  /** The reason why the bodies are not drawn. */
-  problem: string | null = null;
-  private motion: Motion | null = null;
-  private axis = new Vector3();
-  private time = Number.NaN;
+export function crowd({ figure, palette, say }: Setting): Part | null {
+  const { about, motion, traced } = figure;
+  if (about.ensemble === null) return null;
+  const sides = new Box3().setFromArray(figure.surface.vertices).getSize(new Vector3());
+  const box = new BoxGeometry(...sides.multiplyScalar(SIZE / Math.max(...sides)));
+  const material = new MeshLambertMaterial({
+    color: palette.trace,
+    emissive: palette.trace,
+    emissiveIntensity: 0.15,
+  });
+  const bodies = new InstancedMesh(box, material, Math.min(MOST, about.ensemble));
+  bodies.frustumCulled = false;
+  let drawn = Number.NaN;
 
-  follow(figure: Figure): void {
-    this.clear();
-    const { about, motion } = figure;
-    if (about.ensemble === null) return;
-    this.motion = motion;
-    this.axis.copy(figure.traced);
-    const sides = extent(figure.surface.vertices);
-    const box = new BoxGeometry(...sides.multiplyScalar(SIZE / Math.max(...sides.toArray())).toArray());
-    this.bodies = new InstancedMesh(box, this.material, Math.min(MOST, about.ensemble));
-    this.bodies.frustumCulled = false;
-    this.inSpace.add(this.bodies);
-  }
-
-  paint(palette: Palette): void {
-    this.material.color.set(palette.trace);
-    this.material.emissive.set(palette.trace);
-  }
-
-  update({ time }: Instant): void {
-    if (!this.bodies || !this.motion || time === this.time) return;
-    this.time = time;
-    const rotors = this.rotors(this.motion, Math.max(time, this.motion.about.start.time));
-    const count = Math.min(rotors.length / 4, MOST);
+  const draw = (rotors: Float64Array): void => {
     const [turn, place, whole] = [new Quaternion(), new Vector3(), new Vector3(1, 1, 1)];
     const matrix = new Matrix4();
-    for (let k = 0; k < count; k++) {
+    bodies.count = rotors.length / 4;
+    for (let k = 0; k < bodies.count; k++) {
       quaternion(rotors, 4 * k, turn);
-      place.copy(this.axis).applyQuaternion(turn).multiplyScalar(REACH);
-      this.bodies.setMatrixAt(k, matrix.compose(place, turn, whole));
+      place.copy(traced).applyQuaternion(turn).multiplyScalar(REACH);
+      bodies.setMatrixAt(k, matrix.compose(place, turn, whole));
     }
-    this.bodies.count = count;
-    this.bodies.instanceMatrix.needsUpdate = true;
-  }
-
-  /** The rotors of the bodies; none if their motion fails, with the reason in `problem`. */
-  private rotors(motion: Motion, time: number): Float64Array {
-    try {
-      return motion.bodies(time, MOST);
-    } catch (error) {
-      if (!(error instanceof Problem)) throw error;
-      this.problem = error.message;
-      this.motion = null;
-      return new Float64Array();
-    }
-  }
-
-  dispose(): void {
-    this.clear();
-    this.material.dispose();
-  }
-
-  private clear(): void {
-    this.inSpace.clear();
-    this.bodies?.geometry.dispose();
-    this.bodies?.dispose();
-    this.bodies = null;
-    this.motion = null;
-    this.problem = null;
-    this.time = Number.NaN;
-  }
-}
-
-/** The sides of the box around points. */
-function extent(points: ArrayLike<number>): Vector3 {
-  const [low, high, point] = [
-    new Vector3(Infinity, Infinity, Infinity),
-    new Vector3(-Infinity, -Infinity, -Infinity),
-    new Vector3(),
-  ];
-  for (let at = 0; at < points.length; at += 3) {
-    point.set(points[at]!, points[at + 1]!, points[at + 2]!);
-    low.min(point);
-    high.max(point);
-  }
-  return high.sub(low);
+    bodies.instanceMatrix.needsUpdate = true;
+  };
+  return {
+    inSpace: bodies,
+    update({ time }) {
+      if (!bodies.visible || time === drawn) return;
+      drawn = time;
+      try {
+        draw(motion.bodies(Math.max(time, about.start.time), MOST));
+      } catch (error) {
+        if (!(error instanceof Problem)) throw error;
+        bodies.visible = false;
+        say(`The other bodies are not drawn: ${error.message}`);
+      }
+    },
+  };
 }

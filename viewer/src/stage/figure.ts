@@ -1,5 +1,5 @@
 import { Vector3 } from "three";
-import { type About, ROW, State, type Surface, type Triple } from "../core/core.ts";
+import { type About, ROW, sizeAt, State, type Surface, type Triple } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
 import { firstRow, span } from "../model/model.ts";
 import { AXES, vector } from "./rotor.ts";
@@ -31,12 +31,12 @@ export interface Figure {
 export function figureOf(motion: Motion): Figure {
   const about = motion.about;
   const start = firstRow(motion);
-  const rows = Math.hypot(...start.subarray(State.omegaBody, State.omegaBody + 3)) > 0 ? start : some(motion);
+  const rows = sizeAt(start, State.omegaBody) > 0 ? start : some(motion);
   const omega = largest(rows, State.omegaSpace);
   const momentum = largest(rows, State.momentumSpace);
   const arm = about.held ? armOf(about) : new Vector3();
   const surface = surfaceFrom(motion, arm);
-  const size = Math.max(farthest(surface), arm.length()) || 1;
+  const size = Math.max(largest(surface.vertices, 0, 3), arm.length()) || 1;
   return {
     motion,
     about,
@@ -64,14 +64,6 @@ function surfaceFrom(motion: Motion, arm: Vector3): Surface {
   return { ...surface, vertices: surface.vertices.map((x, k) => x - away[k % 3]!) };
 }
 
-function farthest({ vertices }: Surface): number {
-  let most = 0;
-  for (let at = 0; at < vertices.length; at += 3) {
-    most = Math.max(most, Math.hypot(vertices[at]!, vertices[at + 1]!, vertices[at + 2]!));
-  }
-  return most;
-}
-
 function nearestAxis(omegaBody: Vector3): Vector3 {
   const sizes = omegaBody.toArray().map(Math.abs);
   return AXES[sizes.indexOf(Math.max(...sizes)) as 0 | 1 | 2].clone();
@@ -85,11 +77,10 @@ function some(motion: Motion): Float64Array {
   return motion.states(Array.from({ length: 65 }, (_, k) => from + ((to - from) * k) / 64));
 }
 
-function largest(rows: Float64Array, at: number): number {
+/** The largest size of the vectors at an offset in rows. */
+function largest(rows: Float64Array, at: number, width = ROW): number {
   let most = 0;
-  for (let row = at; row < rows.length; row += ROW) {
-    most = Math.max(most, Math.hypot(rows[row]!, rows[row + 1]!, rows[row + 2]!));
-  }
+  for (let row = at; row < rows.length; row += width) most = Math.max(most, sizeAt(rows, row));
   return most;
 }
 

@@ -1,4 +1,4 @@
-import { type Camera, type Matrix4, type Vector2, Vector3 } from "three";
+import { Box2, type Camera, type Matrix4, Vector2, Vector3 } from "three";
 
 /** CSS pixels. */
 const HEIGHT = 19;
@@ -10,187 +10,136 @@ const HALO = 4;
 /** Labels have values on a canvas of at least this width. */
 const ROOMY = 520;
 const FAMILY = '"STIX Two Text", "Latin Modern Roman", Cambria, "Times New Roman", serif';
-const SIZES = { letter: 17, small: 13 };
-/** Measures texts; measuring elements in each frame would cause a new layout. */
-const ruler = document.createElement("canvas").getContext("2d")!;
+const LETTER = `italic 17px ${FAMILY}`;
+const SMALL = `13px ${FAMILY}`;
 /** Shifts of a label that would overlap another, in heights. */
 const PLACES = [0, -1, 1, -2, 2];
 
 /** A label of a point: an italic symbol, with an index or a value. */
-export class Label {
+export interface Label {
   /** In space axes, in drawn units. */
-  readonly at = new Vector3();
-  readonly element = document.createElement("div");
-  private readonly value = document.createElement("span");
-  private readonly symbolWidth: number;
-  private valueWidth = 0;
-  private color = "";
-  /** Its last place; null if it is hidden or there was no room. */
-  place: Point | null = null;
+  at: Vector3;
+  symbol: string;
+  colour: string;
+  index: string | number;
+  /** Labels of low rank are placed first. */
+  rank: number;
+  value: string;
+  hidden: boolean;
   /** The side of its point that it is on, right and up; null for away from the centre. */
-  side: Point | null = null;
-
-  constructor(
-    private readonly symbol: string,
-    readonly style: { index?: number | string; rank: number },
-    private readonly gone: (label: Label) => void,
-  ) {
-    const letter = document.createElement("i");
-    letter.textContent = symbol;
-    this.element.append(letter);
-    this.symbolWidth =
-      measured(symbol, `italic ${SIZES.letter}px`) +
-      (style.index === undefined ? 0 : measured(String(style.index), `${SIZES.small}px`));
-    if (style.index !== undefined) {
-      const index = document.createElement("sub");
-      index.textContent = String(style.index);
-      index.style.cssText = `font-size: ${SIZES.small}px; line-height: 0`;
-      this.element.append(index);
-    }
-    this.value.style.cssText = `font-size: ${SIZES.small}px; margin-left: ${GAP}px; font-variant-numeric: tabular-nums`;
-    this.element.append(this.value);
-    this.element.style.cssText =
-      "position: absolute; left: 0; top: 0; white-space: nowrap; will-change: transform";
-  }
-
-  get hidden(): boolean {
-    return this.element.style.display === "none";
-  }
-
-  say(value: string): void {
-    if (this.value.textContent === value) return;
-    this.value.textContent = value;
-    this.valueWidth = value ? GAP + measured(value, `${SIZES.small}px`) : 0;
-  }
-
-  /** Its width, without the value if `short`. */
-  width(short: boolean): number {
-    this.value.style.display = short ? "none" : "";
-    return this.symbolWidth + (short ? 0 : this.valueWidth);
-  }
-
-  hide(hidden: boolean): void {
-    this.element.style.display = hidden ? "none" : "";
-  }
-
-  paint(color: string): void {
-    this.element.style.color = this.color = color;
-  }
-
-  /** Draws the label at its last place, with a halo. */
-  draw(context: CanvasRenderingContext2D, background: string): void {
-    if (!this.place) return;
-    const write = (text: string, font: string, x: number, y: number): void => {
-      context.font = `${font} ${FAMILY}`;
-      context.strokeText(text, x, y);
-      context.fillText(text, x, y);
-    };
-    const { x, y } = this.place;
-    [context.strokeStyle, context.fillStyle] = [background, this.color];
-    [context.lineWidth, context.lineJoin] = [HALO, "round"];
-    const letter = `italic ${SIZES.letter}px`;
-    write(this.symbol, letter, x, y + BASELINE);
-    if (this.style.index !== undefined)
-      write(
-        String(this.style.index),
-        `${SIZES.small}px`,
-        x + measured(this.symbol, letter),
-        y + BASELINE + DROP,
-      );
-    if (this.value.style.display !== "none")
-      write(this.value.textContent ?? "", `${SIZES.small}px`, x + this.symbolWidth + GAP, y + BASELINE);
-  }
-
-  dispose(): void {
-    this.element.remove();
-    this.gone(this);
-  }
+  side: Point | null;
 }
 
-interface Point {
+export interface Point {
   x: number;
   y: number;
 }
 
-interface Box {
-  left: number;
-  top: number;
-  right: number;
-  bottom: number;
+/** A piece of a label: its distance from the left end of the label, and its baseline. */
+interface Piece {
+  text: string;
+  font: string;
+  x: number;
+  y: number;
 }
 
-/** The layer of labels over the canvas. Labels of low rank are placed first; those without room are hidden. */
+/** The layer of labels over the canvas. Those without room are hidden. */
 export class Labels {
-  readonly element = document.createElement("div");
+  readonly element = document.createElement("canvas");
+  /** The colour of the halo that separates letters from lines. */
+  background = "";
+  private readonly context = this.element.getContext("2d")!;
   private labels: Label[] = [];
-  private background = "";
+  private placed: { label: Label; pieces: Piece[]; box: Box2 }[] = [];
 
   constructor() {
     // The description of the canvas and the panels have the same content.
     this.element.setAttribute("aria-hidden", "true");
     this.element.style.cssText =
-      "position: absolute; inset: 0; overflow: hidden; pointer-events: none; user-select: none; " +
-      `font: ${SIZES.letter}px/${HEIGHT}px ${FAMILY}`;
+      "position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none";
   }
 
-  add(symbol: string, style: { index?: number | string; rank: number }): Label {
-    const label = new Label(symbol, style, (gone) => {
-      this.labels = this.labels.filter((other) => other !== gone);
-    });
+  add(symbol: string, colour: string, style: { index?: string | number; rank: number }): Label {
+    const label = {
+      index: "",
+      ...style,
+      symbol,
+      colour,
+      at: new Vector3(),
+      value: "",
+      hidden: false,
+      side: null,
+    };
     this.labels.push(label);
-    this.labels.sort((a, b) => a.style.rank - b.style.rank);
-    this.element.append(label.element);
+    this.labels.sort((a, b) => a.rank - b.rank);
     return label;
   }
 
-  /** A halo in the colour of the background separates letters from lines. */
-  paint(background: string): void {
-    this.background = background;
-    this.element.style.textShadow = [1, 1, 2, 2, 3, 3]
-      .map((blur) => `0 0 ${blur}px ${background}`)
-      .join(", ");
+  clear(): void {
+    this.labels = [];
+  }
+
+  /** Adapts to a size in CSS pixels. */
+  resize(width: number, height: number, ratio: number): void {
+    this.element.width = width * ratio;
+    this.element.height = height * ratio;
+    this.context.scale(ratio, ratio);
+  }
+
+  /** Places the labels on a canvas of a size in CSS pixels, and draws them. */
+  place(camera: Camera, space: Matrix4, size: Vector2, shown: boolean): void {
+    const [width, height] = [size.x, size.y];
+    this.placed = [];
+    const centre = onScreen(new Vector3().setFromMatrixPosition(space), camera, width, height);
+    for (const label of shown ? this.labels : []) {
+      if (label.hidden) continue;
+      const point = onScreen(label.at.clone().applyMatrix4(space), camera, width, height);
+      const { pieces, width: wide } = this.typeset(label, width >= ROOMY);
+      const taken = this.placed.map(({ box }) => box);
+      const box = free(around(point, centre, wide, label.side), taken, width, height);
+      if (box) this.placed.push({ label, pieces, box });
+    }
+    this.context.clearRect(0, 0, width, height);
+    this.draw(this.context);
   }
 
   /** Draws the labels at their last places, in CSS pixels. */
   draw(context: CanvasRenderingContext2D): void {
-    if (this.element.style.display === "none") return;
-    for (const label of this.labels) label.draw(context, this.background);
-  }
-
-  place(camera: Camera, space: Matrix4, size: Vector2, shown: boolean): void {
-    const [width, height] = [size.x, size.y];
-    this.element.style.display = shown ? "" : "none";
-    if (!shown) return;
-    const taken: Box[] = [];
-    const centre = onScreen(new Vector3().setFromMatrixPosition(space), camera, width, height);
-    for (const label of this.labels) {
-      label.place = null;
-      if (label.hidden) continue;
-      const point = onScreen(label.at.clone().applyMatrix4(space), camera, width, height);
-      const box = free(around(point, centre, label.width(width < ROOMY), label.side), taken, width, height);
-      label.element.style.visibility = box ? "" : "hidden";
-      if (!box) continue;
-      taken.push(box);
-      label.place = { x: box.left, y: box.top };
-      label.element.style.transform = `translate(${box.left.toFixed(1)}px, ${box.top.toFixed(1)}px)`;
+    [context.strokeStyle, context.lineWidth, context.lineJoin] = [this.background, HALO, "round"];
+    for (const { label, pieces, box } of this.placed) {
+      context.fillStyle = label.colour;
+      for (const { text, font, x, y } of pieces) {
+        context.font = font;
+        context.strokeText(text, box.min.x + x, box.min.y + y);
+        context.fillText(text, box.min.x + x, box.min.y + y);
+      }
     }
   }
+
+  private typeset(label: Label, valued: boolean): { pieces: Piece[]; width: number } {
+    const pieces: Piece[] = [];
+    let width = 0;
+    const write = (text: string, font: string, gap = 0, drop = 0): void => {
+      if (!text) return;
+      pieces.push({ text, font, x: width + gap, y: BASELINE + drop });
+      this.context.font = font;
+      width += gap + this.context.measureText(text).width;
+    };
+    write(label.symbol, LETTER);
+    write(String(label.index), SMALL, 0, DROP);
+    if (valued) write(label.value, SMALL, GAP);
+    return { pieces, width };
+  }
 }
 
-function measured(text: string, font: string): number {
-  ruler.font = `${font} ${FAMILY}`;
-  return ruler.measureText(text).width;
-}
-
-function onScreen(point: Vector3, camera: Camera, width: number, height: number): Point {
+/** The place of a point in space axes on a canvas of this size. */
+export function onScreen(point: Vector3, camera: Camera, width: number, height: number): Point {
   point.project(camera);
   return { x: ((1 + point.x) * width) / 2, y: ((1 - point.y) * height) / 2 };
 }
 
-/**
- * The box of a label beside a point: away from the centre until the point is outside, or on the given side.
- */
-function around(point: Point, centre: Point, width: number, side: Point | null): Box {
+/** The box of a label beside a point: away from the centre until the point is outside, or on the given side. */
+function around(point: Point, centre: Point, width: number, side: Point | null): Box2 {
   let [dx, dy] = [point.x - centre.x, point.y - centre.y || -1e-3];
   let away = Math.min((width / 2 + GAP) / Math.abs(dx), (HEIGHT / 2 + GAP) / Math.abs(dy));
   if (side) {
@@ -198,26 +147,15 @@ function around(point: Point, centre: Point, width: number, side: Point | null):
     [dx, dy] = [side.x / length, -side.y / length];
     away = (width / 2) * Math.abs(dx) + (HEIGHT / 2) * Math.abs(dy) + GAP;
   }
-  const [x, y] = [point.x + dx * away, point.y + dy * away];
-  return { left: x - width / 2, right: x + width / 2, top: y - HEIGHT / 2, bottom: y + HEIGHT / 2 };
+  const middle = new Vector2(point.x + dx * away, point.y + dy * away);
+  return new Box2().setFromCenterAndSize(middle, new Vector2(width, HEIGHT));
 }
 
-function free(box: Box, taken: Box[], width: number, height: number): Box | null {
-  const shift = Math.max(4 - box.left, Math.min(0, width - 4 - box.right));
-  for (const place of PLACES) {
-    const down = place * HEIGHT;
-    const moved = {
-      left: box.left + shift,
-      right: box.right + shift,
-      top: box.top + down,
-      bottom: box.bottom + down,
-    };
-    if (moved.top < 0 || moved.bottom > height) continue;
-    if (!taken.some((other) => overlap(moved, other))) return moved;
-  }
-  return null;
-}
-
-function overlap(a: Box, b: Box): boolean {
-  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+/** The box, moved into the picture and beside those that are taken; null without room. */
+function free(box: Box2, taken: Box2[], width: number, height: number): Box2 | null {
+  const shift = Math.max(4 - box.min.x, Math.min(0, width - 4 - box.max.x));
+  const moved = PLACES.map((place) => box.clone().translate(new Vector2(shift, place * HEIGHT)));
+  const room = (at: Box2) =>
+    at.min.y >= 0 && at.max.y <= height && !taken.some((other) => at.intersectsBox(other));
+  return moved.find(room) ?? null;
 }

@@ -2,15 +2,28 @@ import type { Object3D, Quaternion, Vector3 } from "three";
 import type { Shown } from "../document.ts";
 import type { Palette } from "../palette.ts";
 import type { Figure } from "./figure.ts";
+import type { Labels } from "./labels.ts";
+import type { Screen } from "./ribbon.ts";
 
-/** The state to draw. Bivectors are given by their axial vectors, in space axes unless the name says otherwise. */
+/** What the parts of a picture are made from. */
+export interface Setting {
+  figure: Figure;
+  palette: Palette;
+  screen: Screen;
+  labels: Labels;
+  /** Whether the user prefers reduced motion. */
+  calm: { readonly matches: boolean };
+  /** Shows a message over the picture. */
+  say: (message: string) => void;
+}
+
+/** The state to draw. Bivectors are given by their axial vectors, in space axes. */
 export interface Instant {
   time: number;
   /** Body axes to space axes. */
   attitude: Quaternion;
   /** rad/s. */
   omega: Vector3;
-  omegaBody: Vector3;
   /** kg m²/s. */
   momentum: Vector3;
   /** 2T = Ω·L, J: twice the kinetic energy of a body without wheels. */
@@ -22,13 +35,10 @@ export interface Instant {
   played: number;
 }
 
-/** A part of the picture: it gets a motion, colours, and then states. */
+/** A part of the picture of one motion in one palette, which follows the state. */
 export interface Part {
   /** Objects in space axes, and in body axes. */
   readonly inSpace?: Object3D;
   readonly inBody?: Object3D;
-  follow(figure: Figure): void;
-  paint(palette: Palette): void;
   update(instant: Instant, shown: Shown): void;
-  dispose(): void;
 }

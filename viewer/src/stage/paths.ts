@@ -1,23 +1,32 @@
-import { Group, Quaternion, Vector3 } from "three";
+import { Group, type Vector3 } from "three";
 import { ROW, State } from "../core/core.ts";
 import type { Shown } from "../document.ts";
 import { span } from "../model/model.ts";
-import type { Palette } from "../palette.ts";
 import { type Figure, REACH } from "./figure.ts";
-import type { Instant, Part } from "./part.ts";
-import { Ribbon, type Screen } from "./ribbon.ts";
+import type { Instant, Part, Setting } from "./part.ts";
+import { Ribbon } from "./ribbon.ts";
 import { quaternion, vector } from "./rotor.ts";
-import { rowsOf, thinned } from "./thinned.ts";
 
 /** Maximum number of points of a path. */
 const POINTS = 10_000;
 /** Duration of a tail, in turns of the body. */
 const TURNS = 8;
 const MOST_TURNS = 60;
-/** Opacity of the future path relative to the past. */
-const AHEAD = 0.22;
+/** Tolerance of a line in drawn units: a fifth of a pixel in the default view. */
+const NEAR = 1e-3;
+/** The longest piece of a line, so that fading along it is even. */
+const LONGEST = 0.15;
 /** Scale of the polhode, so that it is drawn over the ellipsoid on which it lies. */
-export const LIFTED = 1.004;
+const LIFTED = 1.004;
+
+interface Path {
+  name: "trace" | "herpolhode" | "polhode";
+  ribbon: Ribbon;
+  /** How long it is seen, s. */
+  tail: number;
+  /** Its points from rows of states. */
+  points: (rows: Float64Array) => Vector3[];
+}
 
 /**
  * The path of a body axis in space, and those of ω: the herpolhode in space, the polhode in the body. They are computed
@@ -27,73 +36,57 @@ export const LIFTED = 1.004;
 export class Paths implements Part {
   readonly inSpace = new Group();
   readonly inBody = new Group();
-  private readonly trace: Ribbon;
-  private readonly herpolhode: Ribbon;
-  private readonly polhode: Ribbon;
-  private figure: Figure | null = null;
-  /** Duration of a tail in s, that of the paths of ω, and the middle of the stretch. */
-  private tail = 1;
-  private turns = 1;
+  /** Those that are drawn by stretches, and the polhode if it is closed. */
+  private readonly open: Path[];
+  private readonly closed: Path[] = [];
+  private readonly figure: Figure;
+  /** Duration of a tail in s, and the middle of the stretch. */
+  private readonly tail: number;
   private middle = Number.NaN;
-  private closed = false;
   private asked = 0;
 
-  constructor(screen: Screen) {
-    this.trace = new Ribbon(screen, { width: 2.2, behind: 0.3 });
-    this.herpolhode = new Ribbon(screen, { width: 2, behind: 0.35 });
-    this.polhode = new Ribbon(screen, { width: 2.4, behind: 0.35 });
-    this.inSpace.add(this.trace.object, this.herpolhode.object);
-    this.inBody.add(this.polhode.object);
+  constructor({ figure, palette, screen }: Setting) {
+    this.figure = figure;
+    this.tail = tailOf(figure);
+    // ω repeats the same curves.
+    const turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
+    const path = (name: Path["name"], width: number, tail: number, points: Path["points"]): Path => {
+      const ribbon = new Ribbon(screen, palette[name], { width, behind: name === "trace" ? 0.3 : 0.35 });
+      (name === "polhode" ? this.inBody : this.inSpace).add(ribbon.object);
+      return { name, ribbon, tail, points };
+    };
+    const polhode = path("polhode", 2.4, turns, (rows) => taken(rows, State.omegaBody, LIFTED * figure.rate));
+    this.open = [
+      path("trace", 2.2, this.tail, (rows) => traced(rows, figure.traced)),
+      path("herpolhode", 2, turns, (rows) => taken(rows, State.omegaSpace, figure.rate)),
+    ];
+    const period = figure.about.free?.period ?? null;
+    if (period !== null && within(figure, period)) {
+      polhode.ribbon.set(polhodeOf(figure, period), { closed: true });
+      this.closed.push(polhode);
+    } else {
+      this.open.push(polhode);
+    }
   }
 
   /** Number of states of the visible paths. */
   get points(): number {
-    const seen = (path: Ribbon) => path.object.visible && path.count > 0;
-    const open = [this.trace, this.herpolhode, ...(this.closed ? [] : [this.polhode])].filter(seen).length;
-    return open * this.asked + (this.closed && seen(this.polhode) ? this.polhode.count : 0);
-  }
-
-  follow(figure: Figure): void {
-    this.figure = figure;
-    this.middle = Number.NaN;
-    this.tail = tailOf(figure);
-    // ω repeats the same curves.
-    this.turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
-    const period = figure.about.free?.period ?? null;
-    this.closed = period !== null && within(figure, period);
-    if (this.closed) this.polhode.set(polhodeOf(figure, period!), { closed: true });
-  }
-
-  paint(palette: Palette): void {
-    this.trace.paint(palette.trace);
-    this.herpolhode.paint(palette.herpolhode);
-    this.polhode.paint(palette.polhode);
+    const seen = ({ ribbon }: Path) => ribbon.object.visible && ribbon.count > 0;
+    const states = this.closed.filter(seen).map(({ ribbon }) => ribbon.count);
+    return states.reduce((sum, count) => sum + count, this.open.filter(seen).length * this.asked);
   }
 
   update({ time }: Instant, shown: Shown): void {
-    this.trace.object.visible = shown.trace;
-    this.herpolhode.object.visible = shown.herpolhode;
-    this.polhode.object.visible = shown.polhode;
-    const all = this.closed
-      ? [shown.trace, shown.herpolhode]
-      : [shown.trace, shown.herpolhode, shown.polhode];
-    if (!this.figure || !all.includes(true)) return;
+    for (const { name, ribbon } of [...this.open, ...this.closed]) ribbon.object.visible = shown[name];
+    if (!this.open.some(({ name }) => shown[name])) return;
     // The stretch depends on the time alone, so that equal times give equal pictures.
     const middle = this.tail * Math.round(time / this.tail);
-    if (middle !== this.middle) this.ask(this.figure, middle);
-    const since = time - this.middle;
-    this.trace.fade(since / this.tail, AHEAD);
-    this.herpolhode.fade(since / this.turns, AHEAD);
-    if (!this.closed) this.polhode.fade(since / this.turns, AHEAD);
+    if (middle !== this.middle) this.ask(middle);
+    for (const { ribbon, tail } of this.open) ribbon.fade((time - middle) / tail);
   }
 
-  dispose(): void {
-    this.trace.dispose();
-    this.herpolhode.dispose();
-    this.polhode.dispose();
-  }
-
-  private ask(figure: Figure, time: number): void {
+  private ask(time: number): void {
+    const { figure } = this;
     // Times are multiples of one step, so that successive stretches have the same points.
     const [first, last] = span(figure.about);
     const step = Math.min(3 * this.tail, last - first) / POINTS;
@@ -105,14 +98,15 @@ export class Paths implements Part {
     const rows = figure.motion.states(times);
     this.middle = time;
     this.asked = times.length;
-    const draw = (path: Ribbon, points: Float64Array, tail: number) => {
+    for (const path of this.open) {
+      const points = path.points(rows);
       const kept = thinned(points);
-      const parameters = rowsOf(times, kept, 1).map((t) => (t - time) / tail);
-      path.set(rowsOf(points, kept, 3), { parameters });
-    };
-    draw(this.trace, traced(rows, figure.traced), this.tail);
-    draw(this.herpolhode, taken(rows, State.omegaSpace, figure.rate), this.turns);
-    if (!this.closed) draw(this.polhode, taken(rows, State.omegaBody, LIFTED * figure.rate), this.turns);
+      const parameters = kept.map((k) => (times[k]! - time) / path.tail);
+      path.ribbon.set(
+        kept.map((k) => points[k]!),
+        { parameters },
+      );
+    }
   }
 }
 
@@ -140,11 +134,9 @@ function resolved(figure: Figure, tail: number): boolean {
   const { start, duration } = figure.about;
   const times = Float64Array.from({ length: count }, (_, k) => start.time + Math.min(k * step, duration));
   const path = traced(figure.motion.states(times), figure.traced);
-  const [before, after] = [new Vector3(), new Vector3()];
   let bent = 0;
-  for (let at = 3; at + 5 < path.length; at += 3) {
-    vector(path, at, before).sub(vector(path, at - 3, after));
-    vector(path, at + 3, after).sub(vector(path, at));
+  for (let k = 1; k < path.length - 1; k++) {
+    const [before, after] = [piece(path, k - 1), piece(path, k)];
     const seen = before.length() > 2e-3 && after.length() > 2e-3;
     if (seen && before.angleTo(after) > 0.3) bent++;
   }
@@ -159,47 +151,65 @@ function within(figure: Figure, duration: number): boolean {
 }
 
 /** The tips of a unit vector of the body in space. */
-function traced(rows: Float64Array, axis: Vector3): Float64Array {
-  const count = rows.length / ROW;
-  const points = new Float64Array(3 * count);
-  const [turn, point] = [new Quaternion(), new Vector3()];
-  for (let k = 0; k < count; k++) {
-    quaternion(rows, ROW * k + State.rotor, turn);
-    point
-      .copy(axis)
-      .applyQuaternion(turn)
-      .multiplyScalar(REACH)
-      .toArray(points, 3 * k);
-  }
-  return points;
+function traced(rows: Float64Array, axis: Vector3): Vector3[] {
+  return offsets(rows).map((at) =>
+    axis
+      .clone()
+      .applyQuaternion(quaternion(rows, at + State.rotor))
+      .multiplyScalar(REACH),
+  );
 }
 
-function taken(rows: Float64Array, at: number, scale: number): Float64Array {
-  const count = rows.length / ROW;
-  const points = new Float64Array(3 * count);
-  for (let k = 0; k < count; k++) {
-    for (let i = 0; i < 3; i++) points[3 * k + i] = scale * rows[ROW * k + at + i]!;
-  }
-  return points;
+function taken(rows: Float64Array, offset: number, scale: number): Vector3[] {
+  return offsets(rows).map((at) => vector(rows, at + offset).multiplyScalar(scale));
+}
+
+function offsets(rows: Float64Array): number[] {
+  return Array.from({ length: rows.length / ROW }, (_, k) => ROW * k);
 }
 
 /** A closed polhode. The speed of ω varies greatly near a saddle, so intervals are halved until points are close. */
-function polhodeOf(figure: Figure, period: number): Float64Array {
+function polhodeOf(figure: Figure, period: number): Vector3[] {
   const near = 0.02;
   const start = figure.about.start.time;
-  let times = Float64Array.from({ length: 256 }, (_, k) => start + (period * k) / 256);
-  let points = taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
+  const at = (times: number[]) => taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
+  let times = Array.from({ length: 256 }, (_, k) => start + (period * k) / 256);
+  let points = at(times);
   for (let halved = 0; halved < 12 && times.length < POINTS / 4; halved++) {
-    const finer: number[] = [];
-    times.forEach((time, k) => {
-      const next = (k + 1) % times.length;
-      finer.push(time);
-      const gap = Math.hypot(...[0, 1, 2].map((i) => points[3 * next + i]! - points[3 * k + i]!));
-      if (gap > near) finer.push((time + (times[k + 1] ?? start + period)) / 2);
+    const finer = times.flatMap((time, k) => {
+      const gap = points[k]!.distanceTo(points[(k + 1) % times.length]!);
+      return gap > near ? [time, (time + (times[k + 1] ?? start + period)) / 2] : [time];
     });
     if (finer.length === times.length) break;
-    times = Float64Array.from(finer);
-    points = taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
+    times = finer;
+    points = at(times);
   }
   return points;
+}
+
+/** From a point of a path to the next one. */
+function piece(points: readonly Vector3[], k: number): Vector3 {
+  return points[k + 1]!.clone().sub(points[k]!);
+}
+
+/** Indices of the points that a smooth line needs: few where it is nearly straight. */
+function thinned(points: readonly Vector3[]): number[] {
+  const kept: number[] = [];
+  // The last kept point, and the direction of the path there.
+  let last = points[0]!;
+  let way: Vector3 | null = null;
+  points.forEach((here, k) => {
+    if (k > 0 && k < points.length - 1) {
+      const on = piece(points, k).normalize();
+      way ??= piece(points, 0).normalize();
+      if (on.length() === 0) return;
+      const chord = here.distanceTo(last);
+      // The height of an arc is 1/8 of its chord times its turn.
+      if (chord < LONGEST && chord * on.distanceTo(way) < 8 * NEAR) return;
+      way = on;
+    }
+    kept.push(k);
+    last = here;
+  });
+  return kept;
 }

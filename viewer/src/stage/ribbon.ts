@@ -1,5 +1,6 @@
 import {
   Color,
+  type ColorRepresentation,
   DoubleSide,
   GreaterDepth,
   Group,
@@ -8,11 +9,11 @@ import {
   BufferAttribute,
   BufferGeometry,
   LessEqualDepth,
-  Matrix4,
   Mesh,
   ShaderMaterial,
   Sphere,
-  Vector2,
+  type Vector2,
+  type Vector3,
 } from "three";
 
 /** The size of the canvas in CSS pixels, shared by all ribbons of a stage. */
@@ -24,7 +25,6 @@ const VERTEX = /* glsl */ `
   attribute vec3 before;
   attribute vec3 after;
   attribute vec2 along;
-  uniform mat4 onto;
   uniform vec2 screen;
   uniform float width;
   varying float parameter;
@@ -34,6 +34,7 @@ const VERTEX = /* glsl */ `
   }
 
   void main() {
+    mat4 onto = projectionMatrix * modelViewMatrix;
     vec4 here = onto * vec4(position, 1.0);
     vec4 from = onto * vec4(before, 1.0);
     vec4 to = onto * vec4(after, 1.0);
@@ -55,7 +56,6 @@ const FRAGMENT = /* glsl */ `
   uniform vec3 color;
   uniform float opacity;
   uniform float now;
-  uniform float ahead;
   uniform bool fades;
   uniform float dash;
   varying float parameter;
@@ -65,7 +65,7 @@ const FRAGMENT = /* glsl */ `
     if (fades) {
       float age = now - parameter;
       float left = clamp(1.0 - abs(age), 0.0, 1.0);
-      alpha *= (age >= 0.0 ? left : ahead) * left;
+      alpha *= (age >= 0.0 ? left : 0.22) * left;
     }
     if (dash > 0.0 && fract(parameter / dash) > 0.55) discard;
     if (alpha < 0.004) discard;
@@ -76,8 +76,6 @@ const FRAGMENT = /* glsl */ `
 
 /** Values per vertex: the point, the side (−1 or 1) and the parameter. */
 const STRIDE = 5;
-/** Maximum number of points of hidden parts of a line. */
-const COARSE = 600;
 
 export interface RibbonStyle {
   /** CSS pixels. */
@@ -92,24 +90,19 @@ export interface RibbonStyle {
 
 /**
  * A line of constant width in pixels: one strip of triangles, joined at the bends, so that translucent lines have no
- * dark dots between segments. It can fade with a parameter along the line: from `now` back over one unit, and with the
- * opacity `ahead` forward over one.
+ * dark dots between segments. It can fade with a parameter along the line: from `now` back over one unit, and
+ * paler forward over one.
  */
 export class Ribbon {
   readonly object = new Group();
   /** Number of points. */
   count = 0;
-  private readonly color = { value: new Color() };
-  private readonly onto = { value: new Matrix4() };
   private readonly now = { value: 0 };
-  private readonly ahead = { value: 0 };
   private readonly fades = { value: false };
-  private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[] = [];
-  private parameters: ArrayLike<number> = [];
-  /** The step of each strip, in points. */
-  private steps: number[] = [];
+  private readonly meshes: Mesh[] = [];
 
-  constructor(screen: Screen, style: RibbonStyle) {
+  constructor(screen: Screen, colour: ColorRepresentation, style: RibbonStyle) {
+    const color = { value: new Color(colour) };
     const opacity = style.opacity ?? 1;
     const passes: [number, typeof LessEqualDepth | typeof GreaterDepth][] = [[opacity, LessEqualDepth]];
     if (style.behind) passes.push([opacity * style.behind, GreaterDepth]);
@@ -118,13 +111,11 @@ export class Ribbon {
         vertexShader: VERTEX,
         fragmentShader: FRAGMENT,
         uniforms: {
-          onto: this.onto,
           screen,
           width: { value: style.width },
-          color: this.color,
+          color,
           opacity: { value: seen },
           now: this.now,
-          ahead: this.ahead,
           fades: this.fades,
           dash: { value: style.dash ?? 0 },
         },
@@ -135,13 +126,6 @@ export class Ribbon {
       });
       const mesh = new Mesh(new BufferGeometry(), material);
       mesh.frustumCulled = false;
-      // One matrix product here instead of one per vertex.
-      mesh.onBeforeRender = (_, __, camera) => {
-        this.onto.value
-          .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
-          .multiply(mesh.matrixWorld);
-        material.uniformsNeedUpdate = true;
-      };
       mesh.renderOrder = style.order ?? 2;
       mesh.visible = false;
       this.meshes.push(mesh);
@@ -149,78 +133,46 @@ export class Ribbon {
     }
   }
 
-  /** Sets the points (n × 3) and their parameters, by default the length of the line up to them. */
-  set(points: ArrayLike<number>, options: { parameters?: ArrayLike<number>; closed?: boolean } = {}): void {
-    const closed = options.closed ?? false;
-    const points3 = points.length / 3;
-    const count = points3 + (closed && points3 > 0 ? 1 : 0);
-    const data = new Float32Array((count + 2) * 2 * STRIDE);
-    let length = 0;
+  /** Sets the points and their parameters, by default the length of the line up to them. */
+  set(points: readonly Vector3[], options: { parameters?: readonly number[]; closed?: boolean } = {}): void {
+    const { parameters, closed = false } = options;
+    const given = points.length;
+    this.count = given + (closed && given > 0 ? 1 : 0);
     // An additional point at each end: the shader needs the neighbours of each point.
-    for (let row = 0; row < count + 2; row++) {
-      const k = closed ? (row - 1 + points3) % points3 : Math.min(Math.max(row - 1, 0), count - 1);
-      const last = closed ? (k + points3 - 1) % points3 : Math.max(k - 1, 0);
-      if (row > 1) {
-        length += Math.hypot(
-          points[3 * k]! - points[3 * last]!,
-          points[3 * k + 1]! - points[3 * last + 1]!,
-          points[3 * k + 2]! - points[3 * last + 2]!,
-        );
-      }
-      const parameter = options.parameters ? options.parameters[k]! : length;
-      for (let side = 0; side < 2; side++) {
-        const at = (2 * row + side) * STRIDE;
-        for (let i = 0; i < 3; i++) data[at + i] = points[3 * k + i]!;
-        data[at + 3] = 2 * side - 1;
-        data[at + 4] = parameter;
-      }
+    const index = (row: number): number =>
+      closed ? (row - 1 + given) % given : Math.min(Math.max(row - 1, 0), given - 1);
+    const data = new Float32Array((this.count + 2) * 2 * STRIDE);
+    let length = 0;
+    for (let row = 0; row < this.count + 2 && given > 0; row++) {
+      const here = points[index(row)]!;
+      if (row > 1) length += here.distanceTo(points[index(row - 1)]!);
+      const parameter = parameters ? parameters[index(row)]! : length;
+      data.set([...here, -1, parameter, ...here, 1, parameter], 2 * STRIDE * row);
     }
-    this.count = count;
-    this.parameters = options.parameters ?? [];
     this.fades.value = false;
-    const vertices = new InterleavedBuffer(data, STRIDE);
-    this.steps = this.meshes.map((_, pass) => (pass === 0 ? 1 : Math.ceil(count / COARSE)));
-    this.meshes.forEach((mesh, pass) => {
-      mesh.geometry.dispose();
-      mesh.visible = count > 1;
-      mesh.geometry = mesh.visible ? strip(vertices, count, this.steps[pass]!) : new BufferGeometry();
-    });
-  }
-
-  paint(color: string | Color): void {
-    this.color.value.set(color);
-  }
-
-  /** Sets the increasing parameter at which the line is most opaque; only visible parts are drawn. */
-  fade(now: number, ahead: number): void {
-    this.fades.value = true;
-    this.now.value = now;
-    this.ahead.value = ahead;
-    const first = Math.max(firstAfter(this.parameters, now - 1) - 1, 0);
-    const last = Math.min(firstAfter(this.parameters, now + 1), this.count - 1);
-    this.meshes.forEach((mesh, pass) => {
-      const step = this.steps[pass]!;
-      const from = Math.floor(first / step);
-      mesh.geometry.setDrawRange(6 * from, 6 * Math.max(Math.ceil(last / step) - from, 0));
-    });
-  }
-
-  dispose(): void {
+    const seen = this.count > 1;
+    const geometry = seen ? strip(new InterleavedBuffer(data, STRIDE), this.count) : new BufferGeometry();
     for (const mesh of this.meshes) {
       mesh.geometry.dispose();
-      mesh.material.dispose();
+      mesh.geometry = geometry;
+      mesh.visible = seen;
     }
+  }
+
+  /** Sets the parameter at which the line is most opaque. */
+  fade(now: number): void {
+    this.fades.value = true;
+    this.now.value = now;
   }
 }
 
-/** A strip through every `step`-th point. Neighbours are in the same buffer, two vertices before and after. */
-function strip(vertices: InterleavedBuffer, count: number, step: number): BufferGeometry {
+/** A strip of triangles. The neighbours of a point are in the same buffer, two vertices before and after. */
+function strip(vertices: InterleavedBuffer, count: number): BufferGeometry {
   const geometry = new BufferGeometry();
-  const pieces = Math.ceil((count - 1) / step);
-  const index = new Uint32Array(6 * pieces);
-  for (let k = 0; k < pieces; k++) {
-    const [a, b] = [2 * k * step, 2 * Math.min((k + 1) * step, count - 1)];
-    index.set([a, a + 1, b, b, a + 1, b + 1], 6 * k);
+  const index = new Uint32Array(6 * (count - 1));
+  for (let k = 0; k < count - 1; k++) {
+    const a = 2 * k;
+    index.set([a, a + 1, a + 2, a + 2, a + 1, a + 3], 6 * k);
   }
   geometry.setAttribute("before", new InterleavedBufferAttribute(vertices, 3, 0));
   geometry.setAttribute("position", new InterleavedBufferAttribute(vertices, 3, 2 * STRIDE));
@@ -230,15 +182,4 @@ function strip(vertices: InterleavedBuffer, count: number, step: number): Buffer
   // Needed for the drawing order only; computing it would read beyond the end of the buffer.
   geometry.boundingSphere = new Sphere();
   return geometry;
-}
-
-/** The first index at which increasing numbers exceed a bound. */
-function firstAfter(numbers: ArrayLike<number>, bound: number): number {
-  let [low, high] = [0, numbers.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (numbers[middle]! > bound) high = middle;
-    else low = middle + 1;
-  }
-  return low;
 }

@@ -1,5 +1,5 @@
 import { batch, computed, effect, type ReadonlySignal, signal } from "@preact/signals";
-import { type About, State, type Triple } from "../core/core.ts";
+import { type About, sizeAt, State, type Triple } from "../core/core.ts";
 import { rateUnit, timeUnit } from "../format/units.ts";
 import { firstRow, type Model } from "../model/model.ts";
 import { type BodyChoice, bodyOf, bodyTable } from "./body.ts";
@@ -95,7 +95,7 @@ export class Controls {
     const three = (at: number): Triple => [row![at]!, row![at + 1]!, row![at + 2]!];
     const moves =
       row && !about.held && row.subarray(State.position, State.velocity + 3).some((part) => part !== 0);
-    this.momentum = row ? Math.hypot(...three(State.momentumSpace)) : 0;
+    this.momentum = row ? sizeAt(row, State.momentumSpace) : 0;
     const longest = Math.max(...(motion?.extents() ?? [1]), 2 * Math.hypot(...about.body.center_of_mass));
     this.size = Number(longest.toPrecision(2));
     batch(() => {

@@ -94,32 +94,37 @@ function suggestion(
   }
 }
 
-function parametersOf(argument: LawArgument, value: number): Parameter[] {
-  const { name, field, period, unit, shape } = argument;
-  const label = period ? "Period" : name;
+function parameter(
+  name: string,
+  label: string,
+  unit: Unit,
+  value: number,
+  range = around(value, 50),
+): Parameter {
+  return { name, label, unit, value, range };
+}
+
+function parametersOf({ name, field, period, unit, shape }: LawArgument, value: number): Parameter[] {
   const shown = period ? timeUnit(value) : si(unit.replace("^2", "²"), unit);
-  const size = { name: period || field || VALUE, label, unit: shown, value, range: around(value, 50) };
+  const size = parameter(period || field || VALUE, period ? "Period" : name, shown, value);
   if (shape !== "bivector" && shape !== "vector") return [size];
-  const range: Range = { min: 0, max: 2, scale: "linear" };
-  return [{ name: AXIS, label: "Plane", unit: si(""), value: 2, range }, size];
+  return [parameter(AXIS, "Plane", si(""), 2, { min: 0, max: 2, scale: "linear" }), size];
 }
 
 function gravity(about: About, size: number, moment: number, byPivot: boolean): LawForm {
   const label = "Gravity, on a pivot";
-  const parameter = (name: string, label: string, unit: Unit, value: number, range?: Range): Parameter => {
-    return { name, label, unit, value, range: range ?? around(value, 50) };
-  };
   if (!byPivot) {
     const held = about.heavy ? Math.hypot(...about.heavy) : neat(moment);
     return { name: WEIGHT, label, parameters: [parameter("weight", "m g l", si("N m"), held)] };
   }
   const sides: Range = { min: -size, max: size, scale: "linear" };
+  const pivot = pivotOf(about) ?? -size / 2;
   return {
     name: "gravity",
     label,
     parameters: [
       parameter("acceleration", "Acceleration", si("m/s²", "m/s^2"), acceleration(about)),
-      parameter("pivot", "Pivot along e₃", lengthUnit(size), pivotOf(about) ?? -size / 2, sides),
+      parameter("pivot", "Pivot along e₃", lengthUnit(size), pivot, sides),
     ],
   };
 }

@@ -1,4 +1,5 @@
 import type { About, Quadruple, Triple } from "../core/core.ts";
+import { typed } from "../format/numbers.ts";
 import { DEGREE, type Unit } from "../format/units.ts";
 import { table } from "./toml.ts";
 
@@ -66,7 +67,7 @@ export function startTable(start: StartChoice, rate: Unit): string {
 }
 
 function spinFormula({ plane, rate, off, toward }: Spin, unit: Unit): string {
-  const size = `${plane < 3 ? "" : "-"}${digits(rate / unit.size)} ${unit.scene}`;
+  const size = `${plane < 3 ? "" : "-"}${typed(rate / unit.size, 12)} ${unit.scene}`;
   const [axis, next, after] = [0, 1, 2].map((k) => PLANES[(plane + k) % 3]!);
   if (off === 0) return `${size} ${axis}`;
   const side = `cos(${angle(toward)}) ${next} + sin(${angle(toward)}) ${after}`;
@@ -78,11 +79,7 @@ function rotorFormula({ turn, tilt, roll }: Attitude): string {
   return `${rotor(turn, PLANES[2]!)} ${rotor(tilt, PLANES[0]!)} ${rotor(roll, PLANES[2]!)}`;
 }
 
+/** In twelve digits, which drops the rounding errors of the conversion from radians. */
 function angle(radians: number): string {
-  return `${digits(radians / DEGREE.size)} deg`;
-}
-
-/** Twelve digits, which drops the rounding errors of the conversion from radians. */
-function digits(number: number): string {
-  return String(Number(number.toPrecision(12)));
+  return `${typed(radians / DEGREE.size, 12)} deg`;
 }

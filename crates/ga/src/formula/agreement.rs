@@ -3,7 +3,7 @@
 //! [`term_size`] and [`tolerance`] hold for any coefficients; [`Agreement`] is that of single values over floats.
 
 use super::compile::program::{Id, Op, Program};
-use super::run::single::Given;
+use super::run::steps::Given;
 use crate::g3::functions::Function;
 use crate::g3::values::norm;
 use crate::graded::Graded;
@@ -45,9 +45,8 @@ impl Agreement {
                 step.op.operands().map(|id| (length(&values[id]), sizes[id])).collect();
             let length = match step.op {
                 Op::Map { input, .. } => match &inputs[input] {
-                    Given::Matrix(matrix) => norm(matrix),
                     Given::Determinant(determinant) => determinant.abs(),
-                    Given::Value(value) => length(value),
+                    given => norm(given.numbers()),
                 },
                 _ => length(value),
             };
@@ -81,26 +80,31 @@ fn length(value: &Graded) -> f64 {
     norm(value.components())
 }
 
-/// Arithmetic of sizes: of one value, or of a batch of any floats.
-pub trait Magnitude: Sized {
+/// An operation on two sizes.
+#[derive(Clone, Copy, Debug)]
+pub enum Arithmetic {
+    /// The sum.
+    Plus,
+    /// The product.
+    Times,
+    /// The quotient.
+    Over,
+    /// The larger of two.
+    Larger,
+    /// The smaller of a size and a number.
+    Smaller,
+}
+
+/// Sizes: of one value, or of a batch of any floats.
+pub trait Magnitude: Clone {
     /// Why an operation fails.
     type Error;
-    /// The sum.
-    fn plus(&self, other: &Self) -> Result<Self, Self::Error>;
-    /// One more.
-    fn plus_one(&self) -> Result<Self, Self::Error>;
-    /// The product.
-    fn times(&self, other: &Self) -> Result<Self, Self::Error>;
-    /// The quotient.
-    fn over(&self, other: &Self) -> Result<Self, Self::Error>;
-    /// The larger of two.
-    fn larger(&self, other: &Self) -> Result<Self, Self::Error>;
-    /// A multiple, at most `most`.
-    fn multiple(&self, factor: f64, most: f64) -> Result<Self, Self::Error>;
+    /// The result of an operation.
+    fn apply(&self, operation: Arithmetic, other: &Self) -> Result<Self, Self::Error>;
+    /// A number of the same floats.
+    fn number(&self, x: f64) -> Self;
     /// 1 in place of 0.
     fn nonzero(&self) -> Result<Self, Self::Error>;
-    /// The same.
-    fn same(&self) -> Self;
 }
 
 /// The size of the terms that make up a step, whose rounding is a few ulps of that, for floats of spacing `eps`.
@@ -108,53 +112,51 @@ pub trait Magnitude: Sized {
 /// `length` is the norm of the value, or of the matrix of a linear map; `operands` are norms and sizes. To first order
 /// `AB` changes by `A dB + dA B`, and functions stretch the rounding of their argument by their derivative.
 pub fn term_size<M: Magnitude>(op: &Op, length: &M, operands: &[(M, M)], eps: f64) -> Result<M, M::Error> {
+    use Arithmetic::{Larger, Over, Plus, Smaller, Times};
     let v = length;
-    let most = largest_angle(eps);
+    let plus = |a: &M, b: &M| a.apply(Plus, b);
+    let times = |a: &M, b: &M| a.apply(Times, b);
+    let over = |a: &M, b: &M| a.apply(Over, b);
+    let larger = |a: M, b: M| a.apply(Larger, &b);
+    let plus_one = |a: M| a.apply(Plus, &a.number(1.0));
+    let multiple =
+        |a: &M, factor: f64| times(a, &a.number(factor))?.apply(Smaller, &a.number(largest_angle(eps)));
     match (op, operands) {
-        (Op::Add(..) | Op::Subtract(..), [(_, s), (_, t)]) => s.plus(t),
+        (Op::Add(..) | Op::Subtract(..), [(_, s), (_, t)]) => plus(s, t),
         (
             Op::Negate(_) | Op::Reverse(_) | Op::Part(_) | Op::Dual(_) | Op::Undual(_) | Op::Norm(_),
             [(_, s)],
-        ) => Ok(s.same()),
-        (Op::Product(..) | Op::Compose(..), [(a, s), (b, t)]) => a.times(t)?.larger(&s.times(b)?),
-        (Op::Turn(..), [(a, s), (b, t)]) => a.times(a)?.times(t)?.larger(&a.times(s)?.times(b)?),
-        (Op::Divide(..), [(a, s), (b, t)]) => s.over(b)?.larger(&a.over(b)?.times(&t.over(b)?)?),
-        (Op::Function(Function::Inverse, _), [(_, s)]) => v.times(&v.times(s)?),
-        (Op::Function(Function::Log, _), [(a, s)]) => v.plus(&s.over(a)?),
-        (Op::Function(Function::Sqrt, _), [(a, s)]) => v.times(&s.over(&a.nonzero()?)?.plus_one()?),
-        (Op::Function(Function::Exp, _), [(_, s)]) => v.times(&s.multiple(1.0, most)?.plus_one()?),
-        (Op::RotorPower(_, n), [(_, s)]) => v.plus(&s.multiple(f64::from(*n).abs(), most)?),
-        (Op::Sin(_) | Op::Cos(_), [(_, s)]) => v.plus(&s.multiple(1.0, most)?),
-        (Op::Tan(_), [(_, s)]) => v.plus(&s.multiple(1.0, most)?.times(&v.times(v)?.plus_one()?)?),
-        (Op::Map { .. }, [(_, s)]) => s.times(v),
-        _ => Ok(v.same()),
+        ) => Ok(s.clone()),
+        (Op::Product(..) | Op::Compose(..), [(a, s), (b, t)]) => larger(times(a, t)?, times(s, b)?),
+        (Op::Turn(..), [(a, s), (b, t)]) => larger(times(&times(a, a)?, t)?, times(&times(a, s)?, b)?),
+        (Op::Divide(..), [(a, s), (b, t)]) => larger(over(s, b)?, times(&over(a, b)?, &over(t, b)?)?),
+        (Op::Function(Function::Inverse, _), [(_, s)]) => times(v, &times(v, s)?),
+        (Op::Function(Function::Log, _), [(a, s)]) => plus(v, &over(s, a)?),
+        (Op::Function(Function::Sqrt, _), [(a, s)]) => times(v, &plus_one(over(s, &a.nonzero()?)?)?),
+        (Op::Function(Function::Exp, _), [(_, s)]) => times(v, &plus_one(multiple(s, 1.0)?)?),
+        (Op::RotorPower(_, n), [(_, s)]) => plus(v, &multiple(s, f64::from(*n).abs())?),
+        (Op::Sin(_) | Op::Cos(_), [(_, s)]) => plus(v, &multiple(s, 1.0)?),
+        (Op::Tan(_), [(_, s)]) => plus(v, &times(&multiple(s, 1.0)?, &plus_one(times(v, v)?)?)?),
+        (Op::Map { .. }, [(_, s)]) => times(s, v),
+        _ => Ok(v.clone()),
     }
 }
 
 impl Magnitude for f64 {
     type Error = Infallible;
-    fn plus(&self, other: &f64) -> Result<f64, Infallible> {
-        Ok(self + other)
+    fn apply(&self, operation: Arithmetic, other: &f64) -> Result<f64, Infallible> {
+        Ok(match operation {
+            Arithmetic::Plus => self + other,
+            Arithmetic::Times => self * other,
+            Arithmetic::Over => self / other,
+            Arithmetic::Larger => self.max(*other),
+            Arithmetic::Smaller => self.min(*other),
+        })
     }
-    fn plus_one(&self) -> Result<f64, Infallible> {
-        Ok(self + 1.0)
-    }
-    fn times(&self, other: &f64) -> Result<f64, Infallible> {
-        Ok(self * other)
-    }
-    fn over(&self, other: &f64) -> Result<f64, Infallible> {
-        Ok(self / other)
-    }
-    fn larger(&self, other: &f64) -> Result<f64, Infallible> {
-        Ok(self.max(*other))
-    }
-    fn multiple(&self, factor: f64, most: f64) -> Result<f64, Infallible> {
-        Ok((self * factor).min(most))
+    fn number(&self, x: f64) -> f64 {
+        x
     }
     fn nonzero(&self) -> Result<f64, Infallible> {
         Ok(if *self == 0.0 { 1.0 } else { *self })
-    }
-    fn same(&self) -> f64 {
-        *self
     }
 }

@@ -27,14 +27,15 @@ mod run;
 pub mod session;
 mod syntax;
 
-pub use agreement::{Agreement, Magnitude, term_size, tolerance};
+pub use agreement::{Agreement, Arithmetic, Magnitude, term_size, tolerance};
 pub use compile::define::{define, heading};
 pub use compile::program::{Id, Input, InputKind, Op, Program, Step};
 pub use compile::{compile, types};
 pub use print::Style;
 pub use run::RowError;
 pub use run::side_by_side::Beside;
-pub use run::single::{Given, Runner};
+pub use run::single::Runner;
+pub use run::steps::Given;
 pub use syntax::names::{Definition, Meaning, Names, Type};
 pub use syntax::number::Number;
 pub use syntax::parser::parse;

@@ -1,5 +1,6 @@
 //! The centre of G3: elements `x + yI` commute with everything and multiply as complex numbers.
 
+use super::values::operator;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,46 +74,21 @@ impl Complex {
     }
 }
 
-impl Add for Complex {
-    type Output = Complex;
-    fn add(self, o: Complex) -> Complex {
-        Complex::new(self.re + o.re, self.im + o.im)
+operator!(Add::add(a: Complex, b: Complex) -> Complex { Complex::new(a.re + b.re, a.im + b.im) });
+operator!(Sub::sub(a: Complex, b: Complex) -> Complex { Complex::new(a.re - b.re, a.im - b.im) });
+operator!(Neg::neg(a: Complex) -> Complex { Complex::new(-a.re, -a.im) });
+operator!(Mul::mul(a: Complex, b: Complex) -> Complex {
+    Complex::new(a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re)
+});
+// Smith's division, without intermediate overflow.
+operator!(Div::div(a: Complex, b: Complex) -> Complex {
+    if b.re.abs() >= b.im.abs() {
+        let t = b.im / b.re;
+        let d = b.re + b.im * t;
+        Complex::new((a.re + a.im * t) / d, (a.im - a.re * t) / d)
+    } else {
+        let t = b.re / b.im;
+        let d = b.re * t + b.im;
+        Complex::new((a.re * t + a.im) / d, (a.im * t - a.re) / d)
     }
-}
-
-impl Sub for Complex {
-    type Output = Complex;
-    fn sub(self, o: Complex) -> Complex {
-        Complex::new(self.re - o.re, self.im - o.im)
-    }
-}
-
-impl Neg for Complex {
-    type Output = Complex;
-    fn neg(self) -> Complex {
-        Complex::new(-self.re, -self.im)
-    }
-}
-
-impl Mul for Complex {
-    type Output = Complex;
-    fn mul(self, o: Complex) -> Complex {
-        Complex::new(self.re * o.re - self.im * o.im, self.re * o.im + self.im * o.re)
-    }
-}
-
-impl Div for Complex {
-    type Output = Complex;
-    /// Smith's division, without intermediate overflow.
-    fn div(self, o: Complex) -> Complex {
-        if o.re.abs() >= o.im.abs() {
-            let t = o.im / o.re;
-            let d = o.re + o.im * t;
-            Complex::new((self.re + self.im * t) / d, (self.im - self.re * t) / d)
-        } else {
-            let t = o.re / o.im;
-            let d = o.re * t + o.im;
-            Complex::new((self.re * t + self.im) / d, (self.im * t - self.re) / d)
-        }
-    }
-}
+});

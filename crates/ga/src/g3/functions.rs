@@ -14,7 +14,7 @@ use super::complex::Complex;
 use super::rotor::Rotor;
 use super::values::{Multivector, scale_of};
 use crate::error::MathError;
-use crate::product::Grades;
+use crate::product::{Grades, named};
 use std::f64::consts::PI;
 
 /// Beyond this `e^(ζ+√w) ± e^(ζ−√w)` do not cancel.
@@ -48,38 +48,21 @@ fn in_range(m: Multivector) -> Result<Multivector, MathError> {
     if m.0.iter().all(|x| x.is_finite()) { Ok(m) } else { Err(MathError::Overflow) }
 }
 
-/// A function of one multivector, and the grades its values may hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Function {
-    /// [`Multivector::inverse`].
-    Inverse,
-    /// [`Multivector::exp`].
-    Exp,
-    /// [`Multivector::log`].
-    Log,
-    /// [`Multivector::sqrt`].
-    Sqrt,
+named! {
+    /// A function of one multivector, and the grades its values may hold.
+    Function: 4 {
+        /// [`Multivector::inverse`].
+        Inverse "inverse",
+        /// [`Multivector::exp`].
+        Exp "exp",
+        /// [`Multivector::log`].
+        Log "log",
+        /// [`Multivector::sqrt`].
+        Sqrt "sqrt",
+    }
 }
 
 impl Function {
-    /// Every function.
-    pub const ALL: [Function; 4] = [Function::Inverse, Function::Exp, Function::Log, Function::Sqrt];
-
-    /// The function of this name: `inverse`, `exp`, `log`, `sqrt`.
-    pub fn from_name(name: &str) -> Option<Function> {
-        Function::ALL.into_iter().find(|f| f.name() == name)
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Function::Inverse => "inverse",
-            Function::Exp => "exp",
-            Function::Log => "log",
-            Function::Sqrt => "sqrt",
-        }
-    }
-
     /// Its value.
     pub fn apply(self, m: Multivector) -> Result<Multivector, MathError> {
         match self {

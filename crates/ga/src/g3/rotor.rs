@@ -6,7 +6,7 @@
 //! Since `B1 B2 = −B3` for the basis planes, the quaternion units are `i = −e2e3`, `j = −e3e1`,
 //! `k = −e1e2`, and the rotor of the quaternion `w + xi + yj + zk` is `w − x e2e3 − y e3e1 − z e1e2`.
 
-use super::values::{Bivector, Multivector, Vector, norm};
+use super::values::{Bivector, Multivector, Vector, norm, operator, scale_of};
 use crate::error::{MATRIX_TOLERANCE, MathError};
 use crate::rows::rotor_functions;
 use std::f64::consts::PI;
@@ -36,7 +36,7 @@ impl Rotor {
             return Err(MathError::ZeroRotor);
         }
         // Scaling by a power of two keeps the quotient accurate for subnormal components.
-        let scale = super::values::scale_of(&c);
+        let scale = scale_of(&c);
         let d = c.map(|x| x / scale);
         let n = norm(&d);
         let unit = (length - 1.0).abs() <= 4.0 * f64::EPSILON;
@@ -102,13 +102,9 @@ impl Rotor {
             return Err(MathError::NotFinite);
         }
         let column = |j: usize| Vector([m[0][j], m[1][j], m[2][j]]);
-        let mut deviation: f64 = 0.0;
-        for i in 0..3 {
-            for j in 0..3 {
-                let target = if i == j { 1.0 } else { 0.0 };
-                deviation = deviation.max((column(i).dot(column(j)) - target).abs());
-            }
-        }
+        let deviation_at = |(i, j)| (column(i).dot(column(j)) - f64::from(i == j)).abs();
+        let pairs = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+        let deviation = pairs.map(deviation_at).fold(0.0, f64::max);
         if deviation > MATRIX_TOLERANCE {
             return Err(MathError::NotOrthogonal { deviation });
         }
@@ -255,22 +251,12 @@ impl Rotor {
     }
 }
 
-impl Mul for Rotor {
-    type Output = Rotor;
-
-    /// `S*R`, which turns by `R` first; `AB = A·B + A×B` for bivectors.
-    fn mul(self, r: Rotor) -> Rotor {
-        let (s, a, t, b) = (self.scalar, self.bivector, r.scalar, r.bivector);
-        Rotor { scalar: s * t + a.dot(b), bivector: b * s + a * t + a.commutator(b) }
-    }
-}
-
-impl Neg for Rotor {
-    type Output = Rotor;
-    fn neg(self) -> Rotor {
-        Rotor { scalar: -self.scalar, bivector: -self.bivector }
-    }
-}
+// `S*R`, which turns by `R` first; `AB = A·B + A×B` for bivectors.
+operator!(Mul::mul(left: Rotor, right: Rotor) -> Rotor {
+    let (s, a, t, b) = (left.scalar, left.bivector, right.scalar, right.bivector);
+    Rotor { scalar: s * t + a.dot(b), bivector: b * s + a * t + a.commutator(b) }
+});
+operator!(Neg::neg(r: Rotor) -> Rotor { Rotor { scalar: -r.scalar, bivector: -r.bivector } });
 
 impl From<Rotor> for Multivector {
     fn from(r: Rotor) -> Multivector {
@@ -282,7 +268,7 @@ impl From<Rotor> for Multivector {
 
 /// The direction of three finite components that are not all zero.
 fn unit3(c: [f64; 3]) -> Option<[f64; 3]> {
-    let scale = super::values::scale_of(&c);
+    let scale = scale_of(&c);
     let d = c.map(|x| x / scale);
     let length = norm(&d);
     (length > 0.0 && length.is_finite()).then(|| d.map(|x| x / length))

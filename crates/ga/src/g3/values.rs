@@ -10,7 +10,9 @@
 //! (A [`crate::Rotor`] has its own module.) The products written out here are equal to the table's.
 
 use crate::product::{Grades, Plan, Product};
+use crate::simd::threads::Threads;
 use crate::table::G3;
+use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// A vector `x e1 + y e2 + z e3`.
@@ -29,48 +31,35 @@ pub struct Trivector(pub f64);
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Multivector(pub [f64; 8]);
 
+/// An operator of `std::ops` as a function of its one or two operands.
+macro_rules! operator {
+    ($trait:ident::$method:ident($a:ident: $left:ty $(, $b:ident: $right:ty)?) -> $output:ty $value:block) => {
+        impl $trait$(<$right>)? for $left {
+            type Output = $output;
+            fn $method(self $(, $b: $right)?) -> $output {
+                let $a = self;
+                $value
+            }
+        }
+    };
+}
+pub(super) use operator;
+
+/// The grade of each component of a multivector.
+pub(crate) const GRADE: [usize; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
+
 /// Componentwise sum, difference, negative, and product with a number.
 macro_rules! linear_space {
     ($type:ident) => {
-        impl Add for $type {
-            type Output = $type;
-            fn add(self, other: $type) -> $type {
-                $type(std::array::from_fn(|i| self.0[i] + other.0[i]))
-            }
-        }
+        operator!(Add::add(a: $type, b: $type) -> $type { $type(from_fn(|i| a.0[i] + b.0[i])) });
+        operator!(Sub::sub(a: $type, b: $type) -> $type { $type(from_fn(|i| a.0[i] - b.0[i])) });
+        operator!(Neg::neg(a: $type) -> $type { $type(a.0.map(|x| -x)) });
+        operator!(Mul::mul(a: $type, s: f64) -> $type { $type(a.0.map(|x| x * s)) });
+        operator!(Mul::mul(s: f64, a: $type) -> $type { a * s });
+        operator!(Div::div(a: $type, s: f64) -> $type { $type(a.0.map(|x| x / s)) });
         impl AddAssign for $type {
             fn add_assign(&mut self, other: $type) {
                 *self = *self + other;
-            }
-        }
-        impl Sub for $type {
-            type Output = $type;
-            fn sub(self, other: $type) -> $type {
-                $type(std::array::from_fn(|i| self.0[i] - other.0[i]))
-            }
-        }
-        impl Neg for $type {
-            type Output = $type;
-            fn neg(self) -> $type {
-                $type(self.0.map(|x| -x))
-            }
-        }
-        impl Mul<f64> for $type {
-            type Output = $type;
-            fn mul(self, s: f64) -> $type {
-                $type(self.0.map(|x| x * s))
-            }
-        }
-        impl Mul<$type> for f64 {
-            type Output = $type;
-            fn mul(self, a: $type) -> $type {
-                a * self
-            }
-        }
-        impl Div<f64> for $type {
-            type Output = $type;
-            fn div(self, s: f64) -> $type {
-                $type(self.0.map(|x| x / s))
             }
         }
         impl $type {
@@ -230,7 +219,7 @@ impl Multivector {
     pub fn product(self, product: Product, other: Multivector) -> Multivector {
         let plan = Plan::g3(product, Grades::ALL, Grades::ALL);
         let mut out = vec![0.0; plan.sizes.2];
-        plan.run(&self.0, &other.0, &mut out);
+        plan.run(Threads::ONE, &self.0, &other.0, &mut out);
         let mut result = Multivector::default();
         for (&k, x) in plan.grades.indices(&G3).iter().zip(out) {
             result.0[k] = x;
@@ -239,13 +228,12 @@ impl Multivector {
     }
 
     fn signed(self, factor: impl Fn(usize) -> f64) -> Multivector {
-        const GRADE: [usize; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
         // A dropped part is 0 even if it is NaN.
         let part = |i: usize| match factor(GRADE[i]) {
             0.0 => 0.0,
             f => f * self.0[i],
         };
-        Multivector(std::array::from_fn(part))
+        Multivector(from_fn(part))
     }
 }
 
@@ -267,13 +255,7 @@ impl From<Trivector> for Multivector {
     }
 }
 
-impl Mul for Multivector {
-    type Output = Multivector;
-
-    fn mul(self, other: Multivector) -> Multivector {
-        Multivector(geometric(self.0, other.0))
-    }
-}
+operator!(Mul::mul(a: Multivector, b: Multivector) -> Multivector { Multivector(geometric(a.0, b.0)) });
 
 /// The geometric product written out, terms in order of the left factor's blades.
 #[inline(always)]
@@ -293,68 +275,4 @@ pub(crate) fn geometric(m: [f64; 8], n: [f64; 8]) -> [f64; 8] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn basis(i: usize) -> Multivector {
-        let mut m = Multivector::default();
-        m.0[i] = 1.0;
-        m
-    }
-
-    #[test]
-    fn written_out_product_equals_the_table() {
-        for i in 0..8 {
-            for j in 0..8 {
-                let (sign, k) = G3.basis_product(i, j);
-                assert_eq!(basis(i) * basis(j), basis(k) * f64::from(sign), "{i} {j}");
-            }
-        }
-    }
-
-    /// The typed products on all pairs of basis elements of their grades; they are bilinear.
-    #[test]
-    fn typed_products_equal_the_table() {
-        for i in 0..3 {
-            for j in 0..3 {
-                let (a, b) = (basis(1 + i).vector_part(), basis(1 + j).vector_part());
-                let (p, q) = (basis(4 + i).bivector_part(), basis(4 + j).bivector_part());
-                let table = |product, x: Multivector, y: Multivector| x.product(product, y);
-                let (ma, mb, mp, mq) = (a.into(), b.into(), p.into(), q.into());
-                assert_eq!(Multivector::scalar(a.dot(b)), table(Product::Dot, ma, mb));
-                assert_eq!(Multivector::from(a.wedge(b)), table(Product::Wedge, ma, mb));
-                assert_eq!(Multivector::from(a.dot_bivector(q)), table(Product::Dot, ma, mq));
-                assert_eq!(Multivector::from(a.wedge_bivector(q)), table(Product::Wedge, ma, mq));
-                assert_eq!(Multivector::scalar(p.dot(q)), table(Product::Dot, mp, mq));
-                assert_eq!(Multivector::from(p.commutator(q)), table(Product::Commutator, mp, mq));
-                let minus_i = -basis(7);
-                assert_eq!(Multivector::from(a.cross(b)), minus_i * table(Product::Wedge, ma, mb));
-            }
-        }
-    }
-
-    #[test]
-    fn dual_and_involutions_follow_their_definitions() {
-        for i in 0..8 {
-            let m = basis(i);
-            assert_eq!(m.dual(), m * -basis(7));
-            assert_eq!(m.undual(), m * basis(7));
-            let r = G3.blades()[i].grade();
-            let sign = |exponent: usize| if exponent.is_multiple_of(2) { 1.0 } else { -1.0 };
-            assert_eq!(m.reverse(), m * sign(r * r.saturating_sub(1) / 2));
-            assert_eq!(m.grade_involution(), m * sign(r));
-            assert_eq!(m.clifford_conjugate(), m.reverse().grade_involution());
-            assert_eq!(m.grade(r), m);
-        }
-    }
-
-    #[test]
-    fn norm_spans_the_range_of_floats() {
-        for scale in [5e-324, 1e-310, 1e-200, 1.0, 1e200, 1e307] {
-            let norm = Vector([3.0 * scale, 4.0 * scale, 0.0]).norm();
-            assert!((norm / (5.0 * scale) - 1.0).abs() < 4e-16, "{scale} {norm}");
-        }
-        assert_eq!(Vector([f64::NEG_INFINITY, 1.0, 0.0]).norm(), f64::INFINITY);
-        assert!(Vector([f64::NAN, 1.0, 0.0]).norm().is_nan());
-    }
-}
+mod tests;

@@ -278,14 +278,12 @@ impl Calculus {
     /// that of Q or of `F∧F = 2⟨R⟩Q`, whichever has less rounding.
     fn unit_and_component(&self, r: &[f64], f: &[f64]) -> Option<(Vec<f64>, f64)> {
         let length = norm(f).powi(2);
-        let (unit, size, rounding) = if length < r[0].abs() {
-            let (unit, size) = unit_of_grade_4(&self.product(f, f));
-            (unit, size, self.tolerances.rounding * length)
+        let ((unit, size), scale) = if length < r[0].abs() {
+            (unit_of_grade_4(&self.product(f, f)), length)
         } else {
-            let (unit, size) = unit_of_grade_4(r);
-            (unit, size, self.tolerances.rounding * norm(r))
+            (unit_of_grade_4(r), norm(r))
         };
-        (size > rounding).then(|| {
+        (size > self.tolerances.rounding * scale).then(|| {
             let y = dot(r, &unit);
             (unit, y)
         })

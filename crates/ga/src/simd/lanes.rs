@@ -38,68 +38,42 @@ impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
     pub fn all(x: f64) -> Self {
         Lanes([x; W])
     }
+}
 
+/// Functions of a lane, for each of them.
+macro_rules! lane_functions {
+    ($($(#[$doc:meta])* $name:ident($x:ident $(, $other:ident)*) $value:expr;)*) => {
+        impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> { $(
+            $(#[$doc])*
+            #[inline(always)]
+            pub fn $name(self $(, $other: Self)*) -> Self {
+                let mut result = self;
+                for l in 0..W {
+                    let ($x, $($other),*) = (self.0[l], $($other.0[l]),*);
+                    result.0[l] = $value;
+                }
+                result
+            }
+        )* }
+    };
+}
+
+lane_functions! {
     /// `self · b + c`.
-    #[inline(always)]
-    pub fn times_plus(self, b: Self, c: Self) -> Self {
-        let mut result = c;
-        for l in 0..W {
-            result.0[l] = if FUSED { self.0[l].mul_add(b.0[l], c.0[l]) } else { self.0[l] * b.0[l] + c.0[l] };
-        }
-        result
-    }
-
+    times_plus(x, b, c) if FUSED { x.mul_add(b, c) } else { x * b + c };
     /// `c − self · b`.
-    #[inline(always)]
-    pub fn times_from(self, b: Self, c: Self) -> Self {
-        let mut result = c;
-        for l in 0..W {
-            result.0[l] =
-                if FUSED { (-self.0[l]).mul_add(b.0[l], c.0[l]) } else { c.0[l] - self.0[l] * b.0[l] };
-        }
-        result
-    }
-
+    times_from(x, b, c) if FUSED { (-x).mul_add(b, c) } else { c - x * b };
     /// Square roots.
-    #[inline(always)]
-    pub fn sqrt(self) -> Self {
-        let mut result = self;
-        for x in &mut result.0 {
-            *x = x.sqrt();
-        }
-        result
-    }
-
+    sqrt(x) x.sqrt();
     /// Magnitudes.
-    #[inline(always)]
-    pub fn abs(self) -> Self {
-        let mut result = self;
-        for x in &mut result.0 {
-            *x = x.abs();
-        }
-        result
-    }
-
+    abs(x) x.abs();
     /// The angle in [0, π/2] whose tangent is `self/|s|`, for `self >= 0` and not both 0, to a few relative roundings.
-    #[inline(always)]
-    pub fn angle(self, s: Self) -> Self {
-        let mut result = self;
-        for l in 0..W {
-            result.0[l] = double::angle(self.0[l], s.0[l]);
-        }
-        result
-    }
-
+    angle(x, s) double::angle(x, s);
     /// The larger of two; a NaN of `self` is lost.
-    #[inline(always)]
-    pub fn max(self, other: Self) -> Self {
-        let mut result = other;
-        for l in 0..W {
-            result.0[l] = if self.0[l] > other.0[l] { self.0[l] } else { other.0[l] };
-        }
-        result
-    }
+    max(x, other) if x > other { x } else { other };
+}
 
+impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
     /// `self` where the mask says so, else `other`.
     #[inline(always)]
     pub fn or(self, mask: &[bool; W], other: Self) -> Self {
@@ -233,91 +207,4 @@ pub fn mapped_back<const W: usize, const F: bool>(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Bivector, Rotor, Vector};
-
-    fn rotors() -> [[f64; 4]; 2] {
-        [[0.5, -0.25, 0.75, 1.0], [-0.3, 0.8, 0.1, -0.6]]
-            .map(|c| Rotor::from_components(c).unwrap().components())
-    }
-
-    /// The work of the tests, by each path: all products of two rotors and two vectors.
-    #[derive(Clone, Copy)]
-    struct Products;
-
-    const VECTORS: [[f64; 3]; 2] = [[0.3, -1.25, 2.0], [1.5, 0.2, -0.7]];
-
-    impl Work for Products {
-        type Output = Vec<[f64; 16]>;
-
-        #[inline(always)]
-        fn run<const FUSED: bool>(self) -> Vec<[f64; 16]> {
-            let [s, r] = rotors().map(|r| r.map(Lanes::<16, FUSED>::all));
-            let [a, b] = VECTORS.map(|v| v.map(Lanes::<16, FUSED>::all));
-            let m = matrix(&s);
-            let mut all = composed(&s, &r).to_vec();
-            all.extend(mapped(&m, &a));
-            all.extend(mapped_back(&m, &a));
-            all.extend(cross(&a, &b));
-            all.push(dot(&a, &b));
-            all.iter().map(|lanes| lanes.0).collect()
-        }
-    }
-
-    /// On every path they are those of the typed values, to a few roundings.
-    #[test]
-    fn products_match_single_values() {
-        let [s, r] = rotors().map(Rotor::from_unit_components);
-        let [a, b] = VECTORS.map(Vector);
-        let mut expected = (s * r).components().to_vec();
-        expected.extend(s.apply(a).0);
-        expected.extend(s.reverse().apply(a).0);
-        expected.extend(a.wedge(b).0);
-        expected.push(a.dot(b));
-        assert_eq!(s.apply_bivector(Bivector(a.0)).0, s.apply(a).0);
-        for path in Path::available() {
-            for (lanes, x) in path.run(Products).iter().zip(&expected) {
-                assert!(
-                    lanes.iter().all(|y| (y - x).abs() <= 16.0 * f64::EPSILON),
-                    "{path:?}: {x} {lanes:?}"
-                );
-            }
-        }
-    }
-
-    /// On every path within 2 ulps of the library's, from no angle to a quarter turn, and none for NaN.
-    #[test]
-    fn angles_match_the_standard_library() {
-        #[derive(Clone, Copy)]
-        struct Angles([f64; 16], [f64; 16]);
-
-        impl Work for Angles {
-            type Output = [f64; 16];
-
-            #[inline(always)]
-            fn run<const FUSED: bool>(self) -> [f64; 16] {
-                Lanes::<16, FUSED>(self.0).angle(Lanes(self.1)).0
-            }
-        }
-
-        let mut sizes: Vec<f64> = (0..=1000).map(|k| f64::from(k) / 1000.0).collect();
-        sizes.extend([1e-300, 1e-160, 1e-20, 1e-9, 1e-4, 1e3, 1e20, f64::NAN]);
-        for scalar in [1.0, -1.0, 0.3, -1e-3, 1e-12] {
-            for sizes in sizes.chunks(16) {
-                let mut lanes = [1.0; 16];
-                lanes[..sizes.len()].copy_from_slice(sizes);
-                for path in Path::available() {
-                    for (angle, size) in path.run(Angles(lanes, [scalar; 16])).iter().zip(lanes) {
-                        let exact = size.atan2(f64::abs(scalar));
-                        let near = (angle - exact).abs() <= 2.0 * f64::EPSILON * exact;
-                        assert!(
-                            near || angle.is_nan() && size.is_nan(),
-                            "{path:?}: {size}, {scalar}: {angle}"
-                        );
-                    }
-                }
-            }
-        }
-    }
-}
+mod tests;

@@ -14,7 +14,6 @@ pub(crate) mod map;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 pub(crate) mod payne_hanek;
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod squares;
 pub mod threads;
 pub(crate) mod traverse;
@@ -30,13 +29,8 @@ use neon::Registers;
 #[cfg(target_arch = "x86_64")]
 use x86::Registers;
 
-/// No registers by hand.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-pub trait Registers {}
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-impl Registers for f32 {}
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-impl Registers for f64 {}
+squares::registers!();
 
 /// Rows in a block: three operands of eight lanes stay in the first-level cache.
 pub(crate) const LANES: usize = 64;
@@ -100,56 +94,44 @@ pub(crate) trait Kernel<const W: usize = LANES>: Sync {
 
     /// The same if `mul_add` is one instruction; otherwise it is a slow call. For sums of many terms, and for rounding
     /// errors of products.
-    #[cfg_attr(target_family = "wasm", allow(dead_code))] // which has no such instruction
     #[inline(always)]
     fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         self.block(a, b, out);
     }
 }
 
-/// `N` independent chains of products and sums, as fast as the machine can.
-struct Chains<const N: usize>;
-
-impl<const N: usize> Chains<N> {
-    const LENGTH: usize = 1000;
-
-    #[inline(always)]
-    fn run(start: f64, multiply_add: impl Fn(f64) -> f64) -> f64 {
-        let mut chains: [f64; N] = std::array::from_fn(|i| start + i as f64);
-        for _ in 0..Self::LENGTH {
-            for x in &mut chains {
-                *x = multiply_add(*x);
-            }
+/// Applies a function of rows of constant lengths to each row of lanes.
+#[inline(always)]
+pub(crate) fn by_lanes<const A: usize, const B: usize, const OUT: usize, const W: usize>(
+    a: &[Lane<W>],
+    b: &[Lane<W>],
+    out: &mut [Lane<W>],
+    function: impl Fn([f64; A], [f64; B]) -> [f64; OUT],
+) {
+    let (a, b, out) = (&a[..A], &b[..B], &mut out[..OUT]);
+    for l in 0..W {
+        let value = function(std::array::from_fn(|k| a[k].0[l]), std::array::from_fn(|k| b[k].0[l]));
+        for k in 0..OUT {
+            out[k].0[l] = value[k];
         }
-        chains.iter().sum()
     }
 }
 
-impl<const N: usize> Kernel<8> for Chains<N> {
-    #[inline(always)]
-    fn block(&self, a: &[Lane<8>], b: &[Lane<8>], out: &mut [Lane<8>]) {
-        let (x, y) = (a[0].0[0], b[0].0[0]);
-        out[0].0[0] = Self::run(x, |z| z * x + y);
-    }
-
-    #[inline(always)]
-    fn fused_block(&self, a: &[Lane<8>], b: &[Lane<8>], out: &mut [Lane<8>]) {
-        let (x, y) = (a[0].0[0], b[0].0[0]);
-        out[0].0[0] = Self::run(x, |z| z.mul_add(x, y));
-    }
+/// A block of rows as work.
+struct Block<'a, K, const W: usize> {
+    kernel: &'a K,
+    factors: [&'a [Lane<W>]; 2],
+    out: &'a mut [Lane<W>],
 }
 
-/// Measures peak throughput: runs independent multiply-adds in registers and returns their number. 48 chains fit the
-/// registers of AVX2, 96 hide the latency of AVX-512.
-#[doc(hidden)]
-pub fn multiply_adds(many: bool) -> usize {
-    fn run<const N: usize>() -> usize {
-        let (a, mut out) = (std::hint::black_box([Lane::filled(0.999)]), [Lane::filled(0.0)]);
-        Path::best().apply(&Chains::<N>, &a, &a, &mut out);
-        std::hint::black_box(out);
-        N * Chains::<N>::LENGTH
+impl<K: Kernel<W>, const W: usize> Work for Block<'_, K, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let [a, b] = self.factors;
+        if FUSED { self.kernel.fused_block(a, b, self.out) } else { self.kernel.block(a, b, self.out) }
     }
-    if many { run::<96>() } else { run::<48>() }
 }
 
 /// An instruction set that this machine has; it can only be obtained by detection.
@@ -165,6 +147,25 @@ enum Level {
     Avx512,
     #[cfg(target_arch = "aarch64")]
     Neon,
+}
+
+/// Calls a function of the module of a path, or does without. It must suit the arguments; its instructions were
+/// detected.
+macro_rules! by_path {
+    ($path:expr, $function:ident($($argument:expr),*), $portable:expr) => {
+        match $path.0 {
+            Level::Portable => $portable,
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::avx2::$function($($argument),*) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::avx512::$function($($argument),*) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::$function($($argument),*) },
+        }
+    };
 }
 
 impl Path {
@@ -198,13 +199,7 @@ impl Path {
 
     /// Whether it can write past the caches.
     pub fn streams(self) -> bool {
-        match self.0 {
-            Level::Portable => false,
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 | Level::Avx512 => true,
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon => false,
-        }
+        cfg!(target_arch = "x86_64") && !self.is_portable()
     }
 
     /// Applies a kernel to a block.
@@ -215,51 +210,19 @@ impl Path {
         b: &[Lane<W>],
         out: &mut [Lane<W>],
     ) {
-        match self.0 {
-            Level::Portable => kernel.block(a, b, out),
-            // SAFETY: the instructions were detected.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => unsafe { x86::apply_avx2(kernel, a, b, out) },
-            // SAFETY: the instructions were detected.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => unsafe { x86::apply_avx512(kernel, a, b, out) },
-            // SAFETY: the instructions were detected.
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon => unsafe { neon::apply_neon(kernel, a, b, out) },
-        }
+        self.run(Block { kernel, factors: [a, b], out });
     }
 
     /// Does work that is compiled for this path.
     pub fn run<T: Work>(self, work: T) -> T::Output {
-        match self.0 {
-            Level::Portable => work.run::<BUILT_WITH_FMA>(),
-            // SAFETY: the instructions were detected.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => unsafe { x86::run_avx2(work) },
-            // SAFETY: the instructions were detected.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => unsafe { x86::run_avx512(work) },
-            // SAFETY: the instructions were detected.
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon => unsafe { neon::run_neon(work) },
-        }
+        by_path!(self, run(work), work.run::<BUILT_WITH_FMA>())
     }
 
     /// Transposes at most `W` rows of `lanes.len()` numbers into lanes; places beyond the rows are unchanged.
     pub fn gather<T: Element, const W: usize>(self, rows: &[T], lanes: &mut [Lane<W>]) {
         assert!(!lanes.is_empty() && rows.len() <= lanes.len() * W);
-        let done = match self.0 {
-            Level::Portable => 0,
-            // SAFETY: the instructions were detected, and the numbers fit the lanes.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => unsafe { x86::gather_avx2(rows, lanes) },
-            // SAFETY: the instructions were detected, and the numbers fit the lanes.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => unsafe { x86::gather_avx512(rows, lanes) },
-            // SAFETY: the instructions were detected, and the numbers fit the lanes.
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon => unsafe { neon::gather_neon(rows, lanes) },
-        };
+        // The numbers fit the lanes.
+        let done = by_path!(self, gather(rows, lanes), 0);
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact(size).enumerate() {
             for (lane, &x) in lanes.iter_mut().zip(values) {
@@ -280,18 +243,8 @@ impl Path {
     /// Turns lanes into rows: the inverse of [`Path::gather`].
     pub fn scatter<T: Element, const W: usize>(self, lanes: &[Lane<W>], rows: &mut [T]) {
         assert!(!lanes.is_empty() && rows.len() <= lanes.len() * W);
-        let done = match self.0 {
-            Level::Portable => 0,
-            // SAFETY: the instructions were detected, and the numbers fit the lanes.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => unsafe { x86::scatter_avx2(lanes, rows) },
-            // SAFETY: the instructions were detected, and the numbers fit the lanes.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => unsafe { x86::scatter_avx512(lanes, rows) },
-            // SAFETY: the instructions were detected, and the numbers fit the lanes.
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon => unsafe { neon::scatter_neon(lanes, rows) },
-        };
+        // The numbers fit the lanes.
+        let done = by_path!(self, scatter(lanes, rows), 0);
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact_mut(size).enumerate() {
             for (x, lane) in values.iter_mut().zip(lanes) {
@@ -304,17 +257,8 @@ impl Path {
     /// [`Path::fence`] completes it.
     pub fn stream<T: Element>(self, from: &[T], to: &mut [T]) {
         assert!(from.len() == to.len() && to.len().is_multiple_of(in_line::<T>()) && to_next_line(to) == 0);
-        match self.0 {
-            Level::Portable => to.copy_from_slice(from),
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon => to.copy_from_slice(from),
-            // SAFETY: the instructions were detected; lengths and alignment are as they must be.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => unsafe { x86::stream_avx2(from, to) },
-            // SAFETY: the instructions were detected; lengths and alignment are as they must be.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => unsafe { x86::stream_avx512(from, to) },
-        }
+        // Lengths and alignment are as they must be.
+        by_path!(self, stream(from, to), to.copy_from_slice(from));
     }
 
     /// Completes what was streamed, before anything that follows.
@@ -335,54 +279,4 @@ pub(crate) fn to_next_line<T>(numbers: &[T]) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn round_trip<T: Element + PartialEq + std::fmt::Debug, const W: usize>() {
-        for path in Path::available() {
-            for size in (1..=20).chain([32, 64]) {
-                for rows in (0..20).chain([31, 32, 33, 56, 57, 63, 64]).filter(|&rows| rows <= W) {
-                    let numbers: Vec<T> = (0..rows * size).map(|i| T::nearest(i as f64)).collect();
-                    let mut lanes = vec![Lane::<W>::filled(-1.0); size];
-                    path.gather(&numbers, &mut lanes);
-                    for (k, lane) in lanes.iter().enumerate() {
-                        for (row, &x) in lane.0.iter().enumerate() {
-                            let expected = if row < rows { (row * size + k) as f64 } else { -1.0 };
-                            assert_eq!(x, expected, "{path:?}, {rows} rows of {size}");
-                        }
-                    }
-                    let mut back = vec![T::nearest(f64::NAN); rows * size];
-                    path.scatter(&lanes, &mut back);
-                    assert_eq!(back, numbers, "{path:?}, {rows} rows of {size}");
-                }
-            }
-        }
-    }
-
-    /// Numbers of rows around the widths of the registers, and every number of components.
-    #[test]
-    fn gather_and_scatter_round_trip() {
-        round_trip::<f64, 64>();
-        round_trip::<f32, 64>();
-        round_trip::<f64, 8>();
-        round_trip::<f32, 32>();
-    }
-
-    fn streamed<T: Element + PartialEq + std::fmt::Debug>() {
-        let numbers: Vec<T> = (0..100).map(|i| T::nearest(f64::from(i))).collect();
-        for path in Path::available() {
-            let mut to = vec![T::nearest(0.0); 100];
-            let first = to_next_line(&to);
-            path.stream(&numbers[1..81], &mut to[first..first + 80]);
-            path.fence();
-            assert_eq!(to[first..first + 80], numbers[1..81]);
-            assert!(to[..first].iter().chain(&to[first + 80..]).all(|&x| x.into() == 0.0));
-        }
-    }
-
-    #[test]
-    fn streams_copy() {
-        streamed::<f64>();
-        streamed::<f32>();
-    }
-}
+mod tests;

@@ -35,12 +35,10 @@ impl<'a, T: Element> Factor<'a, T> {
 
     /// Those rows alone.
     pub fn piece(self, rows: Range<usize>) -> Factor<'a, T> {
-        let data =
-            if self.one { self.data } else { &self.data[rows.start * self.size..rows.end * self.size] };
-        Factor { data, ..self }
+        Factor { data: self.rows(rows.start, rows.len()), ..self }
     }
 
-    pub fn rows(&self, first: usize, count: usize) -> &[T] {
+    pub fn rows(&self, first: usize, count: usize) -> &'a [T] {
         if self.one { self.data } else { &self.data[first * self.size..(first + count) * self.size] }
     }
 
@@ -71,27 +69,35 @@ impl<'a, T> Target<'a, T> {
     }
 }
 
-/// Rows written block by block past the caches, in whole cache lines. The rest of a line stays in the buffer until the
-/// next block.
-struct Stream<'a, T, const W: usize> {
+/// Rows written block by block: past the caches, in whole cache lines, where the rest of a line stays in the buffer until
+/// the next block; or without a buffer, as they come.
+struct Writer<'a, T, const W: usize> {
     path: Path,
+    /// The lanes that it writes.
+    lanes: Range<usize>,
     out: &'a mut [T],
     written: usize,
-    buffer: Vec<Lane<W>>,
+    buffer: Option<Vec<Lane<W>>>,
     waiting: usize,
 }
 
-impl<'a, T: Element, const W: usize> Stream<'a, T, W> {
-    fn new(path: Path, target: &'a mut Target<T>) -> Stream<'a, T, W> {
-        let buffer = vec![Lane::filled(0.0); target.size + 2];
-        Stream { path, out: target.data, written: 0, buffer, waiting: 0 }
+impl<'a, T: Element, const W: usize> Writer<'a, T, W> {
+    fn new(path: Path, streamed: bool, target: &'a mut Target<T>) -> Writer<'a, T, W> {
+        let buffer = streamed.then(|| vec![Lane::filled(0.0); target.size + 2]);
+        let lanes = target.at..target.at + target.size;
+        Writer { path, lanes, out: target.data, written: 0, buffer, waiting: 0 }
     }
 
     fn write(&mut self, lanes: &[Lane<W>], count: usize) {
-        let buffer = Lane::flat(&mut self.buffer);
+        let lanes = &lanes[self.lanes.clone()];
         let filled = self.waiting + count * lanes.len();
-        self.path.scatter(lanes, &mut buffer[self.waiting..filled]);
         let out = &mut self.out[self.written..self.written + filled];
+        let Some(buffer) = &mut self.buffer else {
+            self.written += filled;
+            return self.path.scatter(lanes, out);
+        };
+        let buffer = Lane::flat(buffer);
+        self.path.scatter(lanes, &mut buffer[self.waiting..filled]);
         // Numbers before the first whole line.
         let head = to_next_line(out).min(filled);
         let tail = (filled - head) % in_line::<T>();
@@ -103,8 +109,9 @@ impl<'a, T: Element, const W: usize> Stream<'a, T, W> {
     }
 
     fn finish(mut self) {
+        let Some(buffer) = &mut self.buffer else { return };
         let rest = &mut self.out[self.written..self.written + self.waiting];
-        rest.copy_from_slice(&Lane::flat(&mut self.buffer)[..self.waiting]);
+        rest.copy_from_slice(&Lane::flat(buffer)[..self.waiting]);
         self.path.fence();
     }
 }
@@ -117,30 +124,15 @@ pub(crate) fn by_blocks<T: Element, const W: usize>(
     targets: &mut [Target<T>],
     mut work: impl FnMut(usize, usize, &mut [Lane<W>]) -> ControlFlow<()>,
 ) {
-    let blocks = (0..total).step_by(W).map(|first| (first, W.min(total - first)));
-    if streamed {
-        let places: Vec<Range<usize>> = targets.iter().map(|t| t.at..t.at + t.size).collect();
-        let mut streams: Vec<_> = targets.iter_mut().map(|target| Stream::new(path, target)).collect();
-        for (first, count) in blocks {
-            if work(first, count, lanes).is_break() {
-                break;
-            }
-            for (stream, place) in streams.iter_mut().zip(&places) {
-                stream.write(&lanes[place.clone()], count);
-            }
+    let mut writers: Vec<_> = targets.iter_mut().map(|target| Writer::new(path, streamed, target)).collect();
+    for first in (0..total).step_by(W) {
+        let count = W.min(total - first);
+        if work(first, count, lanes).is_break() {
+            break;
         }
-        streams.into_iter().for_each(Stream::finish);
-    } else {
-        for (first, count) in blocks {
-            if work(first, count, lanes).is_break() {
-                break;
-            }
-            for target in &mut *targets {
-                let rows = &mut target.data[first * target.size..(first + count) * target.size];
-                path.scatter(&lanes[target.at..target.at + target.size], rows);
-            }
-        }
+        writers.iter_mut().for_each(|writer| writer.write(lanes, count));
     }
+    writers.into_iter().for_each(Writer::finish);
 }
 
 /// Applies a kernel to the rows one by one.

@@ -2,7 +2,9 @@
 
 use super::operators::{equal, function, infix, infix_right, named, sum, turned};
 use super::signature::{Algebra, g3};
-use super::value::{Multivector, Object, Rotor, Storage, number, one, row, storage, unit_rotor, wrap};
+use super::value::{
+    Any, Multivector, Object, Rotor, Storage, This, number, one, row, storage, unit_rotor, wrap,
+};
 use numpy::PyArray1;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
@@ -19,8 +21,8 @@ impl Multivector {
     #[pyo3(signature = (*_values, **_named))]
     fn new(
         cls: &Bound<'_, PyType>,
-        _values: &Bound<'_, PyAny>,
-        _named: Option<&Bound<'_, PyAny>>,
+        _values: Any<'_, '_>,
+        _named: Option<Any<'_, '_>>,
     ) -> PyResult<Multivector> {
         Err(no_constructor(cls))
     }
@@ -58,7 +60,7 @@ impl Multivector {
     /// A single value of 3-d space from a list or tuple of floats, or integers that floats represent, one for each
     /// component of the grades; None for anything else.
     #[staticmethod]
-    fn _of_numbers<'py>(py: Python<'py>, numbers: &Bound<'py, PyAny>, grades: u16) -> Object<'py> {
+    fn _of_numbers<'py>(py: Python<'py>, numbers: Any<'_, 'py>, grades: u16) -> Object<'py> {
         match row(numbers).and_then(|(row, count)| Graded::new(&row[..count], Grades(grades))) {
             Some(value) => one(py, value),
             None => Ok(py.None().into_bound(py)),
@@ -85,11 +87,11 @@ impl Multivector {
         }
     }
 
-    fn __mul__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __mul__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         infix(slf, Product::Geometric, other)
     }
 
-    fn __rmul__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __rmul__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         infix_right(slf, Product::Geometric, other)
     }
 
@@ -98,11 +100,11 @@ impl Multivector {
     /// ``a + b ^ c`` is ``(a + b) ^ c``, and ``I * a ^ b`` is ``(I * a) ^ b``. Put brackets around it, or call
     /// the method: ``A.wedge(B)``.
     #[pyo3(signature = (other, /))]
-    fn _xor<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn _xor<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         infix(slf, Product::Wedge, other)
     }
 
-    fn __rxor__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __rxor__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         infix_right(slf, Product::Wedge, other)
     }
 
@@ -111,31 +113,31 @@ impl Multivector {
     /// ``a + b | c`` is ``(a + b) | c``, and ``a | B * c`` is ``a | (B * c)``. Put brackets around it, or call
     /// the method: ``A.dot(B)``.
     #[pyo3(signature = (other, /))]
-    fn _or<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn _or<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         infix(slf, Product::Dot, other)
     }
 
-    fn __ror__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __ror__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         infix_right(slf, Product::Dot, other)
     }
 
-    fn __add__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __add__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         sum(slf, other, "_add", |x, y| x + y)
     }
 
-    fn __radd__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __radd__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         sum(slf, other, "_add", |x, y| y + x)
     }
 
-    fn __sub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __sub__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         sum(slf, other, "_subtract", |x, y| x - y)
     }
 
-    fn __rsub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __rsub__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         sum(slf, other, "_subtract_from", |x, y| y - x)
     }
 
-    fn __truediv__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __truediv__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         match (slf.get().single(), number(other)) {
             (Some(a), Some(x)) if x != 0.0 => one(slf.py(), a.map(|y| y / x)),
             _ => slf.call_method1(intern!(slf.py(), "_divide"), (other,)),
@@ -162,7 +164,7 @@ impl Multivector {
     }
 
     /// Return the part of grade k; zero if there is none.
-    fn grade<'py>(slf: &Bound<'py, Self>, k: &Bound<'py, PyAny>) -> Object<'py> {
+    fn grade<'py>(slf: &Bound<'py, Self>, k: Any<'_, 'py>) -> Object<'py> {
         let whole: Option<u16> = k.cast_exact::<PyInt>().ok().and_then(|k| k.extract().ok());
         match (slf.get().single(), whole) {
             (Some(value), Some(k @ 0..=3)) => one(slf.py(), value.with_grades(Grades(1 << k))),
@@ -171,14 +173,14 @@ impl Multivector {
     }
 
     /// Exact equality of all components: a bool, or an array of the batch shape.
-    fn __eq__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __eq__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         match equal(slf, other) {
             Some(same) => Ok(PyBool::new(slf.py(), same).to_owned().into_any()),
             None => slf.call_method1(intern!(slf.py(), "_equals"), (other,)),
         }
     }
 
-    fn __ne__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __ne__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
         match equal(slf, other) {
             Some(same) => Ok(PyBool::new(slf.py(), !same).to_owned().into_any()),
             None => slf.call_method1(intern!(slf.py(), "_differs"), (other,)),
@@ -217,49 +219,37 @@ impl Multivector {
     /// The result is a view of it. It must not overlap the factors.
     #[pyo3(signature = (other, *, out=None))]
     fn geometric_product<'py>(
-        slf: &Bound<'py, Self>,
-        other: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyAny>>,
+        slf: This<'_, 'py>,
+        other: Any<'_, 'py>,
+        out: Option<Any<'_, 'py>>,
     ) -> Object<'py> {
         named(slf, Product::Geometric, other, out)
     }
 
     /// ``A∧B``, the highest grade r + s of the product (handout eq. 1.10). `out` as in `geometric_product`.
     #[pyo3(signature = (other, *, out=None))]
-    fn wedge<'py>(
-        slf: &Bound<'py, Self>,
-        other: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyAny>>,
-    ) -> Object<'py> {
+    fn wedge<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>, out: Option<Any<'_, 'py>>) -> Object<'py> {
         named(slf, Product::Wedge, other, out)
     }
 
     /// ``A·B``, the lowest grade abs(r − s) of the product, scalars included: ``3·a = 3a``.
     #[pyo3(signature = (other, *, out=None))]
-    fn dot<'py>(
-        slf: &Bound<'py, Self>,
-        other: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyAny>>,
-    ) -> Object<'py> {
+    fn dot<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>, out: Option<Any<'_, 'py>>) -> Object<'py> {
         named(slf, Product::Dot, other, out)
     }
 
     /// ``A×B = ½(AB − BA)``; not the vector cross product, which is `cross`.
     #[pyo3(signature = (other, *, out=None))]
-    fn commutator<'py>(
-        slf: &Bound<'py, Self>,
-        other: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyAny>>,
-    ) -> Object<'py> {
+    fn commutator<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>, out: Option<Any<'_, 'py>>) -> Object<'py> {
         named(slf, Product::Commutator, other, out)
     }
 
     /// ``A⌋B``, grade s − r; zero where r > s.
     #[pyo3(signature = (other, *, out=None))]
     fn left_contraction<'py>(
-        slf: &Bound<'py, Self>,
-        other: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyAny>>,
+        slf: This<'_, 'py>,
+        other: Any<'_, 'py>,
+        out: Option<Any<'_, 'py>>,
     ) -> Object<'py> {
         named(slf, Product::LeftContraction, other, out)
     }
@@ -267,9 +257,9 @@ impl Multivector {
     /// ``A⌊B``, grade r − s; zero where r < s.
     #[pyo3(signature = (other, *, out=None))]
     fn right_contraction<'py>(
-        slf: &Bound<'py, Self>,
-        other: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyAny>>,
+        slf: This<'_, 'py>,
+        other: Any<'_, 'py>,
+        out: Option<Any<'_, 'py>>,
     ) -> Object<'py> {
         named(slf, Product::RightContraction, other, out)
     }
@@ -277,9 +267,9 @@ impl Multivector {
     /// ``⟨AB⟩``, grade 0.
     #[pyo3(signature = (other, *, out=None))]
     fn scalar_product<'py>(
-        slf: &Bound<'py, Self>,
-        other: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyAny>>,
+        slf: This<'_, 'py>,
+        other: Any<'_, 'py>,
+        out: Option<Any<'_, 'py>>,
     ) -> Object<'py> {
         named(slf, Product::Scalar, other, out)
     }
@@ -292,8 +282,8 @@ impl Rotor {
     #[pyo3(signature = (*_values, **_named))]
     fn new(
         cls: &Bound<'_, PyType>,
-        _values: &Bound<'_, PyAny>,
-        _named: Option<&Bound<'_, PyAny>>,
+        _values: Any<'_, '_>,
+        _named: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Rotor>> {
         Err(no_constructor(cls))
     }
@@ -315,7 +305,7 @@ impl Rotor {
         }
     }
 
-    fn __call__<'py>(slf: &Bound<'py, Self>, x: &Bound<'py, PyAny>) -> Object<'py> {
+    fn __call__<'py>(slf: &Bound<'py, Self>, x: Any<'_, 'py>) -> Object<'py> {
         turned(slf, x).unwrap_or_else(|| slf.call_method1(intern!(slf.py(), "_turn"), (x,)))
     }
 
@@ -324,11 +314,7 @@ impl Rotor {
     /// `out` receives the components of the result: a writable float array in C order of their shape. The
     /// result is a view of it. It must not overlap the operands.
     #[pyo3(signature = (x, *, out=None))]
-    fn apply<'py>(
-        slf: &Bound<'py, Self>,
-        x: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyAny>>,
-    ) -> Object<'py> {
+    fn apply<'py>(slf: &Bound<'py, Self>, x: Any<'_, 'py>, out: Option<Any<'_, 'py>>) -> Object<'py> {
         let here = if out.is_none() { turned(slf, x) } else { None };
         here.unwrap_or_else(|| slf.call_method1(intern!(slf.py(), "_turn"), (x, out)))
     }

@@ -1,21 +1,23 @@
 //! Operators of single values; the Python half of the type handles all other operands.
 
 use super::value::{
-    Multivector, Object, Operand, Rotor, Storage, number, one, one_rotor, operand, scalar, unit_rotor, wrap,
+    Any, Multivector, Object, Operand, Rotor, Storage, This, number, one, one_rotor, operand, scalar,
+    unit_rotor, wrap,
 };
 use crate::support::arrays::bad;
 use numpy::{PyArray1, PyArrayMethods};
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Graded, Multivector as FullMultivector};
 use pyo3::intern;
 use pyo3::prelude::*;
 
 /// `A op B` here for single values; by the method of the Python half for all others.
 pub(crate) fn product<'py>(
-    left: &Bound<'py, Multivector>,
+    left: This<'_, 'py>,
     product: Product,
-    right: &Bound<'py, PyAny>,
+    right: Any<'_, 'py>,
     fallback: impl FnOnce() -> Object<'py>,
 ) -> Object<'py> {
     let py = left.py();
@@ -36,9 +38,9 @@ pub(crate) fn product<'py>(
 
 /// The product of two single values of another algebra, rows of float64.
 pub(crate) fn product_of_rows<'py>(
-    left: &Bound<'py, Multivector>,
+    left: This<'_, 'py>,
     product: Product,
-    right: &Bound<'py, PyAny>,
+    right: Any<'_, 'py>,
 ) -> Option<Object<'py>> {
     let py = left.py();
     let (a, ga, algebra) = left.get().row(py)?;
@@ -49,7 +51,7 @@ pub(crate) fn product_of_rows<'py>(
     let plan = algebra.get().plan_of(product, ga, gb).ok()?;
     let out = PyArray1::zeros(py, plan.sizes.2, false);
     let mut target = out.readwrite();
-    plan.run(a.as_slice().ok()?, b.as_slice().ok()?, target.as_slice_mut().ok()?);
+    plan.run(Threads::ONE, a.as_slice().ok()?, b.as_slice().ok()?, target.as_slice_mut().ok()?);
     target.make_nonwriteable();
     let data = out.into_any().unbind();
     Some(wrap(py, Storage::Many { data, grades: plan.grades, algebra: algebra.clone_ref(py) }, false))
@@ -57,8 +59,8 @@ pub(crate) fn product_of_rows<'py>(
 
 /// `A + B` and `A − B` here for single values.
 pub(crate) fn sum<'py>(
-    left: &Bound<'py, Multivector>,
-    right: &Bound<'py, PyAny>,
+    left: This<'_, 'py>,
+    right: Any<'_, 'py>,
     name: &str,
     f: impl Fn(f64, f64) -> f64,
 ) -> Object<'py> {
@@ -72,20 +74,12 @@ pub(crate) fn sum<'py>(
 }
 
 /// An infix product: the method `_product` of the Python half may return NotImplemented.
-pub(crate) fn infix<'py>(
-    left: &Bound<'py, Multivector>,
-    kind: Product,
-    right: &Bound<'py, PyAny>,
-) -> Object<'py> {
+pub(crate) fn infix<'py>(left: This<'_, 'py>, kind: Product, right: Any<'_, 'py>) -> Object<'py> {
     product(left, kind, right, || left.call_method1(intern!(left.py(), "_product"), (kind.name(), right)))
 }
 
 /// `x op A` for a left factor x that is not a multivector.
-pub(crate) fn infix_right<'py>(
-    right: &Bound<'py, Multivector>,
-    kind: Product,
-    left: &Bound<'py, PyAny>,
-) -> Object<'py> {
+pub(crate) fn infix_right<'py>(right: This<'_, 'py>, kind: Product, left: Any<'_, 'py>) -> Object<'py> {
     if let (Some(b), Some(x)) = (right.get().single(), number(left)) {
         return one(right.py(), scalar(x).product(kind, b));
     }
@@ -94,10 +88,10 @@ pub(crate) fn infix_right<'py>(
 
 /// A named product, which may write to an array.
 pub(crate) fn named<'py>(
-    left: &Bound<'py, Multivector>,
+    left: This<'_, 'py>,
     kind: Product,
-    right: &Bound<'py, PyAny>,
-    out: Option<&Bound<'py, PyAny>>,
+    right: Any<'_, 'py>,
+    out: Option<Any<'_, 'py>>,
 ) -> Object<'py> {
     let general = || left.call_method1(intern!(left.py(), "_named"), (kind.name(), right, out));
     if out.is_some() { general() } else { product(left, kind, right, general) }
@@ -105,7 +99,7 @@ pub(crate) fn named<'py>(
 
 /// A function here for single values; by the method `_function` of the Python half for all others. Of a
 /// bivector, `exp` is a Rotor.
-pub(crate) fn function<'py>(value: &Bound<'py, Multivector>, f: Function) -> Object<'py> {
+pub(crate) fn function<'py>(value: This<'_, 'py>, f: Function) -> Object<'py> {
     let py = value.py();
     let Some(value) = value.get().single() else {
         return value.call_method1(intern!(py, "_function"), (f.name(),));
@@ -120,7 +114,7 @@ pub(crate) fn function<'py>(value: &Bound<'py, Multivector>, f: Function) -> Obj
 }
 
 /// Whether two single values have the same components; None if one is not a single value.
-pub(crate) fn equal(left: &Bound<'_, Multivector>, right: &Bound<'_, PyAny>) -> Option<bool> {
+pub(crate) fn equal(left: This<'_, '_>, right: Any<'_, '_>) -> Option<bool> {
     let a = left.get().single()?.full();
     match operand(right) {
         Operand::Value(b, _) => Some(a == b.full()),
@@ -130,7 +124,7 @@ pub(crate) fn equal(left: &Bound<'_, Multivector>, right: &Bound<'_, PyAny>) -> 
 }
 
 /// `R X ~R` of single values.
-pub(crate) fn turned<'py>(rotor: &Bound<'py, Rotor>, x: &Bound<'py, PyAny>) -> Option<Object<'py>> {
+pub(crate) fn turned<'py>(rotor: &Bound<'py, Rotor>, x: Any<'_, 'py>) -> Option<Object<'py>> {
     let rotor = rotor.as_super().get().single()?;
     match operand(x) {
         Operand::Value(value, unit) => {

@@ -59,14 +59,13 @@ impl Algebra {
         Ok(Arc::clone(plan))
     }
 
-    /// The functions of this algebra, with cached tables.
-    pub fn calculus(&self) -> &Calculus {
-        self.calculus.get_or_init(|| Calculus::new(&self.table))
-    }
-
-    /// The same functions, for components rounded to float32.
-    pub fn single_calculus(&self) -> &Calculus {
-        self.single_calculus.get_or_init(|| self.calculus().clone().rounded_to(f32::EPSILON.into()))
+    /// The functions of this algebra, with cached tables; `single` for components rounded to float32.
+    pub fn calculus(&self, single: bool) -> &Calculus {
+        let double = self.calculus.get_or_init(|| Calculus::new(&self.table));
+        if !single {
+            return double;
+        }
+        self.single_calculus.get_or_init(|| double.clone().rounded_to(f32::EPSILON.into()))
     }
 
     /// Whether it is the algebra of 3-d space.
@@ -88,17 +87,12 @@ impl Algebra {
 impl Algebra {
     #[new]
     fn new(p: usize, q: usize, r: usize) -> PyResult<Algebra> {
-        let signature = Signature { p, q, r };
         let n = p.saturating_add(q).saturating_add(r);
-        let table = if n > table::MAX_GENERATORS { None } else { table::Algebra::new(signature) };
-        let Some(table) = table else {
-            return Err(bad(format!(
-                "an algebra must have at most {} generators, got {p} + {q} + {r}",
-                table::MAX_GENERATORS
-            )));
-        };
+        let most = table::MAX_GENERATORS;
+        let table = if n > most { None } else { table::Algebra::new(Signature { p, q, r }) };
+        let too_many = || bad(format!("an algebra must have at most {most} generators, got {p} + {q} + {r}"));
         Ok(Algebra {
-            table,
+            table: table.ok_or_else(too_many)?,
             plans: Mutex::default(),
             calculus: OnceLock::new(),
             single_calculus: OnceLock::new(),
@@ -126,7 +120,7 @@ impl Algebra {
     fn _grades_of_function(&self, name: &str, grades: u16) -> PyResult<u16> {
         let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
         let grades = self.check(grades)?;
-        Ok(if self.is_g3() { f.grades(grades).0 } else { self.calculus().grades(f, grades).0 })
+        Ok(if self.is_g3() { f.grades(grades).0 } else { self.calculus(false).grades(f, grades).0 })
     }
 
     /// Where each basis element goes by the right complement, and with which sign.
@@ -135,7 +129,7 @@ impl Algebra {
         let image = |i: usize| {
             let mut element = vec![0.0; size];
             element[i] = 1.0;
-            let complement = self.calculus().right_complement(&element);
+            let complement = self.calculus(false).right_complement(&element);
             complement.into_iter().enumerate().find(|(_, x)| *x != 0.0).unwrap_or((i, 0.0))
         };
         (0..size).map(image).collect()

@@ -12,6 +12,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
 
 pub(crate) type Object<'py> = PyResult<Bound<'py, PyAny>>;
+pub(crate) type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+pub(crate) type This<'a, 'py> = &'a Bound<'py, Multivector>;
 
 pub(crate) enum Storage {
     /// A single value of 3-d space over float64.
@@ -83,7 +85,7 @@ pub(crate) fn operand<'a>(x: &'a Bound<'_, PyAny>) -> Operand<'a> {
 pub(crate) fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
     let mut row = [0.0; 8];
     let mut count = 0;
-    let mut take = |x: &Bound<'_, PyAny>| {
+    let mut take = |x: Bound<'_, PyAny>| {
         let x = x.cast_exact::<PyFloat>().map(|x| x.value()).ok().or_else(|| {
             let whole: i64 = x.cast_exact::<PyInt>().ok()?.extract().ok()?;
             (whole.unsigned_abs() <= 1 << 53).then_some(whole as f64)
@@ -92,14 +94,9 @@ pub(crate) fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
         count += 1;
         Some(())
     };
-    if let Ok(list) = numbers.cast_exact::<PyList>() {
-        for x in list.iter().take(9) {
-            take(&x)?;
-        }
-    } else {
-        for x in numbers.cast_exact::<PyTuple>().ok()?.iter().take(9) {
-            take(&x)?;
-        }
+    match numbers.cast_exact::<PyList>() {
+        Ok(list) => list.iter().try_for_each(&mut take)?,
+        Err(_) => numbers.cast_exact::<PyTuple>().ok()?.iter().try_for_each(&mut take)?,
     }
     Some((row, count))
 }
@@ -138,7 +135,7 @@ pub(crate) fn scalar(x: f64) -> Graded {
 /// NumPy array; any other as it is.
 pub(crate) fn storage<'py>(
     py: Python<'py>,
-    data: Bound<'py, PyAny>,
+    mut data: Bound<'py, PyAny>,
     grades: Grades,
     algebra: Option<Py<Algebra>>,
 ) -> PyResult<Storage> {
@@ -147,19 +144,10 @@ pub(crate) fn storage<'py>(
     if algebra.is(g3)
         && let Ok(components) = data.extract::<PyReadonlyArray1<'_, f64>>()
     {
-        let numbers = components.as_array();
-        let mut row = [0.0; 8];
-        let count = numbers.len().min(8);
-        for (slot, x) in row.iter_mut().zip(numbers) {
-            *slot = *x;
-        }
-        let fits = numbers.len() <= 8;
-        return match Graded::new(&row[..count], grades) {
-            Some(value) if fits => Ok(Storage::One(value)),
-            _ => Err(bad(format!("{} components do not fit the grades {:#b}", numbers.len(), grades.0))),
-        };
+        let numbers: Vec<f64> = components.as_array().iter().copied().collect();
+        let misfit = || bad(format!("{} components do not fit the grades {:#b}", numbers.len(), grades.0));
+        return Graded::new(&numbers, grades).map(Storage::One).ok_or_else(misfit);
     }
-    let mut data = data;
     if let Ok(array) = data.cast::<PyUntypedArray>() {
         if !array.is_c_contiguous() {
             data = data.call_method1(intern!(py, "copy"), ("C",))?;

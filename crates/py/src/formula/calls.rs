@@ -4,6 +4,7 @@
 //! little cost beside the arithmetic. Linear maps are recognized by their addresses, and their matrices are cached.
 
 use super::program::Program;
+use super::{Formula, NameKind};
 use crate::algebra::value::{Operand, Storage, operand, scalar, wrap};
 use crate::support::face::LINEAR_MAP;
 use polhode_ga::Graded;
@@ -58,28 +59,31 @@ impl Calls {
         }
     }
 
-    /// Caches a call.
-    pub fn keep(&self, named: &Bound<'_, PyDict>, program: Py<Program>) -> PyResult<()> {
-        let Program { order, program: steps, .. } = program.get();
-        let mut inputs = vec![Given::Determinant(0.0); order.len()];
+    /// Caches a call; false if it is not one of single values of 3-d space, or if the formula is an equation.
+    pub fn keep(&self, formula: &Formula, named: &Bound<'_, PyDict>) -> PyResult<bool> {
+        let mut kinds = Vec::with_capacity(named.len());
         let mut arguments = Vec::with_capacity(named.len());
-        for (i, (name, value)) in named.iter().enumerate() {
-            let Some(mut argument) = Argument::of(&value)? else { return Ok(()) };
-            for (place, input) in steps.inputs.iter().enumerate().filter(|(place, _)| order[*place] == i) {
-                match &mut argument {
-                    Argument::Value(_, own) => *own = Some(place),
-                    Argument::Map(..) => inputs[place] = of_map(&value, input.kind)?,
-                }
-            }
+        for (name, value) in named.iter() {
+            let Some(argument) = Argument::of(&value)? else { return Ok(false) };
+            kinds.push(argument.named(name.extract()?));
             arguments.push((name.unbind(), argument));
         }
+        let Some(program) = formula.for_floats(named.py(), kinds) else { return Ok(false) };
+        let Program { order, program: steps, .. } = program.get();
+        let mut inputs = vec![Given::Determinant(0.0); order.len()];
+        for (place, (input, &i)) in steps.inputs.iter().zip(order).enumerate() {
+            match &mut arguments[i].1 {
+                Argument::Value(_, own) => *own = Some(place),
+                Argument::Map(map, _) => inputs[place] = of_map(map.bind(named.py()), input.kind)?,
+            }
+        }
         let gone = {
-            let Ok(mut calls) = self.0.try_lock() else { return Ok(()) };
+            let Ok(mut calls) = self.0.try_lock() else { return Ok(true) };
             calls.insert(0, Call { arguments, program, inputs, values: Vec::new() });
             (calls.len() > KEPT).then(|| calls.pop())
         };
         drop(gone);
-        Ok(())
+        Ok(true)
     }
 }
 
@@ -109,6 +113,14 @@ impl Call {
 }
 
 impl Argument {
+    /// A name of this kind.
+    pub fn named(&self, name: String) -> NameKind {
+        match self {
+            Argument::Value(ty, _) => (name, ty.grades.0, ty.unit.into()),
+            Argument::Map(_, grade) => (name, *grade, 2),
+        }
+    }
+
     /// A single value of 3-d space over float64, a number, or a single linear map; `None` for anything else.
     pub fn of(value: &Bound<'_, PyAny>) -> PyResult<Option<Argument>> {
         let py = value.py();

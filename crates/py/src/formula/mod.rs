@@ -10,13 +10,13 @@ use crate::algebra::signature::{Algebra, g3, largest};
 use crate::algebra::value::Object;
 use crate::support::arrays::bad;
 use crate::support::face::CALL_FORMULA;
-use calls::{Argument, Calls};
+use calls::Calls;
 use polhode_ga::formula::{
     Kind, Meaning, Names, Node, Runner, Space, Style, Tree, Type, canonical, compile, define, heading, parse,
     types,
 };
 use polhode_ga::product::Grades;
-use program::{Program, characters, error};
+use program::{Place, Program, characters, error};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyTuple};
@@ -131,31 +131,12 @@ impl Formula {
         if let [side] = &sides[..] {
             return Ok(side.clone().into_any());
         }
-        let equation = PyDict::new(py);
-        equation.set_item("kind", "equation")?;
-        equation.set_item("text", &self.text)?;
-        equation.set_item("span", (0, self.text.chars().count()))?;
-        equation.set_item("grades", py.None())?;
-        equation.set_item("children", sides)?;
-        Ok(equation.into_any())
+        let place = (0, self.text.chars().count());
+        Ok(entry(("equation", py.None().into_bound(py)), &self.text, place, None, sides)?.into_any())
     }
 }
 
 impl Formula {
-    /// The program for single values of 3-d space; `None` if some are not, or if it is an equation.
-    fn for_single_values(&self, named: &Bound<'_, PyDict>) -> PyResult<Option<Py<Program>>> {
-        let py = named.py();
-        let mut kinds = Vec::with_capacity(named.len());
-        for (name, value) in named.iter() {
-            kinds.push(match Argument::of(&value)? {
-                None => return Ok(None),
-                Some(Argument::Value(ty, _)) => (name.extract()?, ty.grades.0, ty.unit.into()),
-                Some(Argument::Map(_, grade)) => (name.extract()?, grade, 2),
-            });
-        }
-        Ok(self.for_floats(py, kinds))
-    }
-
     /// The program for values of 3-d space over floats; `None` for an equation, for another algebra, and for an
     /// error, which the general way reports.
     pub(crate) fn for_floats(&self, py: Python<'_>, kinds: Vec<NameKind>) -> Option<Py<Program>> {
@@ -217,22 +198,32 @@ impl Formula {
         node: &Node,
         types: &mut impl Iterator<Item = Option<Type>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let ty = types.next().flatten();
-        let place = characters(&self.text, node.span);
-        let shown = PyDict::new(py);
-        let (kind, value) = described(py, node)?;
-        shown.set_item("kind", kind)?;
-        if !value.is_none() {
-            shown.set_item("value", value)?;
-        }
-        shown.set_item("text", self.text.get(node.span.start..node.span.end).unwrap_or_default())?;
-        shown.set_item("span", place)?;
-        shown.set_item("grades", ty.map(|ty| grades(py, ty.grades)).transpose()?)?;
-        let children: Vec<_> =
-            node.children().into_iter().map(|child| self.node(py, child, types)).collect::<PyResult<_>>()?;
-        shown.set_item("children", children)?;
-        Ok(shown)
+        let grades = types.next().flatten().map(|ty| grades(py, ty.grades)).transpose()?;
+        let text = self.text.get(node.span.start..node.span.end).unwrap_or_default();
+        let children: PyResult<_> =
+            node.children().into_iter().map(|child| self.node(py, child, types)).collect();
+        entry(described(py, node)?, text, characters(&self.text, node.span), grades, children?)
     }
+}
+
+/// A part of a tree as a dictionary; only some kinds have a value.
+fn entry<'py>(
+    (kind, value): (&str, Bound<'py, PyAny>),
+    text: &str,
+    span: Place,
+    grades: Option<Bound<'py, PyTuple>>,
+    children: Vec<Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let shown = PyDict::new(value.py());
+    shown.set_item("kind", kind)?;
+    if !value.is_none() {
+        shown.set_item("value", value)?;
+    }
+    shown.set_item("text", text)?;
+    shown.set_item("span", span)?;
+    shown.set_item("grades", grades)?;
+    shown.set_item("children", children)?;
+    Ok(shown)
 }
 
 /// The meanings of names, and their canonical spellings.
@@ -280,11 +271,10 @@ fn called<'py>(
         if let Some(value) = formula.calls.value(named)? {
             return Ok(value);
         }
-        if let Some(program) = formula.for_single_values(named)? {
-            formula.calls.keep(named, program)?;
-            if let Some(value) = formula.calls.value(named)? {
-                return Ok(value);
-            }
+        if formula.calls.keep(formula, named)?
+            && let Some(value) = formula.calls.value(named)?
+        {
+            return Ok(value);
         }
         if let Some(value) = batches::value(formula, named)? {
             return Ok(value);
@@ -331,5 +321,5 @@ fn grades(py: Python<'_>, grades: Grades) -> PyResult<Bound<'_, PyTuple>> {
 /// The algebra, for formulas.
 fn space(algebra: &Py<Algebra>) -> Space<'_> {
     let algebra = algebra.get();
-    if algebra.is_g3() { Space::g3() } else { Space::new(&algebra.table, algebra.calculus()) }
+    if algebra.is_g3() { Space::g3() } else { Space::new(&algebra.table, algebra.calculus(false)) }
 }

@@ -86,25 +86,6 @@ fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount> {
     }
 }
 
-/// A solid from its kind and its lengths, in the order of the fields.
-fn solid(kind: &str, sizes: &[f64]) -> Option<Solid> {
-    Some(match (kind, sizes) {
-        ("box", &[x, y, z]) => Solid::Box { lengths: [x, y, z] },
-        ("ellipsoid", &[x, y, z]) => Solid::Ellipsoid { semi_axes: [x, y, z] },
-        ("sphere", &[radius]) => Solid::Sphere { radius },
-        ("hollow_sphere", &[outer_radius, inner_radius]) => {
-            Solid::HollowSphere { outer_radius, inner_radius }
-        }
-        ("cylinder", &[radius, height]) => Solid::Cylinder { radius, height },
-        ("cone", &[radius, height]) => Solid::Cone { radius, height },
-        ("rod", &[length]) => Solid::Rod { length },
-        ("disc", &[radius]) => Solid::Disc { radius },
-        ("torus", &[major_radius, minor_radius]) => Solid::Torus { major_radius, minor_radius },
-        ("capsule", &[radius, height]) => Solid::Capsule { radius, height },
-        _ => return None,
-    })
-}
-
 #[pymethods]
 impl Body {
     #[new]
@@ -115,8 +96,9 @@ impl Body {
     #[staticmethod]
     #[pyo3(signature = (kind, sizes, mass, density))]
     fn solid(kind: &str, sizes: Vec<f64>, mass: Option<f64>, density: Option<f64>) -> PyResult<Body> {
-        let shape = solid(kind, &sizes).ok_or_else(|| bad(format!("no {kind} has {} sizes", sizes.len())))?;
-        shape.body(amount(mass, density)?).map(Body).map_err(bad)
+        let wrong = || bad(format!("no {kind} has {} sizes", sizes.len()));
+        let solid = Solid::from_lengths(kind, &sizes).ok_or_else(wrong)?;
+        solid.body(amount(mass, density)?).map(Body).map_err(bad)
     }
 
     #[staticmethod]

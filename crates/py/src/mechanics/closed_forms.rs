@@ -1,4 +1,4 @@
-//! Closed forms with torque: Lagrange's top, the damped body, the sphere in a field.
+//! Closed forms: Lagrange's top, the damped body, the sphere in a field, the free symmetric top.
 
 use super::bodies::{Inertia, rotor};
 use crate::support::arrays::{Array, Rows, bad, numbers, one, threads};
@@ -6,18 +6,55 @@ use crate::support::facts::dict;
 use crate::support::pool;
 use numpy::PyArrayMethods;
 use polhode_ga::{Bivector, Rotor, Vector};
-use polhode_rigid::SimulateError;
 use polhode_rigid::exact::damped;
 use polhode_rigid::exact::lagrange;
 use polhode_rigid::exact::larmor;
+use polhode_rigid::exact::symmetric::SymmetricTop;
+use polhode_rigid::state::checks::check_horizons;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::ops::Range;
 
 /// States between checks for Ctrl-C.
 const PIECE: usize = 1 << 16;
 
 /// Rotors (n, 4) and angular velocities (n, 3) at times (n,).
-type States<'py> = PyResult<(Array<'py>, Array<'py>)>;
+pub(crate) type States<'py> = PyResult<(Array<'py>, Array<'py>)>;
+
+/// `count` states from a function that fills a range of rows; signals are checked after `piece` rows.
+pub(crate) fn filled<'py>(
+    py: Python<'py>,
+    count: usize,
+    piece: usize,
+    fill: impl Fn(Range<usize>, &mut [f64], &mut [f64]) + Sync,
+) -> States<'py> {
+    let (rotors, omegas) = (pool::array(py, &[count, 4])?, pool::array(py, &[count, 3])?);
+    let (mut rotor_rows, mut omega_rows) = (rotors.readwrite(), omegas.readwrite());
+    let rows = rotor_rows.as_slice_mut()?.chunks_mut(4 * piece);
+    let pieces = rows.zip(omega_rows.as_slice_mut()?.chunks_mut(3 * piece));
+    for (part, (rotors, omegas)) in pieces.enumerate() {
+        let rows = part * piece..part * piece + rotors.len() / 4;
+        py.detach(|| fill(rows, rotors, omegas));
+        py.check_signals()?;
+    }
+    drop((rotor_rows, omega_rows));
+    Ok((rotors, omegas))
+}
+
+pub(crate) fn check_times(times: &[f64]) -> PyResult<()> {
+    match times.iter().position(|t| !t.is_finite()) {
+        Some(index) => Err(bad(format!("time {} at index {index} is not finite", times[index]))),
+        None => Ok(()),
+    }
+}
+
+/// Checks that an angular velocity is finite.
+pub(crate) fn angular_velocity(omega: [f64; 3]) -> PyResult<Bivector> {
+    if !omega.iter().all(|x| x.is_finite()) {
+        return Err(bad(format!("the angular velocity is {omega:?}; it must be finite")));
+    }
+    Ok(Bivector(omega))
+}
 
 /// The states from a function that fills rows for a chunk of the times, between two horizons.
 fn states<'py>(
@@ -27,25 +64,9 @@ fn states<'py>(
     fill: impl Fn(&[f64], &mut [f64], &mut [f64]) + Sync,
 ) -> States<'py> {
     let times = numbers(times)?;
-    for (index, &time) in times.iter().enumerate() {
-        if !time.is_finite() {
-            return Err(bad(format!("time {time} at index {index} is not finite")));
-        }
-        let horizon = horizons[usize::from(time > 0.0)];
-        if time.abs() > horizon {
-            return Err(bad(SimulateError::BeyondHorizon { index, time, start: 0.0, horizon }));
-        }
-    }
-    let (rotors, omegas) = (pool::array(py, &[times.len(), 4])?, pool::array(py, &[times.len(), 3])?);
-    let (mut rotor_rows, mut omega_rows) = (rotors.readwrite(), omegas.readwrite());
-    let rows = rotor_rows.as_slice_mut()?.chunks_mut(4 * PIECE);
-    let pieces = times.chunks(PIECE).zip(rows.zip(omega_rows.as_slice_mut()?.chunks_mut(3 * PIECE)));
-    for (times, (rotors, omegas)) in pieces {
-        py.detach(|| fill(times, rotors, omegas));
-        py.check_signals()?;
-    }
-    drop((rotor_rows, omega_rows));
-    Ok((rotors, omegas))
+    check_times(times)?;
+    check_horizons(0.0, times, horizons).map_err(bad)?;
+    filled(py, times.len(), PIECE, |rows, rotors, omegas| fill(&times[rows], rotors, omegas))
 }
 
 /// Fills the rows one by one.
@@ -114,4 +135,24 @@ impl LarmorSphere {
     fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> States<'py> {
         states(py, &times, [self.0.horizon(); 2], one_by_one(|t| self.0.at(t)))
     }
+}
+
+/// The free symmetric top.
+#[pyfunction]
+pub(crate) fn symmetric_top<'py>(
+    py: Python<'py>,
+    inertia: &Inertia,
+    rotor_row: Rows<'py>,
+    omega: Rows<'py>,
+    times: Rows<'py>,
+) -> States<'py> {
+    let top = SymmetricTop::new(&inertia.0, rotor(&rotor_row)?, angular_velocity(one(&omega)?)?).ok_or_else(
+        || {
+            let [a, b, c] = inertia.0.principal_moments();
+            bad(format!(
+                "the principal moments {a}, {b}, {c} kg m² all differ: not a symmetric top; use FreeMotion"
+            ))
+        },
+    )?;
+    states(py, &times, [f64::INFINITY; 2], one_by_one(|t| top.at(t)))
 }

@@ -1,12 +1,11 @@
 //! Free motion of one body or a batch, with solutions kept in Rust.
 
 use super::bodies::Inertia;
-use super::motion::{angular_velocity, check_times};
+use super::closed_forms::{States, angular_velocity, check_times, filled};
 use crate::algebra::value::{Multivector, number, one, one_rotor};
 use crate::support::arrays::{Array, Rows, bad, line, numbers, place, table, threads};
 use crate::support::facts::{columns, dict};
-use crate::support::pool;
-use numpy::{PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
+use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor};
 use polhode_rigid::body::inertia;
@@ -144,19 +143,14 @@ impl FreeMotion {
     }
 
     /// Rotors and angular velocities of all motions at all times, rows motion by motion.
-    fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> PyResult<(Array<'py>, Array<'py>)> {
+    fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> States<'py> {
         let times = numbers(&times)?;
         self.check(times)?;
         self.states(py, Times::Common(times), self.starts.len() * times.len())
     }
 
     /// The same for each motion at its own times, `each` in a row, cyclically. The caller has checked the times.
-    fn at_each<'py>(
-        &self,
-        py: Python<'py>,
-        times: Rows<'py>,
-        each: usize,
-    ) -> PyResult<(Array<'py>, Array<'py>)> {
+    fn at_each<'py>(&self, py: Python<'py>, times: Rows<'py>, each: usize) -> States<'py> {
         let times = numbers(&times)?;
         let turn = self.starts.len() * each;
         if !times.is_empty() && times.len().checked_rem(turn).is_none_or(|rest| rest != 0) {
@@ -253,7 +247,7 @@ impl FreeMotion {
     }
 
     /// Rotors (rows, 4) and angular velocities (rows, 3) at the start, as given.
-    fn starts<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py>, Array<'py>)> {
+    fn starts<'py>(&self, py: Python<'py>) -> States<'py> {
         let rotors = table(py, self.starts.iter().map(|start| start.0))?;
         Ok((rotors, table(py, self.starts.iter().map(|start| start.1))?))
     }
@@ -307,35 +301,20 @@ impl FreeMotion {
             return Ok(());
         }
         match self.motions.horizons().enumerate().find(|(_, horizon)| furthest > *horizon) {
-            Some((row, horizon)) => check_horizons(times, [horizon; 2])
+            Some((row, horizon)) => check_horizons(0.0, times, [horizon; 2])
                 .map_err(|error| bad(format!("{}{error}", place(row, &self.shape)))),
             None => Ok(()),
         }
     }
 
     /// Computes states. Threads share large batches; Python may interrupt every few milliseconds.
-    fn states<'py>(
-        &self,
-        py: Python<'py>,
-        times: Times<'_>,
-        count: usize,
-    ) -> PyResult<(Array<'py>, Array<'py>)> {
-        let (rotors, omegas) = (pool::array(py, &[count, 4])?, pool::array(py, &[count, 3])?);
-        let (mut rotor_rows, mut omega_rows) = (rotors.readwrite(), omegas.readwrite());
-        let rows = rotor_rows.as_slice_mut()?.chunks_mut(4 * PIECE);
-        let pieces = rows.zip(omega_rows.as_slice_mut()?.chunks_mut(3 * PIECE));
+    fn states<'py>(&self, py: Python<'py>, times: Times<'_>, count: usize) -> States<'py> {
         let threads = threads(7 * count)?;
-        for (part, (rotors, omegas)) in pieces.enumerate() {
-            let rows = part * PIECE..part * PIECE + rotors.len() / 4;
-            py.detach(|| match (&self.motions, times) {
-                (Motions::Many(tiles), _) => at_each(threads, tiles, times, rows, rotors, omegas),
-                (Motions::One(motion), Times::Common(times) | Times::Own(times, _)) => {
-                    motion.at_many(threads, &times[rows], rotors, omegas);
-                }
-            });
-            py.check_signals()?;
-        }
-        drop((rotor_rows, omega_rows));
-        Ok((rotors, omegas))
+        filled(py, count, PIECE, |rows, rotors, omegas| match (&self.motions, times) {
+            (Motions::Many(tiles), _) => at_each(threads, tiles, times, rows, rotors, omegas),
+            (Motions::One(motion), Times::Common(times) | Times::Own(times, _)) => {
+                motion.at_many(threads, &times[rows], rotors, omegas);
+            }
+        })
     }
 }

@@ -121,8 +121,7 @@ pub(crate) fn formula<T>(
     let mut types: Vec<NameKind> = Vec::with_capacity(values.len());
     for (name, value) in values {
         types.push(match Argument::of(value)? {
-            Some(Argument::Value(ty, _)) => (name.clone(), ty.grades.0, ty.unit.into()),
-            Some(Argument::Map(_, grade)) => (name.clone(), grade, 2),
+            Some(argument) => argument.named(name.clone()),
             None => {
                 let message = format!("{name} must be a single value over floats, a number or a linear map");
                 return Err(PyTypeError::new_err(message));

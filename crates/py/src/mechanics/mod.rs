@@ -8,7 +8,6 @@ pub(crate) mod flow;
 pub(crate) mod forces_and_events;
 pub(crate) mod free;
 pub(crate) mod law_value;
-pub(crate) mod motion;
 pub(crate) mod simulation;
 pub(crate) mod stepper;
 pub(crate) mod torque;

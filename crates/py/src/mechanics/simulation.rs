@@ -1,9 +1,9 @@
 //! Simulation of one body.
 
 use super::bodies::{Inertia, rotor};
+use super::closed_forms::check_times;
 use super::forces_and_events::{Event, Force};
 use super::law_value::{LawValue, failed};
-use super::motion::check_times;
 use super::torque::Law;
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::support::facts::dict;

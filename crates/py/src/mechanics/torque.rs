@@ -11,11 +11,11 @@ use polhode_ga::Bivector;
 use polhode_ga::formula::{Given, Input, canonical};
 use polhode_rigid::body::weight_moment;
 use polhode_rigid::describe::law_facts;
+use polhode_rigid::laws::formula::{Formula, Purpose};
 use polhode_rigid::laws::registry::{Entry, Kernel, torque};
-use polhode_rigid::laws::torque::{
-    Axes, FormulaTorque, FunctionTorque, Kind, Orbit, Table, Torque, total, wheel,
-};
+use polhode_rigid::laws::torque::{Axes, Kind, Orbit, Table, Torque, total, wheel};
 use polhode_rigid::state::phase::{Gyrostat, Phase};
+use polhode_rigid::state::point::Function;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::convert::Infallible;
@@ -180,10 +180,10 @@ fn tabulated(arguments: &Bound<'_, PyTuple>) -> PyResult<Torque> {
 
 fn function(call: Py<PyAny>, raised: &Raised) -> Torque {
     let callback = Callback { call, raised: raised.clone(), what: "torque" };
-    Torque::Function(FunctionTorque::new(move |time, rotor, omega| {
+    Torque::Function(Function::new(move |seen| {
         callback.at(
-            time,
-            |py| (time, rotor_of(py, rotor)?, bivector_of(py, omega)?).into_pyobject(py),
+            seen.time,
+            |py| (seen.time, rotor_of(py, seen.rotor)?, bivector_of(py, seen.omega)?).into_pyobject(py),
             bivector,
         )
     }))
@@ -202,7 +202,8 @@ fn formulas(given: &Arguments<'_, '_>, values: Values<'_>) -> PyResult<Vec<Torqu
         own.push((canonical(&name).unwrap_or_else(|| name.clone()), batch.graded(&like)?));
         first.push((name, like));
     }
-    let compile = |names, value: &mut Known<'_>| FormulaTorque::new(&text, axes(&frame), names, value);
+    let purpose = Purpose::Torque(axes(&frame));
+    let compile = |names, value: &mut Known<'_>| Formula::new(&text, purpose, names, value);
     let law = formula(given.all.py(), &text, &first, compile)?;
     given.each(|k| {
         let value = |input: &Input| own.iter().find(|(name, _)| *name == input.name).map(|(_, rows)| rows[k]);

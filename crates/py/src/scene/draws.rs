@@ -4,8 +4,9 @@ use super::named;
 use crate::mechanics::bodies::Inertia;
 use crate::support::arrays::{Array, bad, line, table};
 use numpy::{PyArray1, PyArrayMethods};
+use polhode_rigid::ensemble::Ensemble;
 use polhode_rigid::laws::torque::Torque;
-use polhode_rigid::scene::{self, Drawn};
+use polhode_rigid::scene;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -24,20 +25,26 @@ pub(crate) fn varied(varied: scene::Varied) -> Varied {
     }
 }
 
-pub(crate) fn bodies(py: Python<'_>, drawn: Drawn) -> PyResult<Bodies<'_>> {
-    let half = |k| drawn.centers.iter().map(move |c: &[f64; 6]| [c[k], c[k + 1], c[k + 2]]);
+/// The bodies, with the first `laws` of their laws.
+pub(crate) fn bodies<'py>(py: Python<'py>, drawn: &Ensemble, laws: usize) -> PyResult<Bodies<'py>> {
+    let starts = drawn.starts.iter();
     Ok((
-        table(py, drawn.rotors.iter().copied())?,
-        table(py, drawn.omegas.iter().copied())?,
-        table(py, half(0))?,
-        table(py, half(3))?,
-        drawn.inertias.into_iter().map(Inertia).collect(),
-        drawn.laws.iter().map(|torques| law(py, torques)).collect::<PyResult<_>>()?,
+        table(py, starts.clone().map(|start| start.rotor.components()))?,
+        table(py, starts.clone().map(|start| start.omega.0))?,
+        table(py, starts.clone().map(|start| start.center.position.0))?,
+        table(py, starts.map(|start| start.center.velocity.0))?,
+        inertias(drawn),
+        drawn.laws.iter().take(laws).map(|law| one_or_columns(py, law.all())).collect::<PyResult<_>>()?,
     ))
 }
 
+/// The inertias, one for all or one for each body.
+pub(crate) fn inertias(drawn: &Ensemble) -> Vec<Inertia> {
+    drawn.inertias.all().iter().map(|inertia| Inertia(*inertia)).collect()
+}
+
 /// A law that all bodies share, or the name and the arguments, arrays (n,) or (n, m), of a law that varies.
-fn law<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> {
+fn one_or_columns<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> {
     if let [torque] = torques {
         return Ok(named(py, torque.clone())?.into_bound(py).into_any());
     }

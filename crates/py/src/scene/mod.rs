@@ -9,11 +9,11 @@ use crate::mechanics::simulation::Motion;
 use crate::mechanics::torque::Law;
 use crate::support::arrays::{Array, Rows, bad, line, numbers, table};
 use crate::support::facts::dict;
-use draws::{Bodies, Varied, bodies, varied};
+use draws::{Bodies, Varied, bodies, inertias, varied};
 use polhode_ga::formula::Given;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Vector};
-use polhode_rigid::ensemble::Start;
+use polhode_rigid::ensemble::{Ensemble, Start};
 use polhode_rigid::laws::registry::{Entry, TABLE};
 use polhode_rigid::laws::torque::{Axes, Kind, Torque};
 use polhode_rigid::run::Setup;
@@ -23,7 +23,6 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use std::ops::Range;
 use std::path::PathBuf;
 
 create_exception!(polhode, SceneError, PyValueError, "Errors in a scene file, with their places.");
@@ -130,9 +129,7 @@ impl Scene {
 
     /// `count` bodies of the ensemble from number `first` on.
     fn draw<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Bodies<'py>> {
-        let (ensemble, rows) = self.rows(first, count)?;
-        let drawn = py.detach(|| ensemble.draw(&self.scene, (&self.body, &self.laws), rows));
-        bodies(py, drawn.map_err(bad)?)
+        bodies(py, &self.bodies(py, first, count)?, self.laws.len())
     }
 
     /// The motions of bodies of the ensemble from the first on at times, as `simulate_many`, with their inertias (one or
@@ -146,10 +143,7 @@ impl Scene {
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(Results<'py>, Vec<Inertia>, Array<'py>)> {
-        let (ensemble, rows) = self.rows(first, count)?;
-        let bodies =
-            py.detach(|| self.scene.bodies(ensemble, (&self.body, &self.laws), rows)).map_err(bad)?;
-        let inertias = bodies.inertias.all().iter().map(|inertia| Inertia(*inertia)).collect();
+        let bodies = self.bodies(py, first, count)?;
         let centers = bodies.starts.iter().map(|Start { center, .. }| {
             let (Vector([x, y, z]), Vector([u, v, w])) = (center.position, center.velocity);
             [x, y, z, u, v, w]
@@ -157,7 +151,7 @@ impl Scene {
         let centers = table(py, centers)?;
         let options = self.scene.options();
         let results = run_many(py, &bodies, &[count], numbers(&times)?, &options, threads, &[], progress)?;
-        Ok((results, inertias, centers))
+        Ok((results, inertias(&bodies), centers))
     }
 }
 
@@ -166,20 +160,17 @@ impl Scene {
         self.scene.setup(&self.body, &self.laws)
     }
 
-    /// The ensemble and the range of `count` bodies from number `first` on.
-    fn rows(&self, first: usize, count: usize) -> PyResult<(&scene::Ensemble, Range<usize>)> {
+    /// `count` bodies of the ensemble from number `first` on.
+    fn bodies(&self, py: Python<'_>, first: usize, count: usize) -> PyResult<Ensemble> {
         let Some(ensemble) = &self.scene.ensemble else {
             return Err(bad("this scene has no table [ensemble]"));
         };
-        let number = ensemble.number;
-        let end = first.checked_add(count).filter(|end| (first + 1..=number).contains(end));
-        match end {
-            Some(end) => Ok((ensemble, first..end)),
-            None => Err(bad(format!(
-                "range {first}..{} is out of bounds for {number} bodies",
-                first.saturating_add(count)
-            ))),
+        let (number, last) = (ensemble.number, first.saturating_add(count));
+        if last <= first || last > number {
+            return Err(bad(format!("range {first}..{last} is out of bounds for {number} bodies")));
         }
+        let built = (&self.body, &self.laws[..]);
+        py.detach(|| self.scene.bodies(ensemble, built, first..last)).map_err(bad)
     }
 }
 

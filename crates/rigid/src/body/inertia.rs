@@ -142,7 +142,7 @@ impl Inertia {
 }
 
 /// Whether any axes are principal axes; the body's own then avoid a rounded rotation.
-fn is_sphere([a, b, c]: [f64; 3]) -> bool {
+pub(crate) fn is_sphere([a, b, c]: [f64; 3]) -> bool {
     equal(a, b) && equal(b, c) && equal(a, c)
 }
 
@@ -204,16 +204,9 @@ fn nearest_frame(mut axes: [[f64; 3]; 3]) -> Rotor {
     let place = components.iter().position(|x| x.abs() >= tied).unwrap_or(0);
     let nearest = match place {
         0 => frame,
-        k => frame * half_turn(k - 1),
+        k => frame * Rotor::from_unit_components(from_fn(|i| f64::from(i == k))),
     };
     if nearest.components()[0] < 0.0 { -nearest } else { nearest }
-}
-
-/// The rotor `e2e3`, `e3e1` or `e1e2`.
-fn half_turn(k: usize) -> Rotor {
-    let mut components = [0.0; 4];
-    components[k + 1] = 1.0;
-    Rotor::from_components(components).unwrap_or(Rotor::IDENTITY)
 }
 
 /// Relative tolerance of equal moments: the rounding of a diagonalised matrix.

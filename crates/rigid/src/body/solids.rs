@@ -17,50 +17,43 @@ pub enum Amount {
     Density(f64),
 }
 
-/// A uniform solid; lengths in metres. All are centred on the origin except the cone, whose base is in the e1e2 plane;
-/// axes of revolution are along e3.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub enum Solid {
-    Box {
-        lengths: [f64; 3],
-    },
-    Ellipsoid {
-        semi_axes: [f64; 3],
-    },
-    Sphere {
-        radius: f64,
-    },
+/// Solids, each with its kind in scenes and its sizes.
+macro_rules! solids {
+    ($($(#[$doc:meta])* $solid:ident = $kind:literal { $($size:ident: $type:ty),* };)*) => {
+        /// A uniform solid; lengths in metres. All are centred on the origin except the cone, whose base is in the e1e2
+        /// plane; axes of revolution are along e3.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(missing_docs)]
+        pub enum Solid {
+            $($(#[$doc])* $solid { $($size: $type),* }),*
+        }
+
+        impl Solid {
+            /// Its `kind` and its sizes in metres, named as in scenes.
+            pub fn facts(self) -> Facts {
+                match self {
+                    $(Solid::$solid { $($size),* } => facts! { kind: $kind, $($size: $size),* }),*
+                }
+            }
+        }
+    };
+}
+
+solids! {
+    Box = "box" { lengths: [f64; 3] };
+    Ellipsoid = "ellipsoid" { semi_axes: [f64; 3] };
+    Sphere = "sphere" { radius: f64 };
     /// A shell between two radii; equal radii make a thin shell, which needs a mass.
-    HollowSphere {
-        outer_radius: f64,
-        inner_radius: f64,
-    },
-    Cylinder {
-        radius: f64,
-        height: f64,
-    },
-    Cone {
-        radius: f64,
-        height: f64,
-    },
+    HollowSphere = "hollow_sphere" { outer_radius: f64, inner_radius: f64 };
+    Cylinder = "cylinder" { radius: f64, height: f64 };
+    Cone = "cone" { radius: f64, height: f64 };
     /// A thin rod along e3: no volume, no moment about e3.
-    Rod {
-        length: f64,
-    },
+    Rod = "rod" { length: f64 };
     /// A thin disc in the e1e2 plane: no volume.
-    Disc {
-        radius: f64,
-    },
-    Torus {
-        major_radius: f64,
-        minor_radius: f64,
-    },
+    Disc = "disc" { radius: f64 };
+    Torus = "torus" { major_radius: f64, minor_radius: f64 };
     /// A cylinder of the given height with a hemisphere on each end.
-    Capsule {
-        radius: f64,
-        height: f64,
-    },
+    Capsule = "capsule" { radius: f64, height: f64 };
 }
 
 impl Amount {
@@ -76,26 +69,6 @@ impl Amount {
 }
 
 impl Solid {
-    /// Its `kind` and its sizes in metres, named as in scenes.
-    pub fn facts(self) -> Facts {
-        match self {
-            Solid::Box { lengths } => facts! { kind: "box", lengths: lengths },
-            Solid::Ellipsoid { semi_axes } => facts! { kind: "ellipsoid", semi_axes: semi_axes },
-            Solid::Sphere { radius } => facts! { kind: "sphere", radius: radius },
-            Solid::HollowSphere { outer_radius, inner_radius } => {
-                facts! { kind: "hollow_sphere", outer_radius: outer_radius, inner_radius: inner_radius }
-            }
-            Solid::Cylinder { radius, height } => facts! { kind: "cylinder", radius: radius, height: height },
-            Solid::Cone { radius, height } => facts! { kind: "cone", radius: radius, height: height },
-            Solid::Rod { length } => facts! { kind: "rod", length: length },
-            Solid::Disc { radius } => facts! { kind: "disc", radius: radius },
-            Solid::Torus { major_radius, minor_radius } => {
-                facts! { kind: "torus", major_radius: major_radius, minor_radius: minor_radius }
-            }
-            Solid::Capsule { radius, height } => facts! { kind: "capsule", radius: radius, height: height },
-        }
-    }
-
     /// The solid of a kind, by its name in scenes, that fills a box of these side lengths; None for an unknown name.
     pub fn filling(kind: &str, [x, y, z]: [f64; 3]) -> Option<Solid> {
         let [radius, mean] = [0.25 * (x + y), (x + y + z) / 3.0];
@@ -203,34 +176,34 @@ impl Solid {
 
     /// Checks that every length is positive and finite, a torus does not intersect itself, and a cavity fits.
     fn check(self) -> Result<(), BodyError> {
-        let positive = |lengths: &[(&'static str, f64)]| match lengths
-            .iter()
-            .find(|(_, x)| !(*x > 0.0 && x.is_finite()))
-        {
-            Some(&(name, value)) => Err(BodyError::Length { name, value }),
-            None => Ok(()),
-        };
-        match self {
-            Solid::Box { lengths: [a, b, c] } => {
-                positive(&[("lengths[0]", a), ("lengths[1]", b), ("lengths[2]", c)])
-            }
+        let lengths: &[(&'static str, f64)] = match self {
+            Solid::Box { lengths: [a, b, c] } => &[("lengths[0]", a), ("lengths[1]", b), ("lengths[2]", c)],
             Solid::Ellipsoid { semi_axes: [a, b, c] } => {
-                positive(&[("semi_axes[0]", a), ("semi_axes[1]", b), ("semi_axes[2]", c)])
+                &[("semi_axes[0]", a), ("semi_axes[1]", b), ("semi_axes[2]", c)]
             }
-            Solid::Sphere { radius } | Solid::Disc { radius } => positive(&[("radius", radius)]),
-            Solid::HollowSphere { outer_radius: outer, inner_radius: inner } => {
-                positive(&[("outer_radius", outer)])?;
-                let fits = (0.0..=outer).contains(&inner);
-                if fits { Ok(()) } else { Err(BodyError::InnerRadius { inner, outer }) }
-            }
+            Solid::Sphere { radius } | Solid::Disc { radius } => &[("radius", radius)],
+            Solid::HollowSphere { outer_radius, .. } => &[("outer_radius", outer_radius)],
             Solid::Cylinder { radius, height }
             | Solid::Cone { radius, height }
-            | Solid::Capsule { radius, height } => positive(&[("radius", radius), ("height", height)]),
-            Solid::Rod { length } => positive(&[("length", length)]),
-            Solid::Torus { major_radius: major, minor_radius: minor } => {
-                positive(&[("major_radius", major), ("minor_radius", minor)])?;
-                if minor <= major { Ok(()) } else { Err(BodyError::SpindleTorus { major, minor }) }
+            | Solid::Capsule { radius, height } => &[("radius", radius), ("height", height)],
+            Solid::Rod { length } => &[("length", length)],
+            Solid::Torus { major_radius, minor_radius } => {
+                &[("major_radius", major_radius), ("minor_radius", minor_radius)]
             }
+        };
+        if let Some(&(name, value)) = lengths.iter().find(|(_, x)| !(*x > 0.0 && x.is_finite())) {
+            return Err(BodyError::Length { name, value });
+        }
+        match self {
+            Solid::HollowSphere { outer_radius: outer, inner_radius: inner }
+                if !(0.0..=outer).contains(&inner) =>
+            {
+                Err(BodyError::InnerRadius { inner, outer })
+            }
+            Solid::Torus { major_radius: major, minor_radius: minor } if minor > major => {
+                Err(BodyError::SpindleTorus { major, minor })
+            }
+            _ => Ok(()),
         }
     }
 }

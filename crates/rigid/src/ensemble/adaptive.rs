@@ -10,9 +10,9 @@ use super::member::{Member, SIDE_BY_SIDE};
 use super::scheduler::Scheduler;
 use crate::error::SimulateError;
 use crate::laws::forcing::Forcing;
-use crate::laws::torque::Torque;
+use crate::laws::torque::{Torque, damping_rate};
 use crate::methods::classical::Bodies;
-use crate::methods::runge_kutta::{DOP853, Points, step};
+use crate::methods::runge_kutta::{Points, STAGES, step};
 use crate::run::Progress;
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
@@ -122,7 +122,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
     fn load(&mut self, l: usize, body: WaitingRun<'a>, scheduler: &Scheduler<'a>) -> Vec<Torque> {
         let WaitingRun { run, torques, at, fastest } = body;
         let gyrostat = run.member.gyrostat;
-        self.bodies.set(l, &gyrostat, torques.iter().map(Torque::damping_rate).sum());
+        self.bodies.set(l, &gyrostat, damping_rate(&torques));
         (self.least.0[l], self.fastest.0[l]) = (gyrostat.least_rate(), fastest);
         self.at.set(l, &at);
         self.runs[l] = Some(run);
@@ -169,7 +169,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
         while self.occupied() == before {
             let (h, ends) = self.plan(scheduler);
             let fastest = self.fastest.max(self.least);
-            let (mut next, error) = step::<6, W, F, E>(&DOP853, &self.bodies, forcing, &self.at, h, fastest);
+            let (mut next, error) = step::<6, W, F, E>(&self.bodies, forcing, &self.at, h, fastest);
             next.time = ends;
             let rates = next.rates(&self.bodies);
             let accepted = self.judge(scheduler, torques, &h, &next, &error);
@@ -233,7 +233,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
             let Some(run) = &mut self.runs[l] else { continue };
             let (h, estimate) = (h.0[l], error.0[l]);
             let error = estimate / run.tolerance;
-            run.sweep.evaluations += DOP853.rows.len() as u64;
+            run.sweep.evaluations += STAGES as u64;
             if error.is_nan()
                 && let Err(error) = run.diagnose(&self.at.get(l), h, &torques[l])
             {

@@ -4,11 +4,11 @@ use super::member::{METHOD, Member, Outcome};
 use super::scheduler::Scheduler;
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
-use crate::methods::runge_kutta::{DOP853, Points, RungeKutta};
-use crate::methods::step_control::{Limit, StepController, next_stop};
+use crate::methods::runge_kutta::{Points, RungeKutta};
+use crate::methods::step_control::{StepController, next_stop};
 use crate::methods::{ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
-use crate::run::limits::{StepBounds, span};
+use crate::run::limits::span;
 use crate::run::noise::Noise;
 use crate::run::refine::{Accuracy, Converged, Convergence, Scales, SweepPlan};
 use crate::run::sweep::{StepRule, Sweep};
@@ -19,11 +19,6 @@ use std::mem;
 /// A body in a lane, with the state of its sweeps.
 pub(super) struct BodyRun<'a> {
     pub member: Member<'a>,
-    /// Ascending times at which steps end: its laws are not smooth there, or change fast.
-    breaks: Vec<f64>,
-    /// The longest step, in s.
-    longest: f64,
-    limit: Limit,
     /// A guess of the first step of a sweep, in s.
     first: f64,
     sweeps: Convergence,
@@ -33,8 +28,6 @@ pub(super) struct BodyRun<'a> {
     pub noise: Option<Noise>,
     /// The start of all sweeps.
     begin: Carried,
-    /// Lower bound of the scale of angular velocities, in rad/s.
-    least_rate: f64,
     /// The largest angular velocity in the previous sweep.
     known_rate: f64,
     pub controller: StepController,
@@ -47,26 +40,25 @@ pub(super) struct BodyRun<'a> {
 }
 
 impl<'a> BodyRun<'a> {
-    pub fn new(mut member: Member<'a>, torques: &[Torque], scheduler: &Scheduler<'a>) -> BodyRun<'a> {
+    pub fn new(member: Member<'a>, torques: &[Torque], scheduler: &Scheduler<'a>) -> BodyRun<'a> {
         let start = Carried::new(member.start, Center::default());
-        let StepBounds { breaks, is_smooth, longest, limit, least_rate } = mem::take(&mut member.bounds);
         let first = 0.1 / fastest_rate(&member.gyrostat, torques, &member.start).max(f64::MIN_POSITIVE);
         let accuracy = Accuracy::new(METHOD.order(), scheduler.options.rtol);
-        let scales =
-            Scales { body: member.gyrostat, rounding: ROUNDING_OF_RUNGE_KUTTA, in_space: true, is_smooth };
+        let scales = Scales {
+            body: member.gyrostat,
+            rounding: ROUNDING_OF_RUNGE_KUTTA,
+            in_space: true,
+            is_smooth: member.bounds.is_smooth,
+        };
         BodyRun {
+            controller: StepController::new(first, member.bounds.longest),
             member,
-            breaks,
-            longest,
-            limit,
             first,
             sweeps: Convergence::new(accuracy.tolerance(), accuracy, scales),
             sweep: Sweep::default(),
             noise: None,
             begin: start,
-            least_rate,
             known_rate: 0.0,
-            controller: StepController::new(first, longest),
             tolerance: accuracy.goal,
             stop: start.phase.time,
             so_far: 0,
@@ -80,13 +72,22 @@ impl<'a> BodyRun<'a> {
         if let StepRule::Tolerance(tolerance) = rule {
             self.tolerance = tolerance;
         }
-        (self.noise, self.controller) = (noise, StepController::new(self.first, self.longest));
+        (self.noise, self.controller) = (noise, self.first_steps());
         self.begin
+    }
+
+    fn first_steps(&self) -> StepController {
+        StepController::new(self.first, self.member.bounds.longest)
     }
 
     /// The magnitude of the angular velocity, bounded below by its scale, in rad/s.
     pub fn rate(&self, at: &Carried) -> f64 {
-        self.member.gyrostat.omega(at.phase.momentum).norm().max(self.least_rate).max(self.known_rate)
+        self.member
+            .gyrostat
+            .omega(at.phase.momentum)
+            .norm()
+            .max(self.member.bounds.least_rate)
+            .max(self.known_rate)
     }
 
     /// Records the points at output times and sets the next stop, also on the other side of the start and in the next
@@ -113,12 +114,12 @@ impl<'a> BodyRun<'a> {
             }
             let time = times[if taken < early { early - 1 - taken } else { taken }];
             if at.phase.time != time {
-                self.stop = next_stop(&self.breaks, at.phase.time, time);
+                self.stop = next_stop(&self.member.bounds.breaks, at.phase.time, time);
                 return Ok(None);
             }
             self.sweep.states.push(*at);
             if taken + 1 == early {
-                (*at, self.controller) = (self.begin, StepController::new(self.first, self.longest));
+                (*at, self.controller) = (self.begin, self.first_steps());
                 *fastest = self.rate(at);
             }
         }
@@ -139,13 +140,13 @@ impl<'a> BodyRun<'a> {
         }
         let turn = self.member.gyrostat.omega(next.get(l).phase.momentum).norm() * h;
         let time = next.time.0[l];
-        self.limit.check(self.sweep.steps, h, turn, || self.fraction(time, scheduler))
+        self.member.bounds.limit.check(self.sweep.steps, h, turn, || self.fraction(time, scheduler))
     }
 
     /// The error of a law that cannot be evaluated, from a single-body step; none if the step is just too long.
     #[cold]
     pub fn diagnose(&self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
-        let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None, &DOP853);
+        let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None);
         alone.step(at, h, self.rate(at)).map(|_| ())
     }
 

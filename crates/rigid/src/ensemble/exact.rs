@@ -5,7 +5,7 @@ use super::scheduler::Scheduler;
 use crate::exact::free::FreeMotion;
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
 use crate::run::closed_form::{ElapsedTime, check_kept};
-use crate::state::checks::check_horizons_from;
+use crate::state::checks::check_horizons;
 use crate::state::phase::Phase;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
@@ -17,7 +17,7 @@ impl<'a> Scheduler<'a> {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
         let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);
         let method = "exact";
-        if let Err(error) = check_horizons_from(start.time, self.times, [motion.horizon(); 2]) {
+        if let Err(error) = check_horizons(start.time, self.times, [motion.horizon(); 2]) {
             return self.fail(body, own, method, error);
         }
         let since = ElapsedTime::new(start.time, gyrostat, &[]);

@@ -1,15 +1,14 @@
 //! Fixed-step integration of bodies in SIMD lanes.
 
-use super::advance::Segment;
 use super::laws::{LaneForcing, Laws};
 use super::member::{Member, Outcome, Plan, SIDE_BY_SIDE};
 use super::scheduler::Scheduler;
-use super::steppers::{Components, Kicks, Stepper, of};
+use super::steppers::{Advance, Components, Kicks, Segment, Stepper, of};
 use crate::error::SimulateError;
-use crate::laws::torque::Torque;
+use crate::laws::torque::{Torque, damping_rate};
 use crate::methods::Method;
 use crate::methods::classical::Bodies;
-use crate::methods::kicks::fixed_momentum;
+use crate::methods::momentum::fixed_momentum;
 use crate::methods::splitting::turns::Turns;
 use crate::run::Progress;
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
@@ -20,7 +19,7 @@ use crate::run::sweep::is_finite;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Phase;
-use polhode_ga::simd::lanes::Work;
+use polhode_ga::simd::lanes::{Work, fastest};
 use std::array;
 
 /// Steps between checks for finite states and calls of `progress`.
@@ -42,7 +41,7 @@ impl Work for FixedSteps<'_, '_> {
         let torques: Vec<Vec<Torque>> =
             self.members.iter_mut().map(|m| std::mem::take(&mut m.torques)).collect();
         let laws = |l: usize| &torques[if l < torques.len() { l } else { 0 }][..];
-        let damping = |l: usize| laws(l).iter().map(Torque::damping_rate).sum();
+        let damping = |l: usize| damping_rate(laws(l));
         let members = &self.members;
         let gyrostats = array::from_fn(|l| of(members, l).gyrostat);
         if let Method::Splitting(sequence) = self.plan.method {
@@ -50,17 +49,29 @@ impl Work for FixedSteps<'_, '_> {
             let fixed = |l: usize| fixed_momentum(laws(l), &of(members, l).start).map(|momentum| momentum.0);
             let turns = Turns::new(array::from_fn(|l| (gyrostats[l], damping(l), fixed(l))));
             let (stages, laws) = ((&stages[..], last), Laws::new(gyrostats, array::from_fn(laws)));
-            self.advance_all(&mut Kicks::<F> { turns, stages, laws }, &torques);
+            self.advance_all::<F, _>(&mut Kicks::<F> { turns, stages, laws }, &torques);
         } else {
             let bodies = Bodies::new(array::from_fn(|l| (gyrostats[l], damping(l))));
-            let forcing = LaneForcing::new(gyrostats, array::from_fn(laws));
-            self.advance_all(&mut Components::<F> { bodies, forcing }, &torques);
+            match LaneForcing::new(gyrostats, array::from_fn(laws)) {
+                LaneForcing::NoForcing(forcing) => {
+                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                }
+                LaneForcing::Weight(forcing) => {
+                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                }
+                LaneForcing::Gradient(forcing) => {
+                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                }
+                LaneForcing::Laws(forcing) => {
+                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                }
+            }
         }
     }
 }
 
 impl FixedSteps<'_, '_> {
-    fn advance_all<const F: bool, S: Stepper<F>>(self, stepper: &mut S, torques: &[Vec<Torque>]) {
+    fn advance_all<const F: bool, S: Stepper>(self, stepper: &mut S, torques: &[Vec<Torque>]) {
         let FixedSteps { scheduler, plan, mut members, progress } = self;
         let Plan { start, step, method, .. } = plan;
         let times = scheduler.times;
@@ -84,15 +95,17 @@ impl FixedSteps<'_, '_> {
                     longest = longest.max((segment.to - segment.from).abs() / segment.count as f64);
                     for first in (0..segment.count).step_by(BETWEEN_CHECKS as usize) {
                         let last = segment.count.min(first + BETWEEN_CHECKS);
-                        let before = state;
-                        stepper.advance(&mut state, segment, &(first..last));
+                        let (part, before) = (first..last, state);
+                        let advance =
+                            Advance::<_, F> { stepper, state: &mut state, segment, steps: part.clone() };
+                        fastest(advance);
                         steps += last - first;
                         for (l, member) in members.iter().enumerate() {
                             let now = stepper.phase(&member.gyrostat, &state, l, segment.begin(last));
                             if !lost[l] && !is_finite(&Carried::new(now, Center::default())) {
                                 let from = stepper.phase(&member.gyrostat, &before, l, segment.begin(first));
-                                let part = (&segment, first..last);
                                 lost[l] = true;
+                                let part = (&segment, part.clone());
                                 let failure = diagnose(method, member, &torques[l], from, part);
                                 failures[l].get_or_insert(failure);
                             }

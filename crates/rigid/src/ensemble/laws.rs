@@ -4,8 +4,8 @@
 //! evaluated once per time.
 
 use crate::laws::forcing::{Forcing, Place};
-use crate::laws::formula::{Formula, Formulas};
-use crate::laws::torque::lanes::{Three, gradient, quadratic, seen, turn_from};
+use crate::laws::formula::Formulas;
+use crate::laws::torque::lanes::{Three, gradient, in_lanes, quadratic, seen, turn_from};
 use crate::laws::torque::{Axes, Gains, Orbit, Table, Torque};
 use crate::state::phase::vertical;
 use crate::state::phase::{Gyrostat, Phase};
@@ -58,7 +58,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
 
 /// The forcing of bodies in lanes, specialised for the simple cases.
 pub(super) enum LaneForcing<'t, const W: usize, const F: bool> {
-    NoForcing,
+    NoForcing(NoForcing),
     Weight(Weight<W, F>),
     Gradient(Gradient<W, F>),
     Laws(Laws<'t, W, F>),
@@ -68,7 +68,7 @@ impl<'t, const W: usize, const F: bool> LaneForcing<'t, W, F> {
     /// Every body has laws of the same kinds in the same order.
     pub fn new(gyrostats: [Gyrostat; W], torques: [&'t [Torque]; W]) -> LaneForcing<'t, W, F> {
         if torques[0].is_empty() {
-            return LaneForcing::NoForcing;
+            return LaneForcing::NoForcing(NoForcing);
         }
         let mut laws = Laws::new(gyrostats, torques);
         let wheels = gyrostats.iter().any(|body| body.wheel != Bivector::default());
@@ -154,32 +154,16 @@ fn numbers(law: &Torque) -> Vec<f64> {
     }
 }
 
-/// The lanes of N numbers, from the first on.
+/// The lanes of N numbers, from the first on. A body without this law has it with zeros.
 fn lanes<const N: usize, const W: usize, const F: bool>(
     each: &[Vec<f64>; W],
     first: usize,
 ) -> [Lanes<W, F>; N] {
-    let mut lanes = [Lanes::ZERO; N];
-    for (l, numbers) in each.iter().enumerate() {
-        // A body without this law has it with zeros.
-        for (lane, x) in lanes.iter_mut().zip(numbers.iter().skip(first)) {
-            lane.0[l] = *x;
-        }
-    }
-    lanes
+    in_lanes(|l| array::from_fn(|k| each[l].get(first + k).copied().unwrap_or_default()))
 }
 
 fn square<const W: usize, const F: bool>(each: &[Vec<f64>; W], first: usize) -> [Three<W, F>; 3] {
     array::from_fn(|row| lanes(each, first + 3 * row))
-}
-
-/// The formula of a law that is computed by one.
-fn formula_of(law: &Torque) -> Option<&Formula> {
-    match law {
-        Torque::Formula(law) => Some(law.formula()),
-        Torque::Registered(law) => Some(law.torque.formula()),
-        _ => None,
-    }
 }
 
 impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
@@ -212,7 +196,7 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
                 }
             }
             Torque::Formula(_) | Torque::Registered(_) => {
-                let known = each.map(formula_of);
+                let known = each.map(Torque::formula);
                 let formulas = known[0].filter(|_| known.iter().all(Option::is_some)).and_then(|first| {
                     Formulas::new(known.map(|formula| formula.unwrap_or(first)), gyrostats)
                 });
@@ -299,13 +283,19 @@ fn place(orbit: &Orbit, time: f64) -> [f64; 3] {
 }
 
 impl CachedTable<'_> {
-    /// The torque at a time, NaN where the table has none.
-    fn at(&mut self, time: f64) -> [f64; 3] {
-        if time != self.time {
-            self.time = time;
-            self.torque = self.table.at(time).map_or([f64::NAN; 3], |torque| torque.0);
+    /// The torques at the times of all bodies, NaN where the table has none.
+    fn at<const W: usize, const F: bool>(&mut self, times: &[f64; W]) -> Three<W, F> {
+        let mut torques = [Lanes::ZERO; 3];
+        for l in 0..W {
+            if times[l] != self.time {
+                self.time = times[l];
+                self.torque = self.table.at(times[l]).map_or([f64::NAN; 3], |torque| torque.0);
+            }
+            for k in 0..3 {
+                torques[k].0[l] = self.torque[k];
+            }
         }
-        self.torque
+        torques
     }
 }
 
@@ -320,13 +310,7 @@ impl<'t, const W: usize, const F: bool> Laws<'t, W, F> {
                 }
             }
         }
-        let (mut moments, mut wheel) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
-        for (l, body) in gyrostats.iter().enumerate() {
-            for k in 0..3 {
-                moments[k].0[l] = body.moments[k];
-                wheel[k].0[l] = body.wheel.0[k];
-            }
-        }
+        let (moments, wheel) = (in_lanes(|l| gyrostats[l].moments), in_lanes(|l| gyrostats[l].wheel.0));
         Laws { gyrostats, moments, wheel, laws }
     }
 
@@ -343,91 +327,67 @@ fn lane_by_lane<const W: usize, const F: bool>(
     each: &[&Torque; W],
     at: &Place<W, F>,
 ) -> Three<W, F> {
-    let mut torques = [Lanes::ZERO; 3];
-    for l in 0..W {
-        let body = &gyrostats[l];
-        let rotor = at.rotor.map(|lanes| lanes.0[l]);
-        let known = rotor[0].is_finite();
+    in_lanes(|l| {
+        let (body, rotor) = (&gyrostats[l], at.rotor.map(|lanes| lanes.0[l]));
+        // Laws are not evaluated for a failed body.
+        if !rotor[0].is_finite() {
+            return [f64::NAN; 3];
+        }
         let momentum = body.momentum(Bivector(at.omega.map(|lanes| lanes.0[l])));
         let phase = Phase { rotor: Rotor::from_unit_components(rotor), momentum, time: at.time.0[l] };
-        // Laws are not evaluated for a failed body.
-        let torque = if known { each[l].value(body, &phase).ok() } else { None };
-        let torque = torque.unwrap_or(Bivector([f64::NAN; 3]));
-        for k in 0..3 {
-            torques[k].0[l] = torque.0[k];
-        }
-    }
-    torques
+        each[l].value(body, &phase).map_or([f64::NAN; 3], |torque| torque.0)
+    })
 }
 
-/// The torque of a law of kind K, numbered as below. Each kind is compiled by itself, outside the stages of the steps,
-/// which would repeat its code.
-struct Term<'a, 't, const K: usize, const W: usize, const F: bool> {
+/// The torque of a law, compiled outside the stages of the steps, which would repeat its code.
+struct Term<'a, 't, const W: usize, const F: bool> {
     law: &'a mut Law<'t, W, F>,
     moments: &'a Three<W, F>,
     wheel: &'a Three<W, F>,
     at: &'a Place<W, F>,
 }
 
-impl<const K: usize, const W: usize, const F: bool> Work for Term<'_, '_, K, W, F> {
+impl<const W: usize, const F: bool> Work for Term<'_, '_, W, F> {
     type Output = Three<W, F>;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Three<W, F> {
         // The caller is on the same path; other paths are not compiled.
-        if FUSED == F { self.torque() } else { [Lanes::ZERO; 3] }
-    }
-}
-
-impl<const K: usize, const W: usize, const F: bool> Term<'_, '_, K, W, F> {
-    #[inline(always)]
-    fn torque(self) -> Three<W, F> {
+        if FUSED != F {
+            return [Lanes::ZERO; 3];
+        }
         let Term { law, moments, wheel, at } = self;
         match law {
             // γ∧c: its axial vector is γ x c.
-            Law::Heavy(c) if K == 0 => cross(&vertical(&at.rotor), c),
-            Law::GravityGradient(orbits) if K == 1 => orbits.torque(moments, at),
-            Law::ConstantSpace(torque) if K == 2 => seen(&at.rotor, torque),
-            Law::QuadraticDamping(k) if K == 3 => quadratic(*k, &at.omega),
-            Law::ViscousDamping(d) if K == 4 => {
+            Law::Heavy(c) => cross(&vertical(&at.rotor), c),
+            Law::GravityGradient(orbits) => orbits.torque(moments, at),
+            Law::ConstantBody(torque) => *torque,
+            Law::ConstantSpace(torque) => seen(&at.rotor, torque),
+            Law::QuadraticDamping(k) => quadratic(*k, &at.omega),
+            Law::ViscousDamping(d) => {
                 let [x, y, z] = mapped(d, &at.omega);
                 [-x, -y, -z]
             }
-            Law::Magnetic { dipole, field } if K == 5 => cross(dipole, &seen(&at.rotor, field)),
-            Law::Spring { stiffness, rest } if K == 6 => {
+            Law::Magnetic { dipole, field } => cross(dipole, &seen(&at.rotor, field)),
+            Law::Spring { stiffness, rest } => {
                 let [x, y, z] = mapped(stiffness, &turn_from(rest, &at.rotor));
                 [-x, -y, -z]
             }
-            Law::Larmor(b) if K == 7 => {
+            Law::Larmor(b) => {
                 let mut momentum = *wheel;
                 for k in 0..3 {
                     momentum[k] = moments[k].times_plus(at.omega[k], wheel[k]);
                 }
                 cross(&momentum, &seen(&at.rotor, b))
             }
-            Law::Tabulated(cached) if K == 8 => {
-                let mut torque = [Lanes::ZERO; 3];
-                for l in 0..W {
-                    let numbers = cached.at(at.time.0[l]);
-                    for k in 0..3 {
-                        torque[k].0[l] = numbers[k];
-                    }
-                }
+            Law::Tabulated(cached) => {
+                let torque = cached.at(&at.time.0);
                 if cached.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
             }
-            Law::Formula(formulas) if K == 9 => formulas.torque(at),
-            _ => [Lanes::ZERO; 3],
+            Law::Formula(formulas) => formulas.torque(at),
+            Law::Other(_) => [Lanes::ZERO; 3],
         }
     }
-}
-
-fn term<const K: usize, const W: usize, const F: bool>(
-    law: &mut Law<W, F>,
-    moments: &Three<W, F>,
-    wheel: &Three<W, F>,
-    at: &Place<W, F>,
-) -> Three<W, F> {
-    fastest(Term::<K, W, F> { law, moments, wheel, at })
 }
 
 impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
@@ -438,18 +398,8 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
         let mut sum = [Lanes::ZERO; 3];
         for law in laws {
             let torque = match law {
-                Law::ConstantBody(torque) => *torque,
                 Law::Other(each) => lane_by_lane(gyrostats, each, at),
-                Law::Heavy(_) => term::<0, W, F>(law, moments, wheel, at),
-                Law::GravityGradient(_) => term::<1, W, F>(law, moments, wheel, at),
-                Law::ConstantSpace(_) => term::<2, W, F>(law, moments, wheel, at),
-                Law::QuadraticDamping(_) => term::<3, W, F>(law, moments, wheel, at),
-                Law::ViscousDamping(_) => term::<4, W, F>(law, moments, wheel, at),
-                Law::Magnetic { .. } => term::<5, W, F>(law, moments, wheel, at),
-                Law::Spring { .. } => term::<6, W, F>(law, moments, wheel, at),
-                Law::Larmor(_) => term::<7, W, F>(law, moments, wheel, at),
-                Law::Tabulated(_) => term::<8, W, F>(law, moments, wheel, at),
-                Law::Formula(_) => term::<9, W, F>(law, moments, wheel, at),
+                law => fastest(Term { law, moments, wheel, at }),
             };
             add(&mut sum, &torque);
         }

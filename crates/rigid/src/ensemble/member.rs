@@ -3,7 +3,6 @@
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
 use crate::methods::Method;
-use crate::methods::runge_kutta::DOP853;
 use crate::methods::splitting::turns::Kind;
 use crate::run::certificate::Certificate;
 use crate::run::limits::StepBounds;
@@ -15,7 +14,7 @@ use polhode_ga::{Bivector, Rotor};
 pub(super) const SIDE_BY_SIDE: usize = 16;
 
 /// The method of adaptive steps.
-pub(super) const METHOD: Method = Method::RungeKutta(&DOP853);
+pub(super) const METHOD: Method = Method::RungeKutta;
 
 /// A body integrated in lanes, in principal axes.
 #[derive(Debug)]

@@ -6,7 +6,6 @@
 //! at the output times. Bodies that lanes do not support are solved one by one. A body that fails does not stop the others.
 
 mod adaptive;
-mod advance;
 mod body_run;
 mod exact;
 mod fixed;

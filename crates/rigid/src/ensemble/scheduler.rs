@@ -7,7 +7,6 @@ use crate::error::SimulateError;
 use crate::laws::force::Force;
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::Method;
-use crate::methods::splitting::Sequence;
 use crate::methods::splitting::turns::Kind;
 use crate::run::certificate::Certificate;
 use crate::run::closed_form::{ClosedForm, UniformAcceleration};
@@ -121,7 +120,7 @@ impl<'a> Scheduler<'a> {
                 let moments = self.ensemble.inertias.of(body).principal_moments();
                 let gyrostat = Gyrostat { moments, wheel: wheel(&torques) };
                 let kind = Kind::of(&gyrostat);
-                let exact_drift = matches!(sequence, Sequence::Nystrom(_)) && !kind.is_symmetric();
+                let exact_drift = sequence.is_nystrom() && !kind.is_symmetric();
                 if exact_drift || method.unfit(&gyrostat, &torques).is_some() {
                     return None;
                 }

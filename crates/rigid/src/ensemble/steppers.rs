@@ -1,36 +1,85 @@
 //! Fixed-step methods for bodies in SIMD lanes.
 
-use super::advance::{Advance, Segment, Steps};
-use super::laws::{LaneForcing, Laws, NoForcing};
+use super::laws::Laws;
 use super::member::{Member, SIDE_BY_SIDE as W};
 use crate::laws::forcing::Forcing;
+use crate::laws::torque::lanes::in_lanes;
 use crate::methods::classical::{self, Bodies, State};
 use crate::methods::splitting::turns::{Spin, Turns};
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::simd::lanes::{Lanes, fastest};
+use polhode_ga::simd::lanes::{Lanes, Work};
 use polhode_ga::{Bivector, Rotor};
-use std::array;
 use std::ops::Range;
 
+/// Number of steps whose times are computed together, with one division.
+const TIMED: usize = 32;
+
+/// Equal steps from one time to another.
+#[derive(Clone, Copy)]
+pub(super) struct Segment {
+    pub from: f64,
+    pub to: f64,
+    pub count: u64,
+}
+
+impl Segment {
+    /// The time at which a step begins. The steps are the differences of these rounded times, so that they add up.
+    #[inline(always)]
+    pub fn begin(&self, step: u64) -> f64 {
+        if step == self.count {
+            self.to
+        } else {
+            self.from + (self.to - self.from) * (step as f64 / self.count as f64)
+        }
+    }
+}
+
 /// A fixed-step method.
-pub(super) trait Stepper<const F: bool> {
+pub(super) trait Stepper {
     /// The state between steps.
     type State: Copy;
 
     /// The states at the start; lanes without a body hold the first one's.
     fn start(&self, members: &[Member]) -> Self::State;
 
-    /// Some of the steps of a segment.
-    fn advance(&mut self, state: &mut Self::State, segment: Segment, steps: &Range<u64>);
+    /// Steps from each time to the next. `#[inline(always)]`.
+    fn advance(&mut self, state: &mut Self::State, times: &[f64]);
 
     /// The point of the body of a lane.
     fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase;
 }
 
+/// Some of the steps of a segment, compiled apart from the work between them so that the steps have all registers.
+pub(super) struct Advance<'a, S: Stepper, const F: bool> {
+    pub stepper: &'a mut S,
+    pub state: &'a mut S::State,
+    pub segment: Segment,
+    pub steps: Range<u64>,
+}
+
+impl<S: Stepper, const F: bool> Work for Advance<'_, S, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        // The caller is on the same path; other paths are not compiled.
+        if FUSED == F {
+            for first in self.steps.clone().step_by(TIMED) {
+                let mut times = [0.0; TIMED + 1];
+                for k in 0..=TIMED {
+                    times[k] = self.segment.begin(first + k as u64);
+                }
+                let count = TIMED.min((self.steps.end - first) as usize);
+                self.stepper.advance(self.state, &times[..count + 1]);
+            }
+        }
+    }
+}
+
 /// The classical method.
-pub(super) struct Components<'t, const F: bool> {
+pub(super) struct Components<E, const F: bool> {
     pub bodies: Bodies<W, F>,
-    pub forcing: LaneForcing<'t, W, F>,
+    pub forcing: E,
 }
 
 /// A splitting, with its kicks and drifts.
@@ -45,111 +94,57 @@ pub(super) fn of<'m, 'a>(members: &'m [Member<'a>], lane: usize) -> &'m Member<'
     members.get(lane).unwrap_or(&members[0])
 }
 
-impl<const F: bool> Stepper<F> for Components<'_, F> {
+impl<E: Forcing<W, F>, const F: bool> Stepper for Components<E, F> {
     type State = State<7, W, F>;
 
     fn start(&self, members: &[Member]) -> Self::State {
-        let mut state = [Lanes::ZERO; 7];
-        for l in 0..W {
-            let member = of(members, l);
-            let rotor = member.start.rotor.components();
-            let omega = member.gyrostat.omega(member.start.momentum).0;
-            for k in 0..7 {
-                state[k].0[l] = if k < 4 { rotor[k] } else { omega[k - 4] };
-            }
-        }
-        state
+        in_lanes(|l| {
+            let Member { start, gyrostat, .. } = of(members, l);
+            let ([s, x, y, z], [p, q, r]) = (start.rotor.components(), gyrostat.omega(start.momentum).0);
+            [s, x, y, z, p, q, r]
+        })
     }
 
-    fn advance(&mut self, state: &mut Self::State, segment: Segment, steps: &Range<u64>) {
-        let bodies = &self.bodies;
-        match &mut self.forcing {
-            LaneForcing::NoForcing => {
-                let method = OnComponents { bodies, forcing: &mut NoForcing, state };
-                fastest(Advance::<_, F> { method, segment, steps });
-            }
-            LaneForcing::Weight(forcing) => {
-                fastest(Advance::<_, F> { method: OnComponents { bodies, forcing, state }, segment, steps });
-            }
-            LaneForcing::Gradient(forcing) => {
-                fastest(Advance::<_, F> { method: OnComponents { bodies, forcing, state }, segment, steps });
-            }
-            LaneForcing::Laws(forcing) => {
-                fastest(Advance::<_, F> { method: OnComponents { bodies, forcing, state }, segment, steps });
-            }
+    #[inline(always)]
+    fn advance(&mut self, state: &mut Self::State, times: &[f64]) {
+        // Copies, which the compiler may keep in registers.
+        let (bodies, mut now) = (self.bodies, *state);
+        for k in 1..times.len() {
+            classical::step(&bodies, &mut self.forcing, &mut now, times[k - 1], times[k] - times[k - 1]);
         }
+        *state = now;
     }
 
     fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase {
-        let numbers: [f64; 7] = array::from_fn(|k| state[k].0[lane]);
-        classical::phase(body, &numbers, time)
+        classical::phase(body, &state.map(|lanes| lanes.0[lane]), time)
     }
 }
 
-impl<const F: bool> Stepper<F> for Kicks<'_, F> {
+impl<const F: bool> Stepper for Kicks<'_, F> {
     type State = Spin<W, F>;
 
     fn start(&self, members: &[Member]) -> Self::State {
-        let mut spin = Spin { rotor: [Lanes::ZERO; 4], momentum: [Lanes::ZERO; 3], lost: [Lanes::ZERO; 3] };
-        for l in 0..W {
-            let start = &of(members, l).start;
-            let (rotor, momentum) = (start.rotor.components(), start.momentum.0);
-            for k in 0..4 {
-                spin.rotor[k].0[l] = rotor[k];
-            }
-            for k in 0..3 {
-                spin.momentum[k].0[l] = momentum[k];
-            }
+        Spin {
+            rotor: in_lanes(|l| of(members, l).start.rotor.components()),
+            momentum: in_lanes(|l| of(members, l).start.momentum.0),
+            lost: [Lanes::ZERO; 3],
         }
-        spin
     }
 
-    fn advance(&mut self, state: &mut Self::State, segment: Segment, steps: &Range<u64>) {
-        let method = BySplitting { turns: &self.turns, stages: self.stages, laws: &mut self.laws, state };
-        fastest(Advance::<_, F> { method, segment, steps });
+    #[inline(always)]
+    fn advance(&mut self, state: &mut Self::State, times: &[f64]) {
+        let mut now = *state;
+        for k in 1..times.len() {
+            self.turns.step(self.stages, &mut self.laws, &mut now, times[k - 1], times[k] - times[k - 1]);
+        }
+        *state = now;
     }
 
     fn phase(&self, _: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase {
         Phase {
-            rotor: Rotor::from_unit_components(array::from_fn(|k| state.rotor[k].0[lane])),
-            momentum: Bivector(array::from_fn(|k| state.momentum[k].0[lane])),
+            rotor: Rotor::from_unit_components(state.rotor.map(|lanes| lanes.0[lane])),
+            momentum: Bivector(state.momentum.map(|lanes| lanes.0[lane])),
             time,
         }
-    }
-}
-
-struct OnComponents<'a, E, const F: bool> {
-    bodies: &'a Bodies<W, F>,
-    forcing: &'a mut E,
-    state: &'a mut State<7, W, F>,
-}
-
-impl<E: Forcing<W, F>, const F: bool> Steps for OnComponents<'_, E, F> {
-    #[inline(always)]
-    fn advance_over(&mut self, times: &[f64]) {
-        // Copies, which the compiler may keep in registers.
-        let (bodies, mut now) = (*self.bodies, *self.state);
-        for k in 1..times.len() {
-            classical::step(&bodies, self.forcing, &mut now, times[k - 1], times[k] - times[k - 1]);
-        }
-        *self.state = now;
-    }
-}
-
-struct BySplitting<'a, 't, const F: bool> {
-    turns: &'a Turns<W, F>,
-    stages: (&'t [(f64, f64)], f64),
-    laws: &'a mut Laws<'t, W, F>,
-    state: &'a mut Spin<W, F>,
-}
-
-impl<const F: bool> Steps for BySplitting<'_, '_, F> {
-    #[inline(always)]
-    fn advance_over(&mut self, times: &[f64]) {
-        let mut now = *self.state;
-        for k in 1..times.len() {
-            self.turns.step(self.stages, self.laws, &mut now, times[k - 1], times[k] - times[k - 1]);
-        }
-        *self.state = now;
     }
 }

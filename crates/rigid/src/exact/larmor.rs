@@ -12,7 +12,7 @@
 //! angle of about `d |ω| t` ([`LarmorSphere::neglected`]).
 
 use super::free::{MOST_TURNS, power_of_two};
-use crate::body::inertia::{Inertia, apart, equal};
+use crate::body::inertia::{Inertia, apart, is_sphere};
 use crate::error::SimulateError;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::{Phase, sin_cos_turns};
@@ -44,8 +44,7 @@ impl LarmorSphere {
     ) -> Result<LarmorSphere, SimulateError> {
         let moments = inertia.principal_moments();
         check_moments(moments)?;
-        if !(equal(moments[0], moments[1]) && equal(moments[1], moments[2]) && equal(moments[2], moments[0]))
-        {
+        if !is_sphere(moments) {
             return Err(SimulateError::NotSpherical { moments });
         }
         for (what, values) in [("the angular velocity", omega.0), ("the field b", b.0)] {

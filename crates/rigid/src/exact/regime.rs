@@ -3,35 +3,43 @@
 use crate::facts;
 use crate::facts::Facts;
 use std::f64::consts::PI;
-use std::fmt;
 
-/// How a free body moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Regime {
-    /// No rotation.
-    Rest,
-    /// A fixed axis: a principal axis, or any axis of a sphere.
-    Steady,
-    /// Two equal moments: regular precession, handout eq. (4.35).
-    Symmetric,
-    /// The polhode encircles the axis of the largest moment.
-    ShortAxis,
-    /// The polhode encircles the axis of the smallest moment.
-    LongAxis,
-    /// Between the two: the spin tends to the middle axis.
-    Separatrix,
+/// An enum of regimes, each with the name that it displays.
+macro_rules! regimes {
+    ($(#[$doc:meta])* $name:ident { $($(#[$of:meta])* $regime:ident = $text:literal,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $name {
+            $($(#[$of])* $regime),*
+        }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(match self {
+                    $($name::$regime => $text),*
+                })
+            }
+        }
+    };
 }
 
-impl fmt::Display for Regime {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Regime::Rest => "at rest",
-            Regime::Steady => "steady rotation about a fixed axis",
-            Regime::Symmetric => "symmetric top, regular precession",
-            Regime::ShortAxis => "short-axis mode",
-            Regime::LongAxis => "long-axis mode",
-            Regime::Separatrix => "separatrix",
-        })
+pub(crate) use regimes;
+
+regimes! {
+    /// How a free body moves.
+    Regime {
+        /// No rotation.
+        Rest = "at rest",
+        /// A fixed axis: a principal axis, or any axis of a sphere.
+        Steady = "steady rotation about a fixed axis",
+        /// Two equal moments: regular precession, handout eq. (4.35).
+        Symmetric = "symmetric top, regular precession",
+        /// The polhode encircles the axis of the largest moment.
+        ShortAxis = "short-axis mode",
+        /// The polhode encircles the axis of the smallest moment.
+        LongAxis = "long-axis mode",
+        /// Between the two: the spin tends to the middle axis.
+        Separatrix = "separatrix",
     }
 }
 
@@ -80,6 +88,7 @@ impl FreeDescription {
             _ => None,
         }
     }
+
     /// The description by name; `axis` is 1, 2 or 3.
     pub fn facts(&self) -> Facts {
         let [wobble_min, wobble_max] = [0, 1].map(|end| self.wobble.map(|wobble| wobble[end]));

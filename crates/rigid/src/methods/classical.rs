@@ -12,7 +12,7 @@
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
 use crate::laws::forcing::{BodyForcing, Forcing, Place};
-use crate::laws::torque::Torque;
+use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
@@ -192,34 +192,29 @@ pub struct Classical {
 impl Classical {
     /// Moments must be positive; torques and forces in principal axes. Without a translation the centre of mass stays.
     pub fn new(body: Gyrostat, torques: Vec<Torque>, translation: Option<Translation>) -> Classical {
-        let damping = torques.iter().map(Torque::damping_rate).sum();
-        Classical { body, torques, translation, alone: Bodies::new([(body, damping)]) }
+        let alone = Bodies::new([(body, damping_rate(&torques))]);
+        Classical { body, torques, translation, alone }
     }
 
     /// One step of length `h`, which may be negative.
     pub fn step(&self, from: &Carried, h: f64) -> Result<Carried, SimulateError> {
-        let omega = self.body.omega(from.phase.momentum).0;
-        let (rotor, time) = (from.phase.rotor.components(), from.phase.time);
+        if self.translation.is_none() { self.step_of::<7>(from, h) } else { self.step_of::<13>(from, h) }
+    }
+
+    fn step_of<const N: usize>(&self, from: &Carried, h: f64) -> Result<Carried, SimulateError> {
+        let (Phase { rotor, momentum, time }, Center { position, velocity }) = (from.phase, from.center);
+        let (rotor, omega) = (rotor.components(), self.body.omega(momentum));
+        let mut numbers = rotor.into_iter().chain(omega.0).chain(position.0).chain(velocity.0);
+        let mut state = One::each(array::from_fn(|_| numbers.next().unwrap_or_default()));
         let mut acting = BodyForcing::new(&self.body, &self.torques, self.translation.as_ref());
-        let rotation: [f64; 7] = array::from_fn(|k| if k < 4 { rotor[k] } else { omega[k - 4] });
-        let (rotation, center) = if self.translation.is_none() {
-            let mut state = One::each(rotation);
-            step(&self.alone, &mut acting, &mut state, time, h);
-            (One::alone(state), from.center)
-        } else {
-            let Center { position, velocity } = from.center;
-            let mut state = One::each(array::from_fn(|k| match k {
-                0..7 => rotation[k],
-                7..10 => position.0[k - 7],
-                _ => velocity.0[k - 10],
-            }));
-            step::<13, 1, false, _>(&self.alone, &mut acting, &mut state, time, h);
-            let state = One::alone(state);
-            let three = |first: usize| Vector(array::from_fn(|k| state[first + k]));
-            (array::from_fn(|k| state[k]), Center { position: three(7), velocity: three(10) })
-        };
+        step::<N, 1, false, _>(&self.alone, &mut acting, &mut state, time, h);
         acting.finish()?;
-        Ok(Carried::new(phase(&self.body, &rotation, time + h), center))
+        let state = One::alone(state);
+        let center = match state[7..] {
+            [x, y, z, u, v, w] => Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) },
+            _ => from.center,
+        };
+        Ok(Carried::new(phase(&self.body, &state, time + h), center))
     }
 }
 

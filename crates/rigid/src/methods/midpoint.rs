@@ -18,9 +18,9 @@
 //! energy, vanish. So these two and L are conserved exactly, and under a torque the linear invariants of L. Damping
 //! `N = −g I(Ω̄)` shrinks `m − h_w` for any step: the rule is A-stable.
 
-use super::kicks::{fixed_momentum, restore_momentum};
+use super::momentum::{fixed_momentum, restore_momentum};
 use crate::error::SimulateError;
-use crate::laws::torque::{Dependence, Torque, total_torque};
+use crate::laws::torque::{Dependence, Torque, damping_rate, total_torque};
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor, Vector};
 
@@ -53,7 +53,7 @@ impl Midpoint {
     pub fn new(body: Gyrostat, torques: Vec<Torque>, start: &Phase) -> Midpoint {
         Midpoint {
             body,
-            damping: torques.iter().map(Torque::damping_rate).sum(),
+            damping: damping_rate(&torques),
             rates: torques.iter().any(|t| t.dependence() == Dependence::Rate),
             fixed: fixed_momentum(&torques, start),
             torques,
@@ -75,27 +75,26 @@ impl Midpoint {
 
     /// m̄ with `F(m̄) = 0`.
     fn mean_momentum(&self, state: &Phase, h: f64) -> Result<Bivector, SimulateError> {
-        let mut mean = state.momentum;
-        let mut residual = self.residual(state, mean, h)?;
-        let frozen = if self.rates { Some(self.measured_jacobian(state, mean, residual, h)?) } else { None };
-        let mut last = f64::INFINITY;
-        for _ in 0..MOST_ITERATIONS {
-            let correction = solved(&frozen.unwrap_or_else(|| self.jacobian(mean, h)), residual);
-            mean = mean - correction;
+        let mut frozen = None;
+        let correction = |mean: Bivector| {
+            let residual = self.residual(state, mean, h)?;
+            let jacobian = match frozen {
+                Some(jacobian) => jacobian,
+                None if self.rates => *frozen.insert(self.measured_jacobian(state, mean, residual, h)?),
+                None => self.jacobian(mean, h),
+            };
+            Ok(solved(&jacobian, residual))
+        };
+        let relative = |correction: f64, mean: Bivector| {
             let size = state.momentum.norm().max(mean.norm());
-            let relative = if size > LEAST { correction.norm() / size } else { correction.norm() };
-            if relative <= CONVERGED || relative < ROUNDING && relative >= 0.5 * last {
-                return Ok(mean);
-            }
-            if !relative.is_finite() {
-                break;
-            }
-            last = relative;
-            residual = self.residual(state, mean, h)?;
-        }
-        let message =
-            format!("Newton's method did not converge for a midpoint step of {h:e} s; use a shorter step");
-        Err(SimulateError::Torque { time: state.time, message })
+            if size > LEAST { correction / size } else { correction }
+        };
+        newton(state.momentum, MOST_ITERATIONS, correction, relative)?.ok_or_else(|| {
+            let message = format!(
+                "Newton's method did not converge for a midpoint step of {h:e} s; use a shorter step"
+            );
+            SimulateError::Torque { time: state.time, message }
+        })
     }
 
     /// `F(m̄)`.
@@ -152,6 +151,30 @@ impl Midpoint {
         }
         Ok(jacobian)
     }
+}
+
+/// Newton's method from x with the given correction at a point, and its relative size after it was subtracted; None if
+/// it does not converge.
+pub(crate) fn newton(
+    mut x: Bivector,
+    most_iterations: u32,
+    mut correction: impl FnMut(Bivector) -> Result<Bivector, SimulateError>,
+    relative: impl Fn(f64, Bivector) -> f64,
+) -> Result<Option<Bivector>, SimulateError> {
+    let mut last = f64::INFINITY;
+    for _ in 0..most_iterations {
+        let change = correction(x)?;
+        x = x - change;
+        let relative = relative(change.norm(), x);
+        if relative <= CONVERGED || relative < ROUNDING && relative >= 0.5 * last {
+            return Ok(Some(x));
+        }
+        if !relative.is_finite() {
+            break;
+        }
+        last = relative;
+    }
+    Ok(None)
 }
 
 /// The axial vector's cross product.

@@ -1,28 +1,27 @@
 //! Stepping methods: names, orders, and the laws that each supports.
 
 pub mod classical;
-pub(crate) mod kicks;
 pub mod midpoint;
+pub(crate) mod momentum;
 pub mod moser_veselov;
 pub mod runge_kutta;
 pub mod splitting;
 pub(crate) mod step_control;
 
 use crate::body::inertia::equal;
-use crate::laws::torque::{Dependence, Torque};
+use crate::laws::torque::{Dependence, Torque, damping_rate};
 use crate::state::phase::{Gyrostat, Phase};
-use runge_kutta::{DOP853, Tableau};
 use splitting::{COMPOSITIONS, RKN6, Sequence};
 
 /// A stepping method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// Exact turns and kicks.
-    Splitting(Sequence),
+    Splitting(&'static Sequence),
     /// The classical Runge–Kutta method on components.
     Classical,
-    /// Runge–Kutta on the group of rotors.
-    RungeKutta(&'static Tableau),
+    /// Runge–Kutta on the group of rotors, of order 8.
+    RungeKutta,
     /// The implicit midpoint rule.
     Midpoint,
     /// Discrete Moser–Veselov.
@@ -31,15 +30,8 @@ pub enum Method {
 
 /// All methods, splittings first, each kind in ascending order.
 pub fn methods() -> impl Iterator<Item = Method> {
-    let compositions = COMPOSITIONS.iter().map(|c| Method::Splitting(Sequence::Composition(c)));
-    let others = [
-        Method::Splitting(Sequence::Nystrom(&RKN6)),
-        Method::Classical,
-        Method::RungeKutta(&DOP853),
-        Method::Midpoint,
-        Method::MoserVeselov,
-    ];
-    compositions.chain(others)
+    let others = [Method::Classical, Method::RungeKutta, Method::Midpoint, Method::MoserVeselov];
+    COMPOSITIONS.iter().chain([&RKN6]).map(Method::Splitting).chain(others)
 }
 
 impl Method {
@@ -51,10 +43,9 @@ impl Method {
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
-            Method::Splitting(Sequence::Composition(composition)) => composition.name,
-            Method::Splitting(Sequence::Nystrom(nystrom)) => nystrom.name,
+            Method::Splitting(sequence) => sequence.name,
             Method::Classical => "rk4",
-            Method::RungeKutta(tableau) => tableau.name,
+            Method::RungeKutta => "dop853",
             Method::Midpoint => "midpoint",
             Method::MoserVeselov => "dmv",
         }
@@ -63,17 +54,16 @@ impl Method {
     /// Its order of convergence.
     pub fn order(self) -> i32 {
         match self {
-            Method::Splitting(Sequence::Composition(composition)) => composition.order,
-            Method::Splitting(Sequence::Nystrom(nystrom)) => nystrom.order,
+            Method::Splitting(sequence) => sequence.order,
             Method::Classical => 4,
-            Method::RungeKutta(tableau) => tableau.order,
+            Method::RungeKutta => 8,
             Method::Midpoint | Method::MoserVeselov => 2,
         }
     }
 
     /// Whether it estimates the error of each step and adapts the next.
     pub fn adapts(self) -> bool {
-        matches!(self, Method::RungeKutta(_))
+        self == Method::RungeKutta
     }
 
     /// The largest turn in the first step tried, in rad: implicit equations have a solution for short steps only.
@@ -91,19 +81,17 @@ impl Method {
             !translated && torques.iter().all(|t| t.dependence() == Dependence::Attitude && steady(t));
         let kicks = kicks && !may_jump(body, torques, start);
         if !kicks {
-            Method::RungeKutta(&DOP853)
-        } else if Method::unfit(Method::Splitting(Sequence::Nystrom(&RKN6)), body, torques).is_none()
-            && symmetric(body)
-        {
-            Method::Splitting(Sequence::Nystrom(&RKN6))
+            Method::RungeKutta
+        } else if Method::Splitting(&RKN6).unfit(body, torques).is_none() && symmetric(body) {
+            Method::Splitting(&RKN6)
         } else {
-            Method::Splitting(Sequence::Composition(&COMPOSITIONS[COMPOSITIONS.len() - 1]))
+            Method::Splitting(&COMPOSITIONS[COMPOSITIONS.len() - 1])
         }
     }
 
     /// Why it does not support this body and these laws, with an alternative.
     pub(crate) fn unfit(self, body: &Gyrostat, torques: &[Torque]) -> Option<&'static str> {
-        if matches!(self, Method::Classical | Method::RungeKutta(_) | Method::Midpoint) {
+        if matches!(self, Method::Classical | Method::RungeKutta | Method::Midpoint) {
             return None;
         }
         if torques.iter().any(|t| t.dependence() == Dependence::Rate) {
@@ -113,12 +101,11 @@ impl Method {
         }
         let wheel = body.wheel != Default::default();
         match self {
-            Method::Splitting(Sequence::Nystrom(_)) if torques.iter().any(|t| t.damping_rate() != 0.0) => {
+            Method::Splitting(sequence) if !sequence.is_nystrom() => None,
+            Method::Splitting(_) if torques.iter().any(|t| t.damping_rate() != 0.0) => {
                 Some("does not support damping; use kahan_li8")
             }
-            Method::Splitting(Sequence::Nystrom(_)) if wheel => {
-                Some("does not support wheels; use kahan_li8")
-            }
+            Method::Splitting(_) if wheel => Some("does not support wheels; use kahan_li8"),
             Method::MoserVeselov if wheel => {
                 Some("does not support wheels; use midpoint, which conserves as much, or kahan_li8")
             }
@@ -154,8 +141,7 @@ pub(crate) const ROUNDING_OF_RUNGE_KUTTA: f64 = 0.4 * f64::EPSILON;
 /// The rate of the fastest turn, in rad/s, a scale for steps: bounded by momentum, energy and torque.
 pub(crate) fn fastest_rate(body: &Gyrostat, torques: &[Torque], start: &Phase) -> f64 {
     let torque: f64 = torques.iter().map(|t| t.size_at(body, start)).sum();
-    let damping: f64 = torques.iter().map(Torque::damping_rate).sum();
     let smallest = body.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
     let omega = body.omega(start.momentum).norm().max(body.wheel.norm() / smallest);
-    omega.hypot((2.0 * torque / smallest).sqrt()) + damping.abs()
+    omega.hypot((2.0 * torque / smallest).sqrt()) + damping_rate(torques).abs()
 }

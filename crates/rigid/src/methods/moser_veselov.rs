@@ -20,10 +20,12 @@
 //! `H = ½ m·I⁻¹m`, `C = ½|m|²`, `Π = I_1 I_2 I_3` (E. Hairer & G. Vilmart, J. Phys. A 39 (2006) 13225): H and C are
 //! constant, so s and d are, and conserving `(1 + h²s) H + h²d C` conserves H. With kicks the order is 2.
 
-use super::kicks::{Kicks, fixed_momentum, restore_momentum};
-use super::midpoint::{cayley, cross, solved};
+use super::midpoint::{cayley, cross, newton, solved};
+use super::momentum::{fixed_momentum, restore_momentum};
+use super::splitting::turns::{Spin, Turns};
 use crate::error::SimulateError;
-use crate::laws::torque::Torque;
+use crate::laws::forcing::BodyForcing;
+use crate::laws::torque::{Torque, damping_rate};
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::Bivector;
 
@@ -33,8 +35,9 @@ const MOST_ITERATIONS: u32 = 40;
 /// The method for a body without a wheel, and its torques.
 #[derive(Clone, Debug)]
 pub struct MoserVeselov {
-    moments: [f64; 3],
-    kicks: Option<Kicks>,
+    body: Gyrostat,
+    torques: Vec<Torque>,
+    kicks: Turns<1, false>,
     /// L in space, where it is constant.
     fixed: Option<Bivector>,
 }
@@ -43,40 +46,45 @@ impl MoserVeselov {
     /// Moments must be positive; torques in principal axes, each dependent on attitude and time at most.
     pub fn new(body: Gyrostat, torques: Vec<Torque>, start: &Phase) -> MoserVeselov {
         let fixed = fixed_momentum(&torques, start);
-        let kicks = (!torques.is_empty()).then(|| Kicks::new(body, torques));
-        MoserVeselov { moments: body.moments, kicks, fixed }
+        MoserVeselov { body, kicks: Turns::new([(body, damping_rate(&torques), None)]), torques, fixed }
     }
 
     /// One step of length `h`, which may be negative. An error where `h|Ω|` is too large.
     pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
-        let start = state.time;
-        if let Some(kicks) = &self.kicks {
-            kicks.kick(state, 0.5 * h)?;
-            self.drift(state, h)?;
-            state.time = start + h;
-            kicks.kick(state, 0.5 * h)?;
-        } else {
-            self.drift(state, h)?;
-            state.time = start + h;
-        }
+        let end = state.time + h;
+        self.kick(state, 0.5 * h)?;
+        self.drift(state, h)?;
+        state.time = end;
+        self.kick(state, 0.5 * h)?;
         if let Some(fixed) = self.fixed {
             restore_momentum(state, fixed);
         }
         Ok(())
     }
 
+    fn kick(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
+        if self.torques.is_empty() {
+            return Ok(());
+        }
+        let mut acting = BodyForcing::new(&self.body, &self.torques, None);
+        let mut spin = Spin::alone(state, Bivector::default());
+        self.kicks.kick(&mut acting, &mut spin, state.time, h);
+        state.momentum = spin.one_momentum();
+        acting.finish()
+    }
+
     fn drift(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
         let m = state.momentum;
         let moments = self.modified_moments(m, h);
         let turn = half_turn(moments, m, h).ok_or_else(|| self.too_long(state, h))?;
-        let carried = Bivector([0, 1, 2].map(|k| moments[k] * turn.0[k]));
+        let carried = Gyrostat::rigid(moments).carried(turn);
         state.momentum += cross(carried, turn) * (4.0 / (h * (1.0 + turn.norm_squared())));
         state.rotor = (state.rotor * cayley(turn)).renormalized();
         Ok(())
     }
 
     fn too_long(&self, state: &Phase, h: f64) -> SimulateError {
-        let omega = Bivector([0, 1, 2].map(|k| state.momentum.0[k] / self.moments[k])).norm();
+        let omega = Gyrostat::rigid(self.body.moments).omega(state.momentum).norm();
         let message = format!(
             "the discrete Moser-Veselov equation has no solution for a step of {h:e} s, which turns the body by {:.2} rad; \
              use steps of at most about 1 rad",
@@ -87,13 +95,13 @@ impl MoserVeselov {
 
     /// `Ĩ_k`.
     fn modified_moments(&self, m: Bivector, h: f64) -> [f64; 3] {
-        let [a, b, c] = self.moments;
+        let [a, b, c] = self.body.moments;
         let [x, y, z] = m.0;
         let (energy, casimir) = (0.5 * (x * x / a + y * y / b + z * z / c), 0.5 * m.norm_squared());
         let (sum, product) = ((a + b + c) / 6.0, a * b * c);
         let s = h * h * (sum * casimir / product - (1.0 / a + 1.0 / b + 1.0 / c) * energy / 3.0);
         let d = h * h * (sum * energy - casimir / 3.0) / product;
-        self.moments.map(|i| i / (1.0 + s + d * i))
+        self.body.moments.map(|i| i / (1.0 + s + d * i))
     }
 }
 
@@ -102,10 +110,9 @@ fn half_turn(moments: [f64; 3], m: Bivector, h: f64) -> Option<Bivector> {
     if !moments.iter().all(|i| *i > 0.0) {
         return None;
     }
-    let mut turn = Bivector([0, 1, 2].map(|k| 0.5 * h * m.0[k] / moments[k]));
-    let mut last = f64::INFINITY;
-    for _ in 0..MOST_ITERATIONS {
-        let carried = Bivector([0, 1, 2].map(|k| moments[k] * turn.0[k]));
+    let body = Gyrostat::rigid(moments);
+    let correction = |turn: Bivector| {
+        let carried = body.carried(turn);
         let residual = carried + cross(turn, carried) - m * (0.5 * h * (1.0 + turn.norm_squared()));
         // I + P̂ I − (I(P))^ − h m P.
         let ([a, b, c], [x, y, z], [u, v, w]) = (moments, turn.0, carried.0);
@@ -116,16 +123,10 @@ fn half_turn(moments: [f64; 3], m: Bivector, h: f64) -> Option<Bivector> {
             [z * a - w + entry(1, 0), b + entry(1, 1), u - x * c + entry(1, 2)],
             [v - y * a + entry(2, 0), x * b - u + entry(2, 1), c + entry(2, 2)],
         ];
-        let correction = solved(&jacobian, residual);
-        turn = turn - correction;
-        let relative = if m == Bivector::default() { 0.0 } else { correction.norm() / turn.norm() };
-        if relative <= 4.0 * f64::EPSILON || relative < 1e-12 && relative >= 0.5 * last {
-            return Some(turn);
-        }
-        if !relative.is_finite() {
-            break;
-        }
-        last = relative;
-    }
-    None
+        Ok(solved(&jacobian, residual))
+    };
+    let relative =
+        |size: f64, turn: Bivector| if m == Bivector::default() { 0.0 } else { size / turn.norm() };
+    let start = Bivector([0, 1, 2].map(|k| 0.5 * h * m.0[k] / moments[k]));
+    newton(start, MOST_ITERATIONS, correction, relative).ok().flatten()
 }

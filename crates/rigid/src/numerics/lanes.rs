@@ -40,16 +40,34 @@ pub(crate) fn sin_cos_turns<const FMA: bool>(turns: f64, rest: f64) -> (f64, f64
     (sin, cos)
 }
 
-/// The nearest multiple in −1, 0, 1 of half a turn.
+/// A place within a half period of `u = 4K · turns`.
+pub(crate) struct HalfPeriod {
+    /// −1 in the half periods beside that about 0.
+    pub odd: f64,
+    /// `u/2K` from the middle, in [−½, ½], and its sign.
+    pub part: f64,
+    pub side: f64,
+    /// `|u|/2K` from the middle and to the border, with the rest.
+    pub from_middle: f64,
+    pub to_border: f64,
+}
+
+/// The place after turns in [−½, ½] and a rest.
 #[inline(always)]
-pub(crate) fn half_turns(turn: f64) -> f64 {
-    if turn > 0.25 {
+pub(crate) fn half_period(turn: f64, rest: f64) -> HalfPeriod {
+    let whole = if turn > 0.25 {
         1.0
     } else if turn < -0.25 {
         -1.0
     } else {
         0.0
-    }
+    };
+    let part = 2.0 * turn - whole;
+    let side = 1f64.copysign(part);
+    let more = 2.0 * side * rest;
+    let from_middle = (part.abs() + more).max(0.0);
+    let to_border = ((0.5 - part.abs()) - more).max(0.0);
+    HalfPeriod { odd: 1.0 - 2.0 * f64::abs(whole), part, side, from_middle, to_border }
 }
 
 /// `e^{−x}` and `e^{−x} − 1`, each to a few roundings, for x in [0, 705].

@@ -7,7 +7,7 @@ use crate::laws::torque::Torque;
 use crate::methods::classical::Classical;
 use crate::methods::midpoint::Midpoint;
 use crate::methods::moser_veselov::MoserVeselov;
-use crate::methods::runge_kutta::RungeKutta;
+use crate::methods::runge_kutta::{RungeKutta, STAGES};
 use crate::methods::splitting::Splitting;
 use crate::methods::{Method, ROUNDING_OF_RUNGE_KUTTA};
 use crate::state::carried::Carried;
@@ -35,7 +35,7 @@ impl Engine {
         start: &Phase,
     ) -> Result<Engine, SimulateError> {
         let moving = "supports constant forces only; use auto, dop853 or rk4";
-        let moving = (translation.is_some() && !matches!(method, Method::Classical | Method::RungeKutta(_)))
+        let moving = (translation.is_some() && !matches!(method, Method::Classical | Method::RungeKutta))
             .then_some(moving);
         if let Some(reason) = method.unfit(&body, torques).or(moving) {
             return Err(SimulateError::Unfit { method: method.name(), reason });
@@ -45,9 +45,7 @@ impl Engine {
                 Engine::Splitting(Splitting::new(body, torques.to_vec(), sequence, start))
             }
             Method::Classical => Engine::Classical(Classical::new(body, torques.to_vec(), translation)),
-            Method::RungeKutta(tableau) => {
-                Engine::RungeKutta(RungeKutta::new(body, torques.to_vec(), translation, tableau))
-            }
+            Method::RungeKutta => Engine::RungeKutta(RungeKutta::new(body, torques.to_vec(), translation)),
             Method::Midpoint => Engine::Midpoint(Midpoint::new(body, torques.to_vec(), start)),
             Method::MoserVeselov => Engine::MoserVeselov(MoserVeselov::new(body, torques.to_vec(), start)),
         })
@@ -58,7 +56,7 @@ impl Engine {
     pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
         let mut to = *from;
         match self {
-            Engine::Splitting(splitting) => splitting.carry(&mut to.phase, &mut to.lost, h)?,
+            Engine::Splitting(splitting) => splitting.step(&mut to.phase, &mut to.lost, h)?,
             Engine::Classical(classical) => to = classical.step(from, h)?,
             Engine::RungeKutta(runge_kutta) => return runge_kutta.step(from, h, fastest),
             Engine::ClosedForm(motion) => to = motion.at(from.phase.time + h),
@@ -94,7 +92,7 @@ impl Engine {
         match self {
             Engine::Splitting(splitting) => splitting.evaluations(),
             Engine::Classical(_) => 4,
-            Engine::RungeKutta(runge_kutta) => runge_kutta.tableau().rows.len() as u64,
+            Engine::RungeKutta(_) => STAGES as u64,
             Engine::ClosedForm(_) => 0,
             // About one per iteration.
             Engine::Midpoint(_) => 5,

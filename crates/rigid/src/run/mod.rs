@@ -9,7 +9,6 @@ pub(crate) mod noise;
 mod options;
 pub(crate) mod output;
 pub(crate) mod refine;
-mod setup;
 pub(crate) mod stops;
 pub(crate) mod sweep;
 
@@ -23,7 +22,7 @@ use crate::methods::step_control::Limit;
 use crate::methods::{Method, fastest_rate};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
-use crate::state::checks::{check_horizons_from, check_moments};
+use crate::state::checks::{check_horizons, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
 use certificate::{Certificate, DriftMonitor, off_unit};
 use closed_form::{ClosedForm, UniformAcceleration, check_kept};
@@ -37,7 +36,23 @@ use sweep::{Integrator, StepRule, Sweep, is_finite};
 
 pub use motion::{Motion, States};
 pub use options::{MAX_STEPS, Options};
-pub use setup::Setup;
+
+/// Inertia, start and torques of a rotating body, in body axes.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// About the centre of mass, or about the fixed point if there is one.
+    pub inertia: Inertia,
+    /// From body axes to space at the start.
+    pub rotor: Rotor,
+    /// The angular velocity at the start, in rad/s.
+    pub omega: Bivector,
+    /// The time of the start, in s.
+    pub time: f64,
+    /// The torques, those of off-centre thrusts included.
+    pub torques: Vec<Torque>,
+    /// Whether forces move the centre of mass.
+    pub has_forces: bool,
+}
 
 /// A body with its start, time 0 unless another is given, torques and forces. Stored in principal axes.
 #[derive(Clone, Debug)]
@@ -178,7 +193,7 @@ impl Problem {
         let translation = self.translation.clone().filter(|_| fall.is_none());
         let (engine, name) = match closed {
             Some(closed) => {
-                check_horizons_from(self.time, times, closed.horizons())?;
+                check_horizons(self.time, times, closed.horizons())?;
                 (Engine::ClosedForm(Box::new(closed)), "exact")
             }
             None => (
@@ -298,9 +313,7 @@ impl Problem {
             first,
             least_rate: bounds.least_rate.max(known_rate),
             noise,
-            longest: bounds.longest,
-            limit: bounds.limit,
-            breaks: &bounds.breaks,
+            bounds,
             events,
             fall: self.fall(),
             origin: self.time,

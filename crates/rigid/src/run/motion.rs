@@ -12,7 +12,7 @@ use crate::laws::conserved::Conserved;
 use crate::laws::event::Occurrence;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
-use crate::state::checks::check_horizons_from;
+use crate::state::checks::check_horizons;
 use polhode_ga::{Bivector, Rotor};
 
 /// A solved motion, which can be evaluated at and between its output times.
@@ -118,7 +118,7 @@ impl Motion {
     /// A motion in closed form at any times within its horizons; none for others.
     pub fn exactly(&self, times: &[f64]) -> Option<Result<States, SimulateError>> {
         let Engine::ClosedForm(closed) = &self.engine else { return None };
-        let known = check_horizons_from(self.problem.time, times, closed.horizons());
+        let known = check_horizons(self.problem.time, times, closed.horizons());
         Some(known.map(|()| {
             let states: Vec<Carried> = times.iter().map(|&t| closed.at(t)).collect();
             self.problem.states(&states)

@@ -3,12 +3,13 @@
 use super::certificate::DriftMonitor;
 use super::closed_form::UniformAcceleration;
 use super::engine::Engine;
+use super::limits::{StepBounds, span};
 use super::noise::Noise;
 use crate::error::SimulateError;
 use crate::error::TorqueError;
 use crate::laws::conserved::Conserved;
 use crate::laws::event::{Event, Occurrence, crossing, dip, root};
-use crate::methods::step_control::{Limit, StepController, next_stop};
+use crate::methods::step_control::{StepController, next_stop};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Gyrostat;
@@ -119,11 +120,7 @@ pub(crate) struct Integrator<'a> {
     pub least_rate: f64,
     /// Noise added to the points after each step.
     pub noise: Option<Noise>,
-    /// The longest step, in s.
-    pub longest: f64,
-    pub limit: Limit,
-    /// Ascending times at which steps end: the laws are not smooth there, or change fast.
-    pub breaks: &'a [f64],
+    pub bounds: &'a StepBounds,
     pub events: &'a [Event],
     /// The motion of the centre of mass, where its acceleration is constant.
     pub fall: Option<UniformAcceleration>,
@@ -152,13 +149,12 @@ impl Integrator<'_> {
     /// beyond an event that ends the motion are left out.
     pub fn sweep(mut self, start: Carried, times: &[f64]) -> Result<Sweep, SimulateError> {
         let origin = start.phase.time;
-        let begin = times.first().map_or(origin, |t| t.min(origin));
-        let end = times.last().map_or(origin, |t| t.max(origin));
+        let [begin, end] = span(times, origin);
         let total = end - begin;
         if let StepRule::Step(EqualSteps { step, parts, .. }) = self.rule {
-            let stops = (times.len() + self.breaks.len()) as f64;
+            let stops = (times.len() + self.bounds.breaks.len()) as f64;
             let steps = total / step + parts * stops;
-            let limit = self.limit.steps;
+            let limit = self.bounds.limit.steps;
             if steps > limit {
                 return Err(SimulateError::TooManySteps { steps, step, limit });
             }
@@ -192,7 +188,7 @@ impl Integrator<'_> {
         let values = self.values(&start)?;
         let mut cursor = Cursor {
             at: start,
-            controller: StepController::new(self.first, self.longest),
+            controller: StepController::new(self.first, self.bounds.longest),
             fastest,
             values,
             ended: false,
@@ -220,7 +216,7 @@ impl Integrator<'_> {
         done: Done,
     ) -> Result<(), SimulateError> {
         loop {
-            let to = next_stop(self.breaks, cursor.at.phase.time, time);
+            let to = next_stop(&self.bounds.breaks, cursor.at.phase.time, time);
             match self.rule {
                 StepRule::Step(steps) => self.equal_steps(cursor, to, steps, sweep, done)?,
                 StepRule::Tolerance(tolerance) => self.adapted_steps(cursor, to, tolerance, sweep, done)?,
@@ -275,7 +271,7 @@ impl Integrator<'_> {
                 sweep.errors += error;
                 self.arrive(cursor, next, sweep, done)?;
                 let turn = self.body.omega(next.phase.momentum).norm() * (to - from);
-                self.limit.check(sweep.steps, to - from, turn, || done(to))?;
+                self.bounds.limit.check(sweep.steps, to - from, turn, || done(to))?;
             }
         }
         Ok(())

@@ -95,7 +95,7 @@ fn length_unit(reader: &mut Reader, value: &Value) -> Option<f64> {
     match value.get_ref().as_str() {
         Some(name) if name.starts_with(char::is_alphabetic) => {
             let unit = units::parse_unit(name, Quantity::Length);
-            unit.map_err(|error| reader.report(value.span(), error.to_string())).ok()
+            unit.map_err(|error| reader.report(value.span(), error)).ok()
         }
         _ => reader.positive(value, Quantity::Length),
     }
@@ -109,32 +109,46 @@ fn solid(reader: &mut Reader, table: &Table) -> Option<Solid> {
         reader.misplaced(table, size, name, own);
     }
     let length = |reader: &mut Reader, value: &Value| reader.positive(value, Quantity::Length);
-    let mut lengths =
-        |name| reader.field(table, name, |reader, value| reader.array(value, "lengths", length));
-    match name {
-        "box" => return Some(Solid::Box { lengths: lengths("lengths")? }),
-        "ellipsoid" => return Some(Solid::Ellipsoid { semi_axes: lengths("semi_axes")? }),
-        _ => {}
-    }
-    // Read all dimensions before returning at the first missing one, so that all errors are reported.
-    let read = |name: &&str| match *name {
-        // A hollow sphere may have an inner radius of 0.
-        "inner_radius" => reader.field(table, name, |reader, value| reader.quantity(value, Quantity::Length)),
-        _ => reader.field(table, name, length),
+    let lengths = match own {
+        [name @ ("lengths" | "semi_axes")] => {
+            let three = |reader: &mut Reader, value: &Value| reader.array::<3, _>(value, "lengths", length);
+            reader.field(table, name, three)?.to_vec()
+        }
+        _ => {
+            // Read all dimensions before returning at the first missing one, so that all errors are reported.
+            let read = |name: &&str| match *name {
+                // A hollow sphere may have an inner radius of 0.
+                "inner_radius" => {
+                    reader.field(table, name, |reader, value| reader.quantity(value, Quantity::Length))
+                }
+                _ => reader.field(table, name, length),
+            };
+            let lengths: Vec<Option<f64>> = own.iter().map(read).collect();
+            lengths.into_iter().collect::<Option<_>>()?
+        }
     };
-    let sizes: Vec<Option<f64>> = own.iter().map(read).collect();
-    let mut sizes = sizes.into_iter();
-    let mut size = || sizes.next().flatten();
-    Some(match name {
-        "sphere" => Solid::Sphere { radius: size()? },
-        "hollow_sphere" => Solid::HollowSphere { outer_radius: size()?, inner_radius: size()? },
-        "cylinder" => Solid::Cylinder { radius: size()?, height: size()? },
-        "cone" => Solid::Cone { radius: size()?, height: size()? },
-        "rod" => Solid::Rod { length: size()? },
-        "disc" => Solid::Disc { radius: size()? },
-        "torus" => Solid::Torus { major_radius: size()?, minor_radius: size()? },
-        _ => Solid::Capsule { radius: size()?, height: size()? },
-    })
+    Solid::from_lengths(name, &lengths)
+}
+
+impl Solid {
+    /// A solid from its name in scenes and its lengths in m, in the order of its fields; none if these do not fit.
+    pub fn from_lengths(name: &str, lengths: &[f64]) -> Option<Solid> {
+        Some(match (name, lengths) {
+            ("box", &[x, y, z]) => Solid::Box { lengths: [x, y, z] },
+            ("ellipsoid", &[x, y, z]) => Solid::Ellipsoid { semi_axes: [x, y, z] },
+            ("sphere", &[radius]) => Solid::Sphere { radius },
+            ("hollow_sphere", &[outer_radius, inner_radius]) => {
+                Solid::HollowSphere { outer_radius, inner_radius }
+            }
+            ("cylinder", &[radius, height]) => Solid::Cylinder { radius, height },
+            ("cone", &[radius, height]) => Solid::Cone { radius, height },
+            ("rod", &[length]) => Solid::Rod { length },
+            ("disc", &[radius]) => Solid::Disc { radius },
+            ("torus", &[major_radius, minor_radius]) => Solid::Torus { major_radius, minor_radius },
+            ("capsule", &[radius, height]) => Solid::Capsule { radius, height },
+            _ => return None,
+        })
+    }
 }
 
 fn amount(reader: &mut Reader, table: &Table) -> Option<Amount> {

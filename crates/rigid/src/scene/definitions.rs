@@ -1,6 +1,7 @@
 //! Names defined by a scene, and formulas that use them.
 
-use crate::laws::torque::{Axes, FormulaTorque, given_names};
+use crate::laws::formula::{Formula, Purpose, given_names};
+use crate::laws::torque::Axes;
 use crate::units::UNITS;
 use polhode_ga::Graded;
 use polhode_ga::formula::session::Source;
@@ -40,11 +41,11 @@ impl Formulas {
         self.evaluated(&source.text).map_err(|error| placed(&source, error))
     }
 
-    pub fn torque(&self, text: &str, axes: Axes) -> Result<FormulaTorque, Error> {
+    pub fn torque(&self, text: &str, axes: Axes) -> Result<Formula, Error> {
         let given: Vec<String> = given_names().map(str::to_owned).collect();
         let source = self.source(text, &given)?;
         let value = |input: &Input| self.values.get(&input.name).map(|value| Given::Value(*value));
-        FormulaTorque::new(&source.text, axes, self.names.clone(), value)
+        Formula::new(&source.text, Purpose::Torque(axes), self.names.clone(), value)
             .map_err(|error| placed(&source, error))
     }
 

@@ -6,50 +6,45 @@
 use super::{Attitudes, Ensemble, Gravity, Law, Parameter, Scene, SpinFrame, Spread};
 use crate::body::Body;
 use crate::body::inertia::Inertia;
+use crate::ensemble::{self, Rows, Start};
 use crate::laws::torque::Torque;
 use crate::random::{Words, normal};
+use crate::state::center::Center;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array::from_fn;
-use std::fmt;
+use std::fmt::Display;
 use std::ops::Range;
+use thiserror::Error;
 
-/// Bodies, one per row. Properties shared by all have a single row.
-#[derive(Clone, Debug)]
-pub struct Drawn {
-    /// The rotors that carry body axes to space axes.
-    pub rotors: Vec<[f64; 4]>,
-    /// The angular velocities in body axes, in rad/s.
-    pub omegas: Vec<[f64; 3]>,
-    /// The positions and velocities of the centre of mass, or of the fixed point.
-    pub centers: Vec<[f64; 6]>,
-    /// The inertia maps, about the centre of mass or about the fixed point.
-    pub inertias: Vec<Inertia>,
-    /// The laws in the order of [`Scene::build`].
-    pub laws: Vec<Vec<Torque>>,
-}
-
-impl Ensemble {
-    /// A range of the bodies of a scene, from the body and the laws of [`Scene::build`]. An error only for numbers beyond
-    /// the range of floats.
-    pub fn draw(
+impl Scene {
+    /// A range of the bodies of an ensemble, from the body and the laws of [`Scene::build`]; the torques of thrusts follow
+    /// these laws. An error only for numbers beyond the range of floats.
+    pub fn bodies(
         &self,
-        scene: &Scene,
+        ensemble: &Ensemble,
         (body, laws): (&Body, &[Law]),
         bodies: Range<usize>,
-    ) -> Result<Drawn, DrawError> {
-        let draw = Draw { ensemble: self, bodies };
-        let rotors = draw.rotors(scene.attitude);
-        let omegas = draw.omegas(scene, &rotors);
-        let held = scene.is_held();
-        let places = draw.spread("position", self.position, scene.center.position);
-        let velocities = draw.spread("velocity", self.velocity, scene.center.velocity);
-        let center = |([x, y, z], [u, v, w]): ([f64; 3], [f64; 3])| [x, y, z, u, v, w];
-        Ok(Drawn {
-            rotors: rotors.iter().map(|rotor| rotor.components()).collect(),
-            omegas: omegas.iter().map(|omega| omega.0).collect(),
-            centers: places.into_iter().zip(velocities).map(center).collect(),
-            inertias: draw.inertias(body, held)?,
-            laws: laws.iter().map(|law| draw.law(law, body, scene.gravity)).collect::<Result<_, _>>()?,
+    ) -> Result<ensemble::Ensemble, DrawError> {
+        let draw = Draw { ensemble, bodies };
+        let rotors = draw.rotors(self.attitude);
+        let omegas = draw.omegas(self, &rotors);
+        let places = draw.spread("position", ensemble.position, self.center.position);
+        let velocities = draw.spread("velocity", ensemble.velocity, self.center.velocity);
+        let start = |((rotor, omega), (position, velocity))| Start {
+            time: self.time,
+            rotor,
+            omega,
+            center: Center { position, velocity },
+        };
+        let starts = rotors.into_iter().zip(omegas).zip(places.into_iter().zip(velocities));
+        let laws = laws.iter().map(|law| draw.law(law, body, self.gravity));
+        let laws = laws.chain(self.thrust_torques(body).map(|torque| Ok(vec![torque])));
+        Ok(ensemble::Ensemble {
+            inertias: Rows::new(draw.inertias(body, self.is_held())?),
+            starts: starts.map(start).collect(),
+            laws: laws.map(|law| law.map(Rows::new)).collect::<Result<_, _>>()?,
+            masses: Rows::new(vec![body.mass]),
+            forces: self.pushes(),
         })
     }
 }
@@ -75,8 +70,8 @@ impl Draw<'_> {
     }
 
     /// Vectors distributed about one.
-    fn spread(&self, name: &str, spread: Option<Spread>, Vector(vector): Vector) -> Vec<[f64; 3]> {
-        self.each(name, vector, spread.map(|spread| move |words| spread.draw(vector, &words)))
+    fn spread(&self, name: &str, spread: Option<Spread>, vector: Vector) -> Vec<Vector> {
+        self.each(name, vector, spread.map(|spread| move |words| Vector(spread.draw(vector.0, &words))))
     }
 
     /// The direction of four normal numbers is uniform on the 3-sphere, so that its rotor is a uniform attitude.
@@ -170,28 +165,21 @@ impl Draw<'_> {
     }
 
     /// The error of the body in this row.
-    fn failed<E: fmt::Display>(&self, row: usize) -> impl Fn(E) -> DrawError {
+    fn failed<E: Display>(&self, row: usize) -> impl Fn(E) -> DrawError {
         let body = self.bodies.start + row;
         move |error| DrawError { body, message: error.to_string() }
     }
 }
 
 /// A draw that is not a possible body or law.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("body {body}: {message}")]
 pub struct DrawError {
     /// The index of the body, from 0.
     pub body: usize,
     /// The reason.
     pub message: String,
 }
-
-impl fmt::Display for DrawError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "body {}: {}", self.body, self.message)
-    }
-}
-
-impl std::error::Error for DrawError {}
 
 /// The direction of a vector of normal numbers, which are never 0 and never large.
 fn unit<const N: usize>(numbers: [f64; N]) -> [f64; N] {

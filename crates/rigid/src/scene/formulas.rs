@@ -11,7 +11,8 @@
 //! ```
 
 use super::reader::{Reader, Table, Value};
-use crate::laws::torque::{Axes, FormulaTorque};
+use crate::laws::formula::Formula;
+use crate::laws::torque::Axes;
 use crate::units::Quantity;
 use polhode_ga::formula::{Error, heading};
 use polhode_ga::product::Grades;
@@ -94,7 +95,7 @@ pub fn bivector(reader: &mut Reader, value: &Value, quantity: Quantity) -> Optio
 }
 
 /// The torque law of a formula, with the names of `[define]` and of the motion.
-pub fn torque(reader: &mut Reader, value: &Value, axes: Axes) -> Option<FormulaTorque> {
+pub fn torque(reader: &mut Reader, value: &Value, axes: Axes) -> Option<Formula> {
     let text = reader.string(value)?;
     let law = reader.formulas.torque(text, axes);
     law.map_err(|error| report(reader, value, text, error)).ok()

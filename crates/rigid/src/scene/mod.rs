@@ -66,9 +66,9 @@ mod draws;
 mod ensemble;
 #[cfg(test)]
 mod file_tests;
-mod forces;
 mod formulas;
 mod initial;
+mod laws;
 mod parameters;
 mod reader;
 mod run;
@@ -76,7 +76,6 @@ mod solve;
 mod spread;
 #[cfg(test)]
 mod tests;
-mod torques;
 
 pub use crate::laws::force::Push;
 pub use crate::laws::registry::Limit;
@@ -84,9 +83,10 @@ use crate::state::center::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
 pub use build::MeshSource;
-pub use draws::{DrawError, Drawn};
+pub use draws::DrawError;
 pub use ensemble::{Attitudes, Ensemble, Varied};
 pub use initial::SpinFrame;
+pub use laws::Law;
 pub use parameters::Parameter;
 use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -98,7 +98,6 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
-pub use torques::Law;
 
 /// Maximum size of a scene file in bytes.
 const LARGEST_FILE: u64 = 10_000_000;
@@ -225,7 +224,7 @@ impl Scene {
 fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Option<Scene> {
     let tables =
         ["title", "define", "body", "initial", "gravity", "torque", "force", "run", "method", "ensemble"];
-    reader.only(root, &[&tables[..], &torques::FORMULAS.map(|(name, _)| name)].concat());
+    reader.only(root, &[&tables[..], &laws::FORMULAS.map(|(name, _)| name)].concat());
     reader.optional(root, "define", |reader, value| {
         let table = reader.table(value, "[define]")?;
         formulas::read(reader, &table);
@@ -237,8 +236,8 @@ fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Opt
         section(reader, root, "initial", "[initial]").and_then(|table| initial::read(reader, &table));
     let gravity = reader.optional(root, "gravity", gravity);
     let torque = reader.optional(root, "torque", |reader, value| reader.table(value, "[torque]"));
-    let torques = torques::read(reader, root, torque.as_ref().and_then(Option::as_ref));
-    let forces = reader.optional(root, "force", forces::read);
+    let torques = laws::read(reader, root, torque.as_ref().and_then(Option::as_ref));
+    let forces = reader.optional(root, "force", laws::forces);
     let method = reader.optional(root, "method", |reader, value| reader.table(value, "[method]"));
     let run = section(reader, root, "run", "[run]")
         .and_then(|table| run::read(reader, &table, method.as_ref().and_then(Option::as_ref)));

@@ -252,7 +252,7 @@ impl Reader {
             DeValue::Integer(_) | DeValue::Float(_) => self.number(value),
             DeValue::String(text) => {
                 let number = units::parse(text, expected);
-                number.map_err(|error| self.report(value.span(), error.to_string())).ok()
+                number.map_err(|error| self.report(value.span(), error)).ok()
             }
             _ => {
                 self.wrong_type(value, &format!("{expected} such as `\"{}\"`", expected.example()));

@@ -1,16 +1,13 @@
 //! Problem, ensemble and options of a scene.
 
-use super::{DrawError, Law, Scene};
+use super::{Law, Scene};
 use crate::body::Body;
 use crate::body::inertia::Inertia;
-use crate::ensemble::{Ensemble, Rows, Start};
 use crate::laws::force::Force;
 use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::run::{Options, Problem, Setup};
-use crate::state::center::Center;
-use polhode_ga::{Bivector, Rotor, Vector};
-use std::ops::Range;
+use polhode_ga::Vector;
 
 impl Scene {
     /// The inertia of a body of [`Scene::build`] about the fixed point, the origin of its axes, or else about the centre of
@@ -40,31 +37,6 @@ impl Scene {
     /// The problem of the body with the laws built with it and the forces.
     pub fn problem(&self, body: &Body, laws: &[Law]) -> Problem {
         Problem::of(&self.setup(body, laws)).with_center(self.center, body.mass, &self.pushes())
-    }
-
-    /// Some bodies of the scene's ensemble, with their laws and forces.
-    pub fn bodies(
-        &self,
-        ensemble: &super::Ensemble,
-        built: (&Body, &[Law]),
-        bodies: Range<usize>,
-    ) -> Result<Ensemble, DrawError> {
-        let drawn = ensemble.draw(self, built, bodies)?;
-        let starts = drawn.rotors.iter().zip(&drawn.omegas).zip(&drawn.centers);
-        let starts = starts.map(|((rotor, omega), [x, y, z, u, v, w])| Start {
-            time: self.time,
-            rotor: Rotor::from_unit_components(*rotor),
-            omega: Bivector(*omega),
-            center: Center { position: Vector([*x, *y, *z]), velocity: Vector([*u, *v, *w]) },
-        });
-        let laws = drawn.laws.into_iter().chain(self.thrust_torques(built.0).map(|torque| vec![torque]));
-        Ok(Ensemble {
-            inertias: Rows::new(drawn.inertias),
-            starts: starts.collect(),
-            laws: laws.map(Rows::new).collect(),
-            masses: Rows::new(vec![built.0.mass]),
-            forces: self.pushes(),
-        })
     }
 
     /// The origin of the axes of the scene in those of the built body, whose origin under gravity is the pivot.

@@ -2,17 +2,8 @@
 
 use crate::error::SimulateError;
 
-/// Checks times against the horizons, backwards and forwards, of an exact motion that starts at time 0.
-pub fn check_horizons(times: &[f64], horizons: [f64; 2]) -> Result<(), SimulateError> {
-    check_horizons_from(0.0, times, horizons)
-}
-
-/// The same for a motion that starts at another time.
-pub(crate) fn check_horizons_from(
-    start: f64,
-    times: &[f64],
-    horizons: [f64; 2],
-) -> Result<(), SimulateError> {
+/// Checks times against the horizons, backwards and forwards, of an exact motion from its start.
+pub fn check_horizons(start: f64, times: &[f64], horizons: [f64; 2]) -> Result<(), SimulateError> {
     let horizon = |elapsed: f64| horizons[usize::from(elapsed > 0.0)];
     match times.iter().position(|&t| (t - start).abs() > horizon(t - start)) {
         Some(index) => {

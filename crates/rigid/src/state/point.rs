@@ -68,6 +68,10 @@ impl<T> Function<T> {
         Function { call: self.call, frame: self.frame * frame }
     }
 
+    pub(crate) fn frame(&self) -> Rotor {
+        self.frame
+    }
+
     pub(crate) fn value(&self, at: &Point) -> Result<T, TorqueError> {
         (self.call)(&at.seen(self.frame))
     }

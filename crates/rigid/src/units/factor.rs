@@ -1,17 +1,8 @@
 //! Products of units as they are written: `kg m^2 / s`.
 
 use super::split_digits;
-use super::table::{Dimension, Unit, find_unit};
+use super::table::{Dimension, Factor, find_unit};
 use polhode_ga::diagnostic::quote;
-
-/// A product of powers of units: `10^ten · numerator / denominator` SI units.
-#[derive(Clone, Copy)]
-pub struct Factor {
-    pub dimension: Dimension,
-    pub ten: i32,
-    pub numerator: f64,
-    pub denominator: f64,
-}
 
 impl Default for Factor {
     fn default() -> Factor {
@@ -37,7 +28,7 @@ impl Factor {
                 rest = rest[operator.len_utf8()..].trim_start();
             }
             let (unit, after) = split_unit(rest)?;
-            let (power, after) = split_power(after)?;
+            let (power, after) = split_power(after).map_err(Problem::Syntax)?;
             product.multiply(unit, if operator == Some('/') { -power } else { power });
             rest = after.trim_start();
             first = false;
@@ -46,7 +37,7 @@ impl Factor {
     }
 
     /// Times `unit^power`.
-    pub fn multiply(&mut self, unit: Unit, power: i32) {
+    pub fn multiply(&mut self, unit: Factor, power: i32) {
         for (total, d) in self.dimension.0.iter_mut().zip(unit.dimension.0) {
             *total += power * d;
         }
@@ -61,26 +52,25 @@ impl Factor {
 }
 
 /// The unit at the beginning of the text.
-fn split_unit(text: &str) -> Result<(Unit, &str), Problem> {
+fn split_unit(text: &str) -> Result<(Factor, &str), Problem> {
     let one = text.starts_with('1').then_some(1);
     let letters = text.find(|c: char| !(c.is_alphabetic() || c == '°')).unwrap_or(text.len());
     let (name, rest) = text.split_at(one.unwrap_or(letters));
-    match (name, text.chars().next()) {
-        ("", None) => Err(Problem::Syntax("a unit is missing at the end".to_owned())),
-        ("", Some(',')) => Err(Problem::Syntax("unexpected `,` (a decimal point is written `.`)".to_owned())),
-        ("", Some('(' | ')')) => {
-            Err(Problem::Syntax("parentheses are not supported (write `/` before each divisor)".to_owned()))
-        }
-        ("", Some(c @ '0'..='9')) => {
-            Err(Problem::Syntax(format!("unexpected `{c}` (a power is written `^{c}`)")))
-        }
-        ("", Some(c)) => Err(Problem::Syntax(format!("unexpected {}", quote(&c.to_string())))),
-        _ => find_unit(name).map(|unit| (unit, rest)).ok_or_else(|| Problem::UnknownUnit(name.to_owned())),
+    if !name.is_empty() {
+        let unit = find_unit(name).ok_or_else(|| Problem::UnknownUnit(name.to_owned()))?;
+        return Ok((unit, rest));
     }
+    Err(Problem::Syntax(match text.chars().next() {
+        None => "a unit is missing at the end".to_owned(),
+        Some(',') => "unexpected `,` (a decimal point is written `.`)".to_owned(),
+        Some('(' | ')') => "parentheses are not supported (write `/` before each divisor)".to_owned(),
+        Some(c @ '0'..='9') => format!("unexpected `{c}` (a power is written `^{c}`)"),
+        Some(c) => format!("unexpected {}", quote(&c.to_string())),
+    }))
 }
 
 /// The power at the beginning of the text, 1 if there is none.
-pub fn split_power(text: &str) -> Result<(i32, &str), Problem> {
+pub fn split_power(text: &str) -> Result<(i32, &str), String> {
     if let Some(written) = text.strip_prefix("**").or_else(|| text.strip_prefix('^')) {
         let (sign, digits) = match written.strip_prefix(['-', '\u{2212}']) {
             Some(digits) => (-1, digits),
@@ -100,10 +90,10 @@ pub fn split_power(text: &str) -> Result<(i32, &str), Problem> {
 }
 
 /// A power of one digit: no quantity needs more.
-fn power_of(digits: &str) -> Result<i32, Problem> {
+fn power_of(digits: &str) -> Result<i32, String> {
     match digits.parse() {
         Ok(power @ 1..=9) => Ok(power),
-        _ => Err(Problem::Syntax("a power must be a whole number from -9 to 9 and not 0".to_owned())),
+        _ => Err("a power must be a whole number from -9 to 9 and not 0".to_owned()),
     }
 }
 

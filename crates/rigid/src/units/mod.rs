@@ -17,119 +17,69 @@ mod within;
 
 pub use within::quantities;
 
-use factor::{Factor, Problem};
+use factor::Problem;
 use polhode_ga::diagnostic::quote;
 use polhode_ga::formula::session::Units;
 use std::fmt;
-use table::{Dimension, FREQUENCY, find_unit, near_unit};
+use table::{Dimension, FREQUENCY, Factor, find_unit, near_unit};
 
 /// How sessions of formulas read quantities.
 pub const UNITS: Units = Units { quantities, near };
 
-/// What a number measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[allow(missing_docs)]
-pub enum Quantity {
-    Length,
-    Mass,
-    Time,
-    Angle,
-    AngularRate,
-    Density,
-    Acceleration,
-    MomentOfInertia,
-    Speed,
-    Force,
-    Torque,
-    AngularMomentum,
+/// Quantities, each with its SI unit, an example of a value, its powers of metre, kilogram, second, radian and ampere,
+/// and its name with the article.
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $quantity:ident: $unit:literal, $example:literal, $powers:expr, $name:literal;)*) => {
+        /// What a number measures.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[allow(missing_docs)]
+        pub enum Quantity {
+            $($(#[$doc])* $quantity),*
+        }
+
+        impl Quantity {
+            /// Every quantity, in the order of the enum.
+            pub const ALL: &[Quantity] = &[$(Quantity::$quantity),*];
+
+            fn row(self) -> (&'static str, &'static str, [i32; 5], &'static str) {
+                match self {
+                    $(Quantity::$quantity => ($unit, $example, $powers, $name)),*
+                }
+            }
+        }
+    };
+}
+
+quantities! {
+    Length: "m", "5 cm", [1, 0, 0, 0, 0], "a length";
+    Mass: "kg", "2 kg", [0, 1, 0, 0, 0], "a mass";
+    Time: "s", "10 s", [0, 0, 1, 0, 0], "a time";
+    Angle: "rad", "30 deg", [0, 0, 0, 1, 0], "an angle";
+    AngularRate: "rad/s", "5 rev/s", [0, 0, -1, 1, 0], "an angular rate";
+    Density: "kg/m^3", "7.85 g/cm^3", [-3, 1, 0, 0, 0], "a density";
+    Acceleration: "m/s^2", "9.81 m/s^2", [1, 0, -2, 0, 0], "an acceleration";
+    MomentOfInertia: "kg m^2", "3 kg m^2", [2, 1, 0, 0, 0], "a moment of inertia";
+    Speed: "m/s", "3 m/s", [1, 0, -1, 0, 0], "a speed";
+    Force: "N", "2 N", [1, 1, -2, 0, 0], "a force";
+    Torque: "N m", "2 N m", [2, 1, -2, 0, 0], "a torque";
+    AngularMomentum: "kg m^2/s", "4 N m s", [2, 1, -1, 0, 0], "an angular momentum";
     /// Of damping: the fraction lost per second.
-    DecayRate,
-    /// Torque per angle.
-    TorsionalStiffness,
-    /// Torque per angular rate.
-    RotaryDamping,
-    /// Torque per square of an angular rate.
-    QuadraticRotaryDamping,
-    /// Force per length.
-    Stiffness,
-    /// Force per speed.
-    Drag,
-    /// Force per square of a speed.
-    QuadraticDrag,
+    DecayRate: "1/s", "0.1 /s", [0, 0, -1, 0, 0], "a rate of decay";
+    TorsionalStiffness: "N m", "2 N m", [2, 1, -2, 0, 0], "a torque per angle";
+    RotaryDamping: "N m s", "0.1 N m s", [2, 1, -1, 0, 0], "a torque per angular rate";
+    QuadraticRotaryDamping: "N m s^2", "0.1 N m s^2", [2, 1, 0, 0, 0], "a torque per squared angular rate";
+    Stiffness: "N/m", "20 N/m", [0, 1, -2, 0, 0], "a force per length";
+    Drag: "N s/m", "0.1 N s/m", [0, 1, -1, 0, 0], "a force per speed";
+    QuadraticDrag: "N s^2/m^2", "0.1 N s^2/m^2", [-1, 1, 0, 0, 0], "a force per squared speed";
     /// G M.
-    GravitationalParameter,
-    MagneticDipole,
-    MagneticField,
-    Area,
-    Pressure,
+    GravitationalParameter: "m^3/s^2", "398600.4418 km^3/s^2", [3, 0, -2, 0, 0], "a gravitational parameter";
+    MagneticDipole: "A m^2", "0.2 A m^2", [2, 0, 0, 0, 1], "a magnetic dipole";
+    MagneticField: "T", "30 uT", [0, 1, -2, 0, -1], "a magnetic field";
+    Area: "m^2", "2 m^2", [2, 0, 0, 0, 0], "an area";
+    Pressure: "N/m^2", "4.56 uN/m^2", [-1, 1, -2, 0, 0], "a pressure";
 }
 
 impl Quantity {
-    /// Every quantity, in the order of the enum.
-    pub const ALL: [Quantity; 24] = [
-        Quantity::Length,
-        Quantity::Mass,
-        Quantity::Time,
-        Quantity::Angle,
-        Quantity::AngularRate,
-        Quantity::Density,
-        Quantity::Acceleration,
-        Quantity::MomentOfInertia,
-        Quantity::Speed,
-        Quantity::Force,
-        Quantity::Torque,
-        Quantity::AngularMomentum,
-        Quantity::DecayRate,
-        Quantity::TorsionalStiffness,
-        Quantity::RotaryDamping,
-        Quantity::QuadraticRotaryDamping,
-        Quantity::Stiffness,
-        Quantity::Drag,
-        Quantity::QuadraticDrag,
-        Quantity::GravitationalParameter,
-        Quantity::MagneticDipole,
-        Quantity::MagneticField,
-        Quantity::Area,
-        Quantity::Pressure,
-    ];
-
-    /// Its SI unit, an example of a value, its powers of metre, kilogram, second, radian and ampere, and its name with
-    /// the article.
-    fn row(self) -> (&'static str, &'static str, [i32; 5], &'static str) {
-        match self {
-            Quantity::Length => ("m", "5 cm", [1, 0, 0, 0, 0], "a length"),
-            Quantity::Mass => ("kg", "2 kg", [0, 1, 0, 0, 0], "a mass"),
-            Quantity::Time => ("s", "10 s", [0, 0, 1, 0, 0], "a time"),
-            Quantity::Angle => ("rad", "30 deg", [0, 0, 0, 1, 0], "an angle"),
-            Quantity::AngularRate => ("rad/s", "5 rev/s", [0, 0, -1, 1, 0], "an angular rate"),
-            Quantity::Density => ("kg/m^3", "7.85 g/cm^3", [-3, 1, 0, 0, 0], "a density"),
-            Quantity::Acceleration => ("m/s^2", "9.81 m/s^2", [1, 0, -2, 0, 0], "an acceleration"),
-            Quantity::MomentOfInertia => ("kg m^2", "3 kg m^2", [2, 1, 0, 0, 0], "a moment of inertia"),
-            Quantity::Speed => ("m/s", "3 m/s", [1, 0, -1, 0, 0], "a speed"),
-            Quantity::Force => ("N", "2 N", [1, 1, -2, 0, 0], "a force"),
-            Quantity::Torque => ("N m", "2 N m", [2, 1, -2, 0, 0], "a torque"),
-            Quantity::AngularMomentum => ("kg m^2/s", "4 N m s", [2, 1, -1, 0, 0], "an angular momentum"),
-            Quantity::DecayRate => ("1/s", "0.1 /s", [0, 0, -1, 0, 0], "a rate of decay"),
-            Quantity::TorsionalStiffness => ("N m", "2 N m", [2, 1, -2, 0, 0], "a torque per angle"),
-            Quantity::RotaryDamping => ("N m s", "0.1 N m s", [2, 1, -1, 0, 0], "a torque per angular rate"),
-            Quantity::QuadraticRotaryDamping => {
-                ("N m s^2", "0.1 N m s^2", [2, 1, 0, 0, 0], "a torque per squared angular rate")
-            }
-            Quantity::Stiffness => ("N/m", "20 N/m", [0, 1, -2, 0, 0], "a force per length"),
-            Quantity::Drag => ("N s/m", "0.1 N s/m", [0, 1, -1, 0, 0], "a force per speed"),
-            Quantity::QuadraticDrag => {
-                ("N s^2/m^2", "0.1 N s^2/m^2", [-1, 1, 0, 0, 0], "a force per squared speed")
-            }
-            Quantity::GravitationalParameter => {
-                ("m^3/s^2", "398600.4418 km^3/s^2", [3, 0, -2, 0, 0], "a gravitational parameter")
-            }
-            Quantity::MagneticDipole => ("A m^2", "0.2 A m^2", [2, 0, 0, 0, 1], "a magnetic dipole"),
-            Quantity::MagneticField => ("T", "30 uT", [0, 1, -2, 0, -1], "a magnetic field"),
-            Quantity::Area => ("m^2", "2 m^2", [2, 0, 0, 0, 0], "an area"),
-            Quantity::Pressure => ("N/m^2", "4.56 uN/m^2", [-1, 1, -2, 0, 0], "a pressure"),
-        }
-    }
-
     /// Its SI unit.
     pub fn si_unit(self) -> &'static str {
         self.row().0
@@ -161,82 +111,24 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// Why a text is not a quantity. `text` is the complete text.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum UnitError {
-    /// It does not begin with a number.
-    NoNumber { text: String, expected: Quantity },
-    /// A number alone.
-    NoUnit { text: String, expected: Quantity },
-    /// An unknown unit, and a similar one.
-    UnknownUnit { text: String, unit: String, near: Option<&'static str>, expected: Quantity },
-    /// Another quantity; `found` has an article.
-    WrongQuantity { text: String, found: &'static str, expected: Quantity },
-    /// A syntax error in the units.
-    Syntax { text: String, problem: String },
-    /// The value is beyond the range of floating point.
-    Overflow { text: String },
-    /// The value is not zero, but nearer to zero than any floating-point number.
-    Underflow { text: String },
-}
-
-impl fmt::Display for UnitError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            UnitError::NoNumber { text, expected } => {
-                write!(f, "expected {expected} such as `{}`, found {}", expected.example(), quote(text))
-            }
-            UnitError::NoUnit { text, expected } => write!(
-                f,
-                "expected {expected} such as `{}`, found {} without a unit",
-                expected.example(),
-                quote(text)
-            ),
-            UnitError::UnknownUnit { text, unit, near, expected } => {
-                write!(f, "unknown unit {} in {}, ", quote(unit), quote(text))?;
-                match near {
-                    Some(near) => write!(f, "did you mean `{near}`?"),
-                    None => write!(f, "expected {expected} such as `{}`", expected.example()),
-                }
-            }
-            UnitError::WrongQuantity { text, found, expected } => {
-                let example = expected.example();
-                write!(f, "expected {expected} such as `{example}`, found {found} ({})", quote(text))?;
-                if *expected == Quantity::AngularRate && *found == FREQUENCY.name() {
-                    write!(f, "; write rev/s or rad/s")?;
-                }
-                Ok(())
-            }
-            UnitError::Syntax { text, problem } => write!(f, "{problem} in {}", quote(text)),
-            UnitError::Overflow { text } => {
-                write!(f, "{} is beyond the range of floating point, about 1.8e308", quote(text))
-            }
-            UnitError::Underflow { text } => {
-                write!(f, "{} is below the range of floating point, about 5e-324; write 0", quote(text))
-            }
-        }
-    }
-}
-
-impl std::error::Error for UnitError {}
-
 /// The value of `text` in SI units (rad for angles). A zero needs no unit.
-pub fn parse(text: &str, expected: Quantity) -> Result<f64, UnitError> {
+pub fn parse(text: &str, expected: Quantity) -> Result<f64, String> {
+    let example = expected.example();
     let Some((number, unit)) = split_number(text.trim()) else {
-        return Err(UnitError::NoNumber { text: text.to_owned(), expected });
+        return Err(format!("expected {expected} such as `{example}`, found {}", quote(text)));
     };
+    let unit = unit.trim_start();
     if !unit.is_empty() {
         return value(text, &number, factor(text, unit, expected)?);
     }
     match value(text, &number, Factor::default())? {
         0.0 => Ok(0.0),
-        _ => Err(UnitError::NoUnit { text: text.to_owned(), expected }),
+        _ => Err(format!("expected {expected} such as `{example}`, found {} without a unit", quote(text))),
     }
 }
 
 /// The SI value of one unit, `mm` or `kg m^2`.
-pub fn parse_unit(unit: &str, expected: Quantity) -> Result<f64, UnitError> {
+pub fn parse_unit(unit: &str, expected: Quantity) -> Result<f64, String> {
     value(unit, &Number { mantissa: "1".to_owned(), exponent: 0 }, factor(unit, unit.trim(), expected)?)
 }
 
@@ -246,15 +138,24 @@ pub fn near(word: &str) -> Option<String> {
 }
 
 /// The factor of the unit in `text`, if it has the expected dimension.
-fn factor(text: &str, unit: &str, expected: Quantity) -> Result<Factor, UnitError> {
-    let text = text.to_owned();
+fn factor(text: &str, unit: &str, expected: Quantity) -> Result<Factor, String> {
+    let (text, example) = (quote(text), expected.example());
     match Factor::parse(unit) {
         Ok(factor) if expected.measures(factor.dimension) => Ok(factor),
-        Ok(factor) => Err(UnitError::WrongQuantity { text, found: factor.dimension.name(), expected }),
-        Err(Problem::UnknownUnit(unit)) => {
-            Err(UnitError::UnknownUnit { text, near: near_unit(&unit), unit, expected })
+        Ok(Factor { dimension, .. }) => {
+            let frequency = expected == Quantity::AngularRate && dimension == FREQUENCY;
+            let hint = if frequency { "; write rev/s or rad/s" } else { "" };
+            let found = dimension.name();
+            Err(format!("expected {expected} such as `{example}`, found {found} ({text}){hint}"))
         }
-        Err(Problem::Syntax(problem)) => Err(UnitError::Syntax { text, problem }),
+        Err(Problem::UnknownUnit(unit)) => {
+            let hint = match near_unit(&unit) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("expected {expected} such as `{example}`"),
+            };
+            Err(format!("unknown unit {} in {text}, {hint}", quote(&unit)))
+        }
+        Err(Problem::Syntax(problem)) => Err(format!("{problem} in {text}")),
     }
 }
 
@@ -264,7 +165,7 @@ struct Number {
     exponent: i32,
 }
 
-/// The number at the beginning of the text, and the rest without the space between them.
+/// The number at the beginning of the text, and the rest.
 fn split_number(text: &str) -> Option<(Number, &str)> {
     let (sign, unsigned) = match text.strip_prefix(['-', '\u{2212}']) {
         Some(unsigned) => ("-", unsigned),
@@ -276,7 +177,7 @@ fn split_number(text: &str) -> Option<(Number, &str)> {
         return None;
     }
     let (exponent, rest) = split_exponent(rest).unwrap_or((0, rest));
-    Some((Number { mantissa: format!("{sign}{whole}.{fraction}"), exponent }, rest.trim_start()))
+    Some((Number { mantissa: format!("{sign}{whole}.{fraction}"), exponent }, rest))
 }
 
 /// `e3`, `E-12` at the beginning of the text, clamped to ±[`FAR`].
@@ -300,15 +201,15 @@ fn split_digits(text: &str) -> (&str, &str) {
 }
 
 /// The number times the factor, in range.
-fn value(text: &str, number: &Number, factor: Factor) -> Result<f64, UnitError> {
+fn value(text: &str, number: &Number, factor: Factor) -> Result<f64, String> {
     let exponent = number.exponent.saturating_add(factor.ten);
     let decimal = format!("{}e{exponent}", number.mantissa).parse().unwrap_or(f64::NAN);
     let value = decimal * factor.numerator / factor.denominator;
     if !value.is_finite() {
-        return Err(UnitError::Overflow { text: text.to_owned() });
+        return Err(format!("{} is beyond the range of floating point, about 1.8e308", quote(text)));
     }
     if value == 0.0 && number.mantissa.contains(|c| ('1'..='9').contains(&c)) {
-        return Err(UnitError::Underflow { text: text.to_owned() });
+        return Err(format!("{} is below the range of floating point, about 5e-324; write 0", quote(text)));
     }
     Ok(value)
 }

@@ -44,26 +44,30 @@ impl Dimension {
     }
 }
 
-/// A unit is `10^ten · numerator / denominator` SI units.
+/// `10^ten · numerator / denominator` SI units.
 #[derive(Clone, Copy)]
-pub struct Unit {
-    name: &'static str,
+pub struct Factor {
     pub dimension: Dimension,
     pub ten: i32,
     pub numerator: f64,
     pub denominator: f64,
+}
+
+struct Unit {
+    name: &'static str,
+    factor: Factor,
     /// Whether it takes prefixes.
     prefixes: bool,
 }
 
 /// A unit that is a power of ten of SI units and takes prefixes.
 const fn metric(name: &'static str, dimension: Dimension, ten: i32) -> Unit {
-    Unit { name, dimension, ten, numerator: 1.0, denominator: 1.0, prefixes: true }
+    Unit { name, factor: Factor { dimension, ten, numerator: 1.0, denominator: 1.0 }, prefixes: true }
 }
 
 /// Any other unit.
 const fn other(name: &'static str, dimension: Dimension, numerator: f64, denominator: f64) -> Unit {
-    Unit { name, dimension, ten: 0, numerator, denominator, prefixes: false }
+    Unit { name, factor: Factor { dimension, ten: 0, numerator, denominator }, prefixes: false }
 }
 
 const UNITS: [Unit; 28] = [
@@ -142,14 +146,14 @@ const OTHER_NAMES: [(&str, &str); 24] = [
 ];
 
 /// The unit of this name, with a prefix if it takes one.
-pub fn find_unit(name: &str) -> Option<Unit> {
+pub fn find_unit(name: &str) -> Option<Factor> {
     if let Some(unit) = UNITS.iter().find(|unit| unit.name == name) {
-        return Some(*unit);
+        return Some(unit.factor);
     }
     PREFIXES.iter().find_map(|(prefix, ten)| {
         let base = name.strip_prefix(prefix)?;
         let unit = UNITS.iter().find(|unit| unit.prefixes && unit.name == base)?;
-        Some(Unit { ten: unit.ten + ten, ..*unit })
+        Some(Factor { ten: unit.factor.ten + ten, ..unit.factor })
     })
 }
 

@@ -119,30 +119,33 @@ fn a_wrong_quantity_says_what_was_expected() {
         ("-nan", Quantity::Time, "expected a time such as `10 s`, found `-nan`"),
     ];
     for (text, quantity, message) in table {
-        assert_eq!(parse(text, quantity).unwrap_err().to_string(), message);
+        assert_eq!(parse(text, quantity).unwrap_err(), message);
     }
 }
 
 #[test]
 fn unknown_units_get_a_suggestion() {
-    let near = |text| match parse(text, Quantity::Time) {
-        Err(UnitError::UnknownUnit { near, .. }) => near,
-        other => panic!("{text}: {other:?}"),
+    let near = |text| {
+        let message = parse(text, Quantity::Time).unwrap_err();
+        let start = format!("unknown unit `{}` in `{text}`, ", &text[text.rfind([' ', '/']).unwrap() + 1..]);
+        let hint = message.strip_prefix(&start).unwrap_or_else(|| panic!("{message}"));
+        hint.strip_prefix("did you mean `").and_then(|hint| hint.strip_suffix("`?")).map(str::to_owned)
     };
-    assert_eq!(near("5 sec"), Some("s"));
-    assert_eq!(near("5 seconds"), Some("s"));
-    assert_eq!(near("5 days"), Some("day"));
-    assert_eq!(near("5 S"), Some("s"));
-    assert_eq!(near("5 KG"), Some("kg"));
-    assert_eq!(near("5 Nm"), Some("N m"));
-    assert_eq!(near("5 degs"), Some("deg"));
-    assert_eq!(near("5 ft/z"), None);
+    let assert_near = |text, unit: Option<&str>| assert_eq!(near(text).as_deref(), unit, "{text}");
+    assert_near("5 sec", Some("s"));
+    assert_near("5 seconds", Some("s"));
+    assert_near("5 days", Some("day"));
+    assert_near("5 S", Some("s"));
+    assert_near("5 KG", Some("kg"));
+    assert_near("5 Nm", Some("N m"));
+    assert_near("5 degs", Some("deg"));
+    assert_near("5 ft/z", None);
     assert_eq!(
-        parse("5 rev/sec", Quantity::AngularRate).unwrap_err().to_string(),
+        parse("5 rev/sec", Quantity::AngularRate).unwrap_err(),
         "unknown unit `sec` in `5 rev/sec`, did you mean `s`?"
     );
     assert_eq!(
-        parse("5 ft/z", Quantity::Length).unwrap_err().to_string(),
+        parse("5 ft/z", Quantity::Length).unwrap_err(),
         "unknown unit `z` in `5 ft/z`, expected a length such as `5 cm`"
     );
 }
@@ -171,17 +174,19 @@ fn syntax_errors_are_reported() {
         ("5 m 6", "unexpected `6` (a power is written `^6`) in `5 m 6`"),
     ];
     for (text, message) in table {
-        assert_eq!(parse(text, Quantity::Length).unwrap_err().to_string(), message);
+        assert_eq!(parse(text, Quantity::Length).unwrap_err(), message);
     }
 }
 
 #[test]
 fn values_out_of_range_are_errors() {
     for text in ["1e309 m", "1e400 m", "1e99999999999999999999 m", "-1e308 km", "1e300 au"] {
-        assert_eq!(parse(text, Quantity::Length), Err(UnitError::Overflow { text: text.to_owned() }));
+        let message = format!("`{text}` is beyond the range of floating point, about 1.8e308");
+        assert_eq!(parse(text, Quantity::Length), Err(message));
     }
     for text in ["1e-324 m", "-1e-99999999999999999999 m", "1e-320 nm"] {
-        assert_eq!(parse(text, Quantity::Length), Err(UnitError::Underflow { text: text.to_owned() }));
+        let message = format!("`{text}` is below the range of floating point, about 5e-324; write 0");
+        assert_eq!(parse(text, Quantity::Length), Err(message));
     }
 }
 
@@ -196,7 +201,7 @@ fn a_unit_alone_has_a_value() {
 
 #[test]
 fn the_examples_and_si_units_of_messages_are_right() {
-    for quantity in Quantity::ALL {
+    for &quantity in Quantity::ALL {
         assert!(parse(quantity.example(), quantity).is_ok(), "{quantity}");
         assert_eq!(parse_unit(quantity.si_unit(), quantity), Ok(1.0), "{quantity}");
     }

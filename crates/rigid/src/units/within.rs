@@ -3,9 +3,9 @@
 //! A quantity in a formula is a number directly followed by units, as in `5 kg m^2/s`, up to the first word that is not
 //! a unit. A word that may be a unit or the name of a variable is an error.
 
-use super::factor::{Factor, Problem, split_power};
-use super::table::{Unit, find_unit};
-use super::{split_number, value};
+use super::factor::split_power;
+use super::table::{Factor, find_unit};
+use super::{Number, split_number, value};
 use polhode_ga::formula::{Error, Span};
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ type Found = (Range<usize>, f64);
 /// The quantities in a formula, from left to right; `is_name` reports the names of variables.
 pub fn quantities(text: &str, is_name: &dyn Fn(&str) -> bool) -> Result<Vec<Found>, Error> {
     let alone = text.trim().trim_start_matches(['-', '\u{2212}']);
-    if begins_number(alone) && number_length(alone) == alone.len() {
+    if number_at(alone).is_some_and(|(_, length)| length == alone.len()) {
         let start = text.find(alone).unwrap_or(0);
         check_exponent(alone, &(start..start + alone.len()))?;
     }
@@ -23,15 +23,11 @@ pub fn quantities(text: &str, is_name: &dyn Fn(&str) -> bool) -> Result<Vec<Foun
     let mut at = 0;
     let mut before = ' ';
     while let Some(c) = text[at..].chars().next() {
-        if begins_number(&text[at..]) && !continues_word(before) && before != '.' {
-            let end = at + number_length(&text[at..]);
-            match quantity(text, at, end, is_name)? {
-                Some(quantity) => {
-                    at = quantity.0.end;
-                    found.push(quantity);
-                }
-                None => at = end,
-            }
+        let number = if continues_word(before) || before == '.' { None } else { number_at(&text[at..]) };
+        if let Some((number, length)) = number {
+            let quantity = quantity(text, at, at + length, &number, is_name)?;
+            at = quantity.as_ref().map_or(at + length, |(place, _)| place.end);
+            found.extend(quantity);
             before = ' ';
         } else {
             at += c.len_utf8();
@@ -50,6 +46,7 @@ fn quantity(
     text: &str,
     start: usize,
     number_end: usize,
+    number: &Number,
     is_name: &dyn Fn(&str) -> bool,
 ) -> Result<Option<Found>, Error> {
     let before = text[..start].trim_end().chars().next_back();
@@ -59,16 +56,15 @@ fn quantity(
         return Ok(None);
     }
     let (factor, end) = factor(text, start, first, is_name)?;
-    let (number, written, span) = (&text[start..number_end], &text[start..end], start..end);
+    let (written, span) = (&text[start..end], start..end);
     if before == Some('/') {
         let message = format!("`/` before a quantity has two readings; put brackets around `{written}`");
         return Err(error(span, message));
     }
-    check_exponent(number, &span)?;
-    let Some((number, _)) = split_number(number) else { return Ok(None) };
-    match value(written, &number, factor) {
+    check_exponent(&text[start..number_end], &span)?;
+    match value(written, number, factor) {
         Ok(value) => Ok(Some((span, value))),
-        Err(problem) => Err(error(span, problem.to_string())),
+        Err(problem) => Err(error(span, problem)),
     }
 }
 
@@ -106,7 +102,7 @@ fn factor(
         let (power, rest) = match begins_power(after).then(|| split_power(after)) {
             None => (1, after),
             Some(Ok(power)) => power,
-            Some(Err(Problem::Syntax(problem) | Problem::UnknownUnit(problem))) => {
+            Some(Err(problem)) => {
                 let message = format!("{problem} after the unit `{word}`");
                 return Err(error(at..at + length, message));
             }
@@ -129,7 +125,7 @@ fn following(text: &str, end: usize) -> Option<(usize, Option<char>)> {
 }
 
 /// The unit at a place, and its length, if the word ends with it: `m`, not `m2` or `m(x)`.
-fn unit_at(text: &str, at: usize) -> Option<(usize, Unit)> {
+fn unit_at(text: &str, at: usize) -> Option<(usize, Factor)> {
     let rest = &text[at..];
     let length = match rest.starts_with('°') {
         true => '°'.len_utf8(),
@@ -152,24 +148,11 @@ fn begins_power(text: &str) -> bool {
     }
 }
 
-fn begins_number(text: &str) -> bool {
-    text.strip_prefix('.').unwrap_or(text).starts_with(|c: char| c.is_ascii_digit())
-}
-
-fn number_length(text: &str) -> usize {
-    let digits =
-        |from: usize| from + text[from..].find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len() - from);
-    let mut end = digits(0);
-    if text[end..].starts_with('.') {
-        end = digits(end + 1);
-    }
-    if let Some(exponent) = text[end..].strip_prefix(['e', 'E']) {
-        let unsigned = exponent.strip_prefix(['+', '-', '\u{2212}']).unwrap_or(exponent);
-        if unsigned.starts_with(|c: char| c.is_ascii_digit()) {
-            end = digits(text.len() - unsigned.len());
-        }
-    }
-    end
+/// The unsigned number at the beginning of the text, and its length.
+fn number_at(text: &str) -> Option<(Number, usize)> {
+    let (number, rest) =
+        split_number(text).filter(|_| text.starts_with(|c: char| c == '.' || c.is_ascii_digit()))?;
+    Some((number, text.len() - rest.len()))
 }
 
 /// `2e1` is twice a basis vector in a formula, and 20 everywhere else.

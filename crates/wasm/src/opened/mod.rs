@@ -4,7 +4,7 @@ pub mod crowd;
 
 use crate::rows::{ROW, rows};
 use crowd::Crowd;
-use polhode_rigid::body::mesh::{MeshError, MeshFormat, MeshProblem};
+use polhode_rigid::body::mesh::MeshError;
 use polhode_rigid::run::{Motion, Problem, Progress};
 use polhode_rigid::scene::Law;
 use polhode_rigid::{Body, Diagnostic, Scene, SimulateError, Surface, TriangleMesh};
@@ -96,16 +96,6 @@ fn surface_of(scene: &Scene, source: &dyn Fn(&Path) -> Result<TriangleMesh, Mesh
 
 /// The mesh in one of the files.
 fn mesh_among(files: &Files, path: &Path) -> Result<TriangleMesh, MeshError> {
-    let name = path.display().to_string();
-    let fail = |problem| Err(MeshError { name: name.clone(), problem });
-    let extension = path.extension().unwrap_or_default().to_string_lossy();
-    let Some(format) = MeshFormat::from_extension(&extension) else {
-        return fail(MeshProblem::UnknownExtension(extension.into_owned()));
-    };
-    match files.get(&name) {
-        Some(bytes) => TriangleMesh::parse(bytes, format, &name),
-        None => fail(MeshProblem::Unreadable(
-            "the page does not have this file; open it together with the scene".into(),
-        )),
-    }
+    let missing = "the page does not have this file; open it together with the scene";
+    TriangleMesh::read_with(path, || files.get(&path.display().to_string()).ok_or(missing.to_owned()))
 }

@@ -11,6 +11,7 @@ from typing import Any, BinaryIO, NamedTuple
 
 from polhode._formula.agreement import Agreement
 from polhode._formula.shell.session import Answer, LineError, Session, text_of, without_comment
+from polhode._support.files import UnreadableError
 
 OK, FALSE, BAD_INPUT = 0, 1, 3
 
@@ -27,10 +28,6 @@ class Line(NamedTuple):
     text: str
     mistake: LineError | None = None
     assigns: bool = False
-
-
-class UnreadableError(Exception):
-    """A file cannot be read."""
 
 
 def run(options: argparse.Namespace) -> int:
@@ -65,10 +62,8 @@ def _answer(session: Session, line: Line) -> Answer | None:
     if line.mistake:
         raise line.mistake
     let = _LET.match(line.text)
-    if line.assigns or let:
-        answer = session.assign(line.text, let.end() if let and not line.assigns else 0)
-    else:
-        answer = session.evaluate(line.text)
+    start = let.end() if let and not line.assigns else 0
+    answer = session.run(line.text, start, bool(line.assigns or let))
     return None if answer.name else answer
 
 
@@ -139,7 +134,6 @@ def _checked(line: Line) -> Line:
 
 
 def _record(line: Line, answer: Answer) -> dict[str, Any]:
-    """Return an answer as a JSON object."""
     value = answer.value
     spelled = {"text": "unicode", "ascii": "ascii", "latex": "latex"}
     record = {"formula": line.text} | {key: answer.spelled(style) for key, style in spelled.items()}

@@ -77,23 +77,28 @@ class Session:
         """The names of values and functions."""
         return sorted({*self.values, *self.functions})
 
-    def run(self, line: str) -> Answer:
-        """Return the outcome of a line: ``name = …`` and ``f(x) = …`` assign, anything else is a formula.
+    def run(self, line: str, start: int = 0, assigns: bool | None = None) -> Answer:
+        """Return the outcome of ``line[start:]``: ``name = …`` and ``f(x) = …`` assign, else it is a formula.
+
+        `assigns` says which it is, such as False for ``a = b``, an equation.
 
         Raises
         ------
         LineError
             If the line is invalid or has no value.
         """
-        return self._outcome(self._line(line, 0, None))
-
-    def evaluate(self, line: str) -> Answer:
-        """Return the value of a formula, or the agreement of an equation."""
-        return self._outcome(self._line(line, 0, False))
-
-    def assign(self, line: str, start: int = 0) -> Answer:
-        """Give a value to the name before the first ``=`` of ``line[start:]``, or define a function."""
-        return self._outcome(self._line(line, start, True))
+        read = self._line(line, start, assigns)
+        if read.name and read.function:
+            self._define(read, read.name, read.function)
+            return Answer(name=read.name)
+        answer = self._answer(read)
+        if read.name is None:
+            return answer
+        if isinstance(answer.value, Agreement):
+            raise LineError(*read.error(_native.EQUATION_AS_VALUE))
+        self.values[read.name] = answer.value
+        self.functions.pop(read.name, None)
+        return replace(answer, name=read.name)
 
     def about(self, line: str, start: int, what: Callable[..., T]) -> T:
         """Return the result of `what` for the formula ``line[start:]`` and the values of names."""
@@ -124,19 +129,6 @@ class Session:
             return _native.Line(line, start, assigns, set(self.names))
         except ValueError as error:
             raise LineError(*error.args) from None
-
-    def _outcome(self, read: _native.Line) -> Answer:
-        if read.name and read.function:
-            self._define(read, read.name, read.function)
-            return Answer(name=read.name)
-        answer = self._answer(read)
-        if read.name is None:
-            return answer
-        if isinstance(answer.value, Agreement):
-            raise LineError(*read.error(_native.EQUATION_AS_VALUE))
-        self.values[read.name] = answer.value
-        self.functions.pop(read.name, None)
-        return replace(answer, name=read.name)
 
     def _parsed(self, read: _native.Line) -> tuple[Formula, dict[str, Any]]:
         given = _given(self.functions, self.values)
@@ -174,7 +166,6 @@ class Session:
 
 
 def _placed(read: _native.Line, error: FormulaError) -> LineError:
-    """Return an error with its place in the line."""
     return LineError(*read.place(error.message, error.text, error.span))
 
 

@@ -1,4 +1,4 @@
-"""Records of an ensemble's bodies, collected block by block for summary and figures."""
+"""Records of an ensemble's bodies, collected block by block for summary and figures; their quantiles."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from polhode._report.describe import main_axis, orbit_of, weight
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 
+LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
+
 # Per body and time, in single precision: quantiles need fewer than seven digits.
 SERIES = ("from_nominal", "tilt", "rate")
 # Per body.
@@ -28,57 +30,35 @@ _PASSING, _FIGURES = 4, 100 << 20
 
 
 class EnsembleRecords:
-    """Records of the bodies of a scene's ensemble and of the nominal body.
-
-    Attributes
-    ----------
-    scene, nominal
-        The scene, and the motion of its own body.
-    axis, axis_name
-        A direction fixed in the body (3,), and its name.
-    tilt_name
-        The direction from which the tilt of the axis is measured.
-    complete
-        Number of bodies recorded so far, the first rows of arrays.
-    series
-        By name (number, n) in single precision: ``from_nominal``, the angle in rad between the attitude and
-        that of `nominal`; ``tilt``, that of the axis from L, the vertical or up; ``rate``, ``|Ω|`` in rad/s.
-    directions
-        The axis in space (number, 3, 3) at the three times `shown`: the first, the middle and the last.
-    bodies
-        By name (number,): energy and ``|L|`` at the start and at the end, and of free bodies the period of Ω
-        in the body and that of the precession; NaN if undefined.
-    regimes
-        Number of free bodies in each regime.
-    methods
-        Number of bodies computed by each method.
-    steps
-        Steps of each body, (number,).
-    error_estimates, norm_drifts
-        Of each body (number,), NaN if undefined.
-    drifts
-        By name (number,), NaN if a body does not conserve the quantity or failed.
-    failures
-        The bodies that failed; ``index`` is their number.
-    """
+    """Records of the bodies of a scene's ensemble and of the nominal body; NaN where undefined."""
 
     def __init__(self, scene: Scene, nominal: Trajectory) -> None:
         assert scene.ensemble is not None
+        number, n = scene.ensemble.number, len(scene.times)
+        # The motion of the scene's own body.
         self.scene, self.nominal = scene, nominal
+        # A direction fixed in the body (3,), and the direction from which its tilt is measured.
         self.axis, self.axis_name = watched_axis(scene, nominal)
         self._reference, self.tilt_name = _reference(scene, nominal)
+        # Number of bodies recorded so far, the first rows of arrays.
         self.complete = 0
-        number, n = scene.ensemble.number, len(scene.times)
+        # (number, n): the angle in rad between the attitude and that of `nominal`; the tilt of the axis in
+        # rad from L, the vertical or up; |Ω| in rad/s.
         self.series = {name: np.empty((number, n), np.float32) for name in SERIES}
+        # The axis in space at the first, the middle and the last time.
         self.shown = (0, n // 2, n - 1)
         self.directions = np.empty((number, 3, 3), np.float32)
-        names = [f"{name}_{end}" for name in ENDS for end in ("start", "end")] + list(PERIODS)
-        self.bodies = {name: np.full(number, np.nan) for name in names}
+        # Energy and |L| at both ends; of free bodies the periods of Ω in the body and of the precession.
+        names = [f"{name}_{end}" for name in ENDS for end in ("start", "end")]
+        self.bodies = {name: np.full(number, np.nan) for name in (*names, *PERIODS)}
+        # Number of free bodies in each regime, and of bodies computed by each method.
         self.regimes: Counter[str] = Counter()
         self.methods: Counter[str] = Counter()
         self.steps = np.zeros(number, np.int64)
         self.error_estimates, self.norm_drifts = np.full(number, np.nan), np.full(number, np.nan)
+        # By name; NaN if a body does not conserve the quantity or failed.
         self.drifts: dict[str, Array] = {}
+        # Their `index` is the number of the body.
         self.failures: list[Failure] = []
 
     @staticmethod
@@ -124,8 +104,7 @@ class EnsembleRecords:
 
     def _certify(self, rows: slice, trajectory: Trajectory) -> None:
         proof = trajectory.certificate
-        for method in np.broadcast_to(proof.method, len(trajectory))[trajectory.ok].tolist():
-            self.methods[method] += 1
+        self.methods.update(np.broadcast_to(proof.method, len(trajectory))[trajectory.ok].tolist())
         self.steps[rows] = proof.steps
         self.error_estimates[rows], self.norm_drifts[rows] = proof.error_estimate, proof.norm_drift
         for name, drift in proof.drift.items():
@@ -141,13 +120,12 @@ def watched_axis(scene: Scene, nominal: Trajectory) -> tuple[Array, str]:
     """Return the direction fixed in the body (3,) that figures show, and its name."""
     if scene.held and (c := weight(scene.torque)).any():
         return c / np.linalg.norm(c), "the line from the fixed point to the centre of mass"
+    moments = nominal.inertia.principal_moments
     if scene.kind == "satellite":
-        moments = nominal.inertia.principal_moments
         k = int(np.argmin(moments))
         frame: Array = nominal.inertia.principal_frame.to_matrix()
         return frame[:, k], f"the axis of the least moment (principal axis {k + 1})"
     number, axis = main_axis(nominal)
-    moments = nominal.inertia.principal_moments
     long = number - 1 == int(np.argmin(moments)) and np.sum(moments == moments.min()) == 1
     return axis, f"the long axis (principal axis {number})" if long else f"principal axis {number}"
 
@@ -166,3 +144,26 @@ def _angle(a: Any, b: Any) -> Array:
     """Return the angles between vectors (..., 3); NaN if one of them is 0."""
     angle = np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1))
     return np.where((a != 0).any(axis=-1) & (b != 0).any(axis=-1), angle, np.nan)
+
+
+def quantiles(values: Any) -> Array:
+    """Return the quantiles (5, ...) of values (bodies, ...) at `LEVELS`.
+
+    NaN, such as of failed bodies, is ignored; quantiles of nothing else are NaN.
+    """
+    columns = [column[~np.isnan(column)].astype(np.float64) for column in values.reshape(len(values), -1).T]
+    none = np.full(len(LEVELS), np.nan)
+    found = [np.quantile(known, LEVELS) if known.size else none for known in columns]
+    return np.stack(found, axis=-1).reshape(len(LEVELS), *values.shape[1:])
+
+
+def first_above(times: Array, values: Array, bound: float) -> float | None:
+    """Return the time at which values first pass a bound, interpolated linearly; None if they do not."""
+    above = np.flatnonzero(values > bound)
+    if not above.size:
+        return None
+    k = int(above[0])
+    if k == 0:
+        return float(times[0])
+    share = (bound - values[k - 1]) / (values[k] - values[k - 1])
+    return float(times[k - 1] + share * (times[k] - times[k - 1]))

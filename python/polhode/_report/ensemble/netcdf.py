@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 
 from polhode import _native
 from polhode._mechanics.registry import TORQUES
-from polhode._mechanics.result import Failure
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.netcdf import CONVENTIONS
+from polhode._report.ensemble.collect import EnsembleRecords
+from polhode._report.netcdf import CONVENTIONS, MOTION, components
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
@@ -42,34 +41,41 @@ class EnsembleFile:
         self._file = optional("h5netcdf", "io", "a netCDF file").File(path, "w")
         self._text = optional("h5py", "io", "a netCDF file").string_dtype()
         self._methods: list[str] = []
-        self._failures: list[Failure] = []
-        self._complete = 0
+        # What to add to the description of quantities that are written once for each body; None for others.
+        self._notes: dict[str, str | None] = {"attitude": None, "omega_body": None, "energy": None}
+        self._notes |= self._constant()
         self._begin()
 
-    def __enter__(self) -> EnsembleFile:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """Close the file."""
         self._file.close()
+
+    def _constant(self) -> dict[str, str | None]:
+        """Return the notes of momenta, energies, positions and velocities."""
+        state, given = self._scene.state, {"position", "velocity"}
+        notes: dict[str, str | None] = {}
+        if self._scene.kind == "free":
+            notes = {"momentum_space": ", constant", "energy": ", constant"}
+        if self._scene.force is not None:
+            return notes | dict.fromkeys(sorted(given))
+        moves = np.any(state.position._data) or np.any(state.velocity._data)
+        if moves or not given.isdisjoint(self._ensemble.varied):
+            notes |= dict.fromkeys(sorted(given), " at the start")
+        return notes
 
     def _begin(self) -> None:
         """Write dimensions, coordinates and attributes."""
-        times = self._scene.times
+        times, varied = self._scene.times, self._ensemble.varied
         self._file.dimensions = {"time": len(times), "quaternion": 4, "axis": 3, "axis_": 3, "body": None}
         self._write("time", ("time",), times, "s", "time", axis="T")
         for name, labels in (("quaternion", "wxyz"), ("axis", "xyz"), ("axis_", "xyz")):
             variable = self._file.create_variable(name, (name,), self._text)
             variable[:] = np.array(list(labels), dtype=object)
-        if "moments" not in self._ensemble.varied:
+        if "moments" not in varied:
             body = self._scene.body
             inertia = body.inertia_about(0) if self._scene.held else body.inertia
-            self._write("inertia", ("axis", "axis_"), inertia.matrix, "kg m^2", "inertia matrix in body axes")
-        varied = "; ".join(f"{name}: {how}" for name, how in self._ensemble.varied.items())
+            dims, units, text = MOTION["inertia"]
+            self._write("inertia", dims, inertia.matrix, units, text)
         self._file.attrs.update(
             {
                 "conventions": CONVENTIONS,
@@ -78,7 +84,7 @@ class EnsembleFile:
                 "scene": self._scene.text,
                 "seed": np.uint64(self._ensemble.seed),
                 "number": self._ensemble.number,
-                "varied": varied,
+                "varied": "; ".join(f"{name}: {how}" for name, how in varied.items()),
             }
         )
 
@@ -94,15 +100,20 @@ class EnsembleFile:
         """Write the next bodies."""
         self._file.resize_dimension("body", rows.stop)
         self._grow(rows, "body", (), np.arange(rows.start, rows.stop), "1", "number of the body")
-        self._motions(rows, trajectory)
+        for name, note in self._notes.items():
+            dims, units, text = MOTION[name]
+            values = components(trajectory, name)
+            if note is None:
+                self._grow(rows, name, ("time", *dims), values, units, text)
+            else:
+                self._grow(rows, name, dims, values[:, 0], units, text + note)
+        if "moments" in self._ensemble.varied:
+            inertias = np.broadcast_to(trajectory.inertia, len(trajectory))
+            dims, units, text = MOTION["inertia"]
+            self._grow(rows, "inertia", dims, np.array([x.matrix for x in inertias]), units, text)
         self._proofs(rows, trajectory)
         if any(name.startswith(("torque.", "gravity.")) for name in self._ensemble.varied):
             self._laws(rows)
-        self._failures += [
-            Failure((rows.start + failure.index[0],), failure.time, failure.message)
-            for failure in trajectory.failures
-        ]
-        self._complete = rows.stop
 
     def _grow(
         self, rows: slice, name: str, dims: tuple[str, ...], values: Any, units: str, text: str
@@ -120,66 +131,29 @@ class EnsembleFile:
             variable.attrs.update({"units": units, "long_name": text})
         variable[rows] = values
 
-    def _motions(self, rows: slice, trajectory: Trajectory) -> None:
-        quaternions = trajectory.rotor.to_quaternion(order="wxyz")
-        self._grow(rows, "attitude", ("time", "quaternion"), quaternions, "1", "attitude, body to space")
-        omegas = trajectory.omega_body._data
-        self._grow(rows, "omega_body", ("time", "axis"), omegas, "rad/s", "angular velocity in body axes")
-        energy = "rotational kinetic and potential energy"
-        if self._scene.kind == "free":
-            momenta = trajectory.momentum_space._data[:, 0]
-            text = "angular momentum in space axes, constant"
-            self._grow(rows, "momentum_space", ("axis",), momenta, "kg m^2/s", text)
-            self._grow(rows, "energy", (), trajectory.energy[:, 0], "J", f"{energy}, constant")
-        else:
-            self._grow(rows, "energy", ("time",), trajectory.energy, "J", energy)
-        self._centers(rows, trajectory)
-        if "moments" in self._ensemble.varied:
-            inertias = np.broadcast_to(trajectory.inertia, len(trajectory))
-            matrices = np.array([inertia.matrix for inertia in inertias])
-            text = "inertia matrix in body axes"
-            self._grow(rows, "inertia", ("axis", "axis_"), matrices, "kg m^2", text)
-
-    def _centers(self, rows: slice, trajectory: Trajectory) -> None:
-        """Write positions and velocities of the centres of mass; without forces those at the start."""
-        if not (self._scene.force is not None or self._moves):
-            return
-        for name, units, text in (
-            ("position", "m", "centre of mass in space"),
-            ("velocity", "m/s", "velocity of the centre of mass"),
-        ):
-            values = getattr(trajectory, name)._data
-            if self._scene.force is not None:
-                self._grow(rows, name, ("time", "axis"), values, units, text)
-            else:
-                self._grow(rows, name, ("axis",), values[:, 0], units, f"{text} at the start")
-
-    @property
-    def _moves(self) -> bool:
-        state = self._scene.state
-        given = np.any(state.position._data) or np.any(state.velocity._data)
-        return bool(given) or not {"position", "velocity"}.isdisjoint(self._ensemble.varied)
-
     def _proofs(self, rows: slice, trajectory: Trajectory) -> None:
         proof = trajectory.certificate
         names = np.broadcast_to(proof.method, len(trajectory)).tolist()
         self._methods += sorted({*names} - {*self._methods})
-        codes = np.array([self._methods.index(name) for name in names], np.int8)
-        self._grow(rows, "method", (), codes, "1", "method")
-        self._grow(rows, "step", (), proof.step, "s", "longest step, 0 without steps")
-        self._grow(rows, "steps", (), proof.steps, "1", "number of steps")
-        text = "cautious estimate of the relative error in rotor and angular velocity"
-        self._grow(rows, "error_estimate", (), proof.error_estimate, "1", text)
-        self._grow(rows, "rotor_norm_drift", (), proof.norm_drift, "1", "largest deviation of |R| from 1")
-        for name, drift in proof.drift.items():
-            known = np.where(np.isnan(proof.conserved[name]), np.nan, drift)
-            text = f"largest relative change of {name.replace('_', ' ')}"
-            self._grow(rows, f"{name}_drift", (), known, "1", text)
-        self._grow(rows, "failed", (), (~trajectory.ok).astype(np.int8), "1", "1 if the body failed")
         times = np.full(len(trajectory), np.nan)
         for failure in trajectory.failures:
             times[failure.index] = failure.time
-        self._grow(rows, "failure_time", (), times, "s", "time up to which a failed body was computed")
+        error = "cautious estimate of the relative error in rotor and angular velocity"
+        columns: dict[str, tuple[Any, str, str]] = {
+            "method": (np.array([self._methods.index(name) for name in names], np.int8), "1", "method"),
+            "step": (proof.step, "s", "longest step, 0 without steps"),
+            "steps": (proof.steps, "1", "number of steps"),
+            "error_estimate": (proof.error_estimate, "1", error),
+            "rotor_norm_drift": (proof.norm_drift, "1", "largest deviation of |R| from 1"),
+            "failed": ((~trajectory.ok).astype(np.int8), "1", "1 if the body failed"),
+            "failure_time": (times, "s", "time up to which a failed body was computed"),
+        }
+        for name, drift in proof.drift.items():
+            known = np.where(np.isnan(proof.conserved[name]), np.nan, drift)
+            text = f"largest relative change of {name.replace('_', ' ')}"
+            columns[f"{name}_drift"] = (known, "1", text)
+        for name, (values, units, text) in columns.items():
+            self._grow(rows, name, (), values, units, text)
 
     def _laws(self, rows: slice) -> None:
         """Write the drawn parameters of torque laws."""
@@ -193,21 +167,23 @@ class EnsembleFile:
                 label = "_".join(filter(None, (name, argument.field)))
                 self._grow(rows, label, dims, _wxyz(values), argument.unit, text)
 
-    def end(self) -> None:
+    def end(self, records: EnsembleRecords) -> None:
         """Write failures and the names of methods, after the last body or an interrupt."""
-        attributes = self._file.variables["method"].attrs
-        attributes["flag_values"] = np.arange(len(self._methods), dtype=np.int8)
-        attributes["flag_meanings"] = " ".join(self._methods)
-        failed = self._file.variables["failed"].attrs
-        failed["flag_values"], failed["flag_meanings"] = np.array([0, 1], np.int8), "complete failed"
-        if self._failures:
-            self._file.dimensions["failure"] = len(self._failures)
-            bodies = np.array([failure.index[0] for failure in self._failures])
+        self._file.variables["method"].attrs.update(_flags(self._methods))
+        self._file.variables["failed"].attrs.update(_flags(["complete", "failed"]))
+        if records.failures:
+            self._file.dimensions["failure"] = len(records.failures)
+            bodies = np.array([failure.index[0] for failure in records.failures])
             self._write("failure_body", ("failure",), bodies, "1", "number of a failed body")
             messages = self._file.create_variable("failure_message", ("failure",), self._text)
-            messages[:] = np.array([failure.message for failure in self._failures], dtype=object)
+            messages[:] = np.array([failure.message for failure in records.failures], dtype=object)
             messages.attrs["long_name"] = "error of a failed body"
-        self._file.attrs["bodies_complete"] = self._complete
+        self._file.attrs["bodies_complete"] = records.complete
+
+
+def _flags(meanings: list[str]) -> dict[str, Any]:
+    """Return the attributes of codes 0, 1, ..."""
+    return {"flag_values": np.arange(len(meanings), dtype=np.int8), "flag_meanings": " ".join(meanings)}
 
 
 def _wxyz(values: Array) -> Array:

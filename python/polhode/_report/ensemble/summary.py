@@ -1,24 +1,34 @@
-"""Summary of an ensemble's run as numbers for programs."""
+"""Summary of an ensemble's run: as numbers for programs, and as text for a terminal."""
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
-from polhode._report.ensemble.collect import ENDS, PERIODS, EnsembleRecords
-from polhode._report.ensemble.quantiles import LEVELS, first_above, quantiles
-from polhode._report.summary import body_of, torques_of
+from polhode._report.ensemble.collect import ENDS, LEVELS, PERIODS, EnsembleRecords, first_above, quantiles
+from polhode._report.summary import (
+    QUANTITIES,
+    Row,
+    body_of,
+    body_rows,
+    law_rows,
+    number,
+    page,
+    time,
+    torques_of,
+)
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from polhode._support.memory import size
 
 # Angles in rad from the nominal attitude up to which it predicts the others.
 _HORIZONS = (np.radians(10), np.radians(90))
 # Number of failures, and of times, in the summary.
 _TOLD, _TIMES = 5, 6
+# Widths of names and quantiles in the text.
+_NAMES, _CELLS = 21, 11
 
 
 def summary(records: EnsembleRecords) -> dict[str, Any]:
@@ -51,7 +61,7 @@ def summary(records: EnsembleRecords) -> dict[str, Any]:
             "tilt": _ends(records, "tilt"),
             "rate": _ends(records, "rate"),
             **{name: _of_bodies(records.bodies[name]) for name in PERIODS if kind == "free"},
-            **{name: _changes(records, name) for name in ENDS},
+            **{name: _ends(records, name) for name in ENDS},
         },
         "conserved": {name: _worst(drift) for name, drift in records.drifts.items()},
         "run": _run(records),
@@ -65,7 +75,7 @@ def summary(records: EnsembleRecords) -> dict[str, Any]:
     }
 
 
-def _of_bodies(values: NDArray[Any]) -> list[float] | None:
+def _of_bodies(values: Any) -> list[float] | None:
     """Return the quantiles over bodies; None if no body has a number."""
     found = quantiles(values)
     return found.tolist() if np.isfinite(found).all() else None
@@ -80,11 +90,9 @@ def _over_time(records: EnsembleRecords, name: str) -> list[dict[str, Any]]:
 
 
 def _ends(records: EnsembleRecords, name: str) -> dict[str, list[float] | None]:
-    series = records.series[name]
-    return {"start": _of_bodies(series[:, 0]), "end": _of_bodies(series[:, -1])}
-
-
-def _changes(records: EnsembleRecords, name: str) -> dict[str, list[float] | None]:
+    """Return the quantiles at the start and at the end."""
+    if name in records.series:
+        return {end: _of_bodies(records.series[name][:, k]) for end, k in (("start", 0), ("end", -1))}
     return {end: _of_bodies(records.bodies[f"{name}_{end}"]) for end in ("start", "end")}
 
 
@@ -123,3 +131,105 @@ def _run(records: EnsembleRecords) -> dict[str, Any]:
         "drift_within_bound": all(drift <= scene.drift_bound for drift in worst) if worst else None,
         "memory": EnsembleRecords.bytes_wanted(scene),
     }
+
+
+# --- as text
+
+
+def as_text(summary: dict[str, Any]) -> str:
+    """Return the summary as a page for a terminal."""
+    motion, failures, number = summary["motion"], summary["failures"], summary["ensemble"]["number"]
+    some = failures["count"] > 0
+    cells = "".join(f"{name:>{_CELLS}}" for name in ("5 %", "25 %", "median", "75 %", "95 %"))
+    over = "Over the finished" if some else "Over the bodies"
+    sections = {
+        "Ensemble": _drawn(summary["ensemble"]),
+        "Body": body_rows(summary["body"]),
+        "Torques and forces": law_rows(summary),
+        "Motion": _motion(motion, number, "those that finished" if some else "the bodies"),
+        f"{over:<{_NAMES + 2}} {cells}": _quantiles(motion),
+        "Conserved": _conserved(summary),
+        "Run": [*_run_rows(summary["run"]), *_failures(failures, number)],
+    }
+    return page(summary["title"], sections, _NAMES)
+
+
+def _drawn(ensemble: dict[str, Any]) -> Iterator[Row]:
+    yield "bodies", f"{ensemble['number']}, drawn from seed {ensemble['seed']}"
+    yield from ensemble["varied"].items()
+    if not ensemble["varied"]:
+        yield "", "identical: [ensemble] varies nothing"
+
+
+def _motion(motion: dict[str, Any], bodies: int, who: str) -> Iterator[Row]:
+    for regime, count in motion["regimes"].items():
+        yield "regime", f"{regime}: {count} of {bodies} bodies"
+    for entry in motion["horizons"]:
+        until = "to the end" if entry["time"] is None else f"for {time(entry['time'], 4)}"
+        words = f"95 % of {who}, {until}, of the nominal one"
+        none = "fewer than 95 % from the start"
+        yield f"within {np.degrees(entry['angle']):g}°", none if entry["time"] == 0 else words
+
+
+def _quantiles(motion: dict[str, Any]) -> Iterator[Row]:
+    """Yield names and five quantiles; dashes without any."""
+
+    def five(name: str, values: list[float] | None, text: Callable[[float], str] = _five_digits) -> Row:
+        cells = ["–"] * 5 if values is None else map(text, values)
+        return name, "".join(f"{cell:>{_CELLS}}" for cell in cells)
+
+    for k, entry in enumerate(motion["from_nominal"]):
+        name = "attitude off by" if k == 0 else ""
+        yield five(f"{name:<15}{time(entry['time'], 3):>6}", entry["quantiles"], _degrees)
+    for end in ("start", "end"):
+        yield five(f"tilt, {end}", motion["tilt"][end], _degrees)
+    for end in ("start", "end"):
+        yield five(f"|Ω|, rad/s, {end}", motion["rate"][end])
+    for key, name in (("period", "period P_ψ"), ("precession_period", "precession P_φ")):
+        if key in motion:
+            yield five(name, motion[key], lambda seconds: time(seconds, 5))
+    for key, name in (("energy", "energy, J"), ("angular_momentum", "|L|, kg m²/s")):
+        # Free bodies conserve both.
+        for end in ("start",) if motion["kind"] == "free" else ("start", "end"):
+            yield five(f"{name}, {end}", motion[key][end])
+    yield "", f"tilt: of {motion['axis']} from {motion['tilt_from']}"
+
+
+def _degrees(x: float) -> str:
+    return f"{np.degrees(x):.4g}°"
+
+
+def _five_digits(x: float) -> str:
+    return number(x, 5)
+
+
+def _conserved(summary: dict[str, Any]) -> Iterator[Row]:
+    for name, entry in summary["conserved"].items():
+        if entry["bodies"]:
+            yield QUANTITIES[name][0], f"drift at most {entry['worst']:.1e}, that of body {entry['body']}"
+    if (drift := summary["run"]["rotor_norm_drift"]) is not None:
+        yield "|R| − 1", f"at most {drift:.1e}"
+
+
+def _run_rows(run: dict[str, Any]) -> Iterator[Row]:
+    yield "duration", f"{time(run['duration'])}, {run['samples']} output times"
+    for method, count in run["methods"].items():
+        words = "exact solution" if method == "exact" else method
+        yield "method", f"{words}: {count} bodies" if len(run["methods"]) > 1 else words
+    if run["steps"]:
+        yield "steps", f"{run['steps']} of all bodies"
+    if run["error_estimate"] is not None:
+        yield "error estimate", f"at most {run['error_estimate']:.1e} in attitude and relative rate"
+    yield "memory", f"{size(run['memory'])} estimated"
+    if run["drift_within_bound"] is False:
+        yield "FAILED", f"a conserved quantity drifted by more than {run['drift_bound']:g}"
+
+
+def _failures(failures: dict[str, Any], bodies: int) -> Iterator[Row]:
+    if not failures["count"]:
+        return
+    yield "FAILED", f"{failures['count']} of {bodies} bodies failed before the end"
+    for one in failures["first"]:
+        yield "", f"body {one['body']}, after {number(one['time'])} s: {one['message']}"
+    if failures["count"] > len(failures["first"]):
+        yield "", f"and {failures['count'] - len(failures['first'])} more"

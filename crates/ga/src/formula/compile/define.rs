@@ -1,8 +1,9 @@
 //! Definitions of functions and values by formulas.
 
+use crate::formula::syntax::letters::is_space;
 use crate::formula::syntax::names::{Definition, Meaning, Names, Type};
 use crate::formula::syntax::parser::parse;
-use crate::formula::syntax::token::{Lexeme, Sign, joined, tokens};
+use crate::formula::syntax::token::{canonical, tokens};
 use crate::formula::syntax::tree::{Kind, Node, Span};
 use crate::formula::{Error, Space};
 use crate::product::Grades;
@@ -37,30 +38,24 @@ pub fn define(head: &str, body: &str, space: Space, names: &mut Names) -> Result
 /// # Errors
 /// If it is anything else.
 pub fn heading(head: &str) -> Result<(String, Vec<String>), Error> {
-    let tokens = tokens(head)?;
-    let whole = Span { start: 0, end: head.len() };
-    let wrong = || Error::new(whole, "expected a name, `c`, or a function of distinct names, `V(x)`");
-    let name = |lexeme: &Lexeme| match lexeme {
-        Lexeme::Word(atoms) => joined(atoms),
-        _ => None,
+    tokens(head)?;
+    let valid = |(_, parameters): &(_, Vec<String>)| {
+        let repeated = (1..parameters.len()).any(|i| parameters[..i].contains(&parameters[i]));
+        !repeated && !parameters.iter().any(|parameter| parameter.contains('('))
     };
-    let sign = |i: usize, sign: Sign| tokens.get(i).is_some_and(|token| token.lexeme == Lexeme::Sign(sign));
-    let first = tokens.first().and_then(|token| name(&token.lexeme)).ok_or_else(wrong)?;
-    let mut parameters = Vec::new();
-    if tokens.len() > 1 {
-        if !sign(1, Sign::Open('(')) || !sign(tokens.len() - 1, Sign::Close('(')) || tokens.len() % 2 == 1 {
-            return Err(wrong());
-        }
-        for i in (2..tokens.len() - 1).step_by(2) {
-            let parameter = name(&tokens[i].lexeme).ok_or_else(wrong)?;
-            let last = i + 2 == tokens.len();
-            if !last && !sign(i + 1, Sign::Comma) || parameters.contains(&parameter) {
-                return Err(wrong());
-            }
-            parameters.push(parameter);
-        }
-    }
-    Ok((first, parameters))
+    named(head).filter(valid).ok_or_else(|| {
+        let whole = Span { start: 0, end: head.len() };
+        Error::new(whole, "expected a name, `c`, or a function of distinct names, `V(x)`")
+    })
+}
+
+/// The same, where parameters may also be labelled or repeated.
+pub(crate) fn named(head: &str) -> Option<(String, Vec<String>)> {
+    let Some(call) = head.trim_end_matches(is_space).strip_suffix(')') else {
+        return Some((canonical(head)?, Vec::new()));
+    };
+    let (name, parameters) = call.split_once('(')?;
+    Some((canonical(name)?, parameters.split(',').map(canonical).collect::<Option<_>>()?))
 }
 
 /// Whether a body calls a function, itself or through others.

@@ -37,7 +37,7 @@ impl Derivation<'_> {
                 for (minus, term) in terms {
                     changing.extend(self.of(term)?.map(|term| (*minus, term)));
                 }
-                Ok((!changing.is_empty()).then(|| made(Kind::Sum(changing))))
+                Ok(sum(changing, node))
             }
             Kind::Product(factors) => self.one_by_one(node, factors, &Kind::Product),
             Kind::Tight(tight, operands) => {
@@ -61,12 +61,9 @@ impl Derivation<'_> {
                 let term = made(Kind::Product(vec![self.copy(node)?, x, self.copy(node)?]));
                 Ok(Some(made(Kind::Sum(vec![(true, term)]))))
             }
-            Kind::Derivative(x) => match self.of(x)? {
-                Some(x) => self.of(&x),
-                None => Ok(None),
-            },
+            Kind::Derivative(x) => self.of(x)?.map_or(Ok(None), |x| self.of(&x)),
             // Linear maps, such as the inertia in body axes, are constant.
-            Kind::Call(name, arguments) if self.is_map(name) => {
+            Kind::Call(name, arguments) if matches!(self.names.get(name), Some(Meaning::Map { .. })) => {
                 let rate = arguments.first().map_or(Ok(None), |x| self.of(x))?;
                 Ok(rate.map(|rate| made(Kind::Call(name.clone(), vec![rate]))))
             }
@@ -76,10 +73,6 @@ impl Derivation<'_> {
                  give this part a name, and its derivative the primed name",
             )),
         }
-    }
-
-    fn is_map(&self, name: &str) -> bool {
-        matches!(self.names.get(name), Some(Meaning::Map { .. }))
     }
 
     fn count(&mut self, nodes: usize, node: &Node) -> Result<(), Error> {
@@ -110,7 +103,7 @@ impl Derivation<'_> {
             let product = Node::new(Kind::Product(vec![self.copy(node)?, rate]), node.span);
             terms.push((true, over(product, self.copy(b)?)));
         }
-        Ok((!terms.is_empty()).then(|| Node::new(Kind::Sum(terms), node.span)))
+        Ok(sum(terms, node))
     }
 
     /// (A B C)' = A' B C + A B' C + A B C'
@@ -125,6 +118,11 @@ impl Derivation<'_> {
             }
             terms.push((false, Node::new(rebuild(copies), node.span)));
         }
-        Ok((!terms.is_empty()).then(|| Node::new(Kind::Sum(terms), node.span)))
+        Ok(sum(terms, node))
     }
+}
+
+/// The sum of the terms of a node's derivative; zero if there are none.
+fn sum(terms: Vec<(bool, Node)>, node: &Node) -> Option<Node> {
+    (!terms.is_empty()).then(|| Node::new(Kind::Sum(terms), node.span))
 }

@@ -4,12 +4,11 @@ pub(crate) mod builder;
 pub(crate) mod define;
 pub(crate) mod derivative;
 pub(crate) mod program;
-pub(crate) mod rules;
 
-use super::syntax::indices::{count_indices, indexed, permutation};
+use super::syntax::indices::{indexed, indices_in, permutation};
 use super::syntax::names::{Definition, Meaning, Names, Type};
 use super::syntax::number::Number;
-use super::syntax::tree::{Kind, Named, Node, Span, Tight, Tree};
+use super::syntax::tree::{Kind, Named, Node, Span, Tight, Tree, listed};
 use super::{Error, MAX_NODES, Space};
 use crate::g3::functions::Function;
 use crate::product::{Grades, Product};
@@ -74,8 +73,8 @@ struct Frame {
     parameters: Vec<(String, Id)>,
     /// The values of indices.
     indices: Vec<(char, usize)>,
-    /// The functions being expanded.
-    active: Vec<String>,
+    /// Whether a definition is being expanded.
+    expanding: bool,
 }
 
 struct Compiler<'a> {
@@ -90,95 +89,81 @@ struct Compiler<'a> {
 }
 
 impl Compiler<'_> {
-    /// Whether an argument has these grades, or may have them if they are unknown.
-    fn fits(&self, id: Id, grades: Grades) -> bool {
+    /// Fails if an argument does not have these grades, nor may have them since they are unknown.
+    fn require(&mut self, id: Id, grades: Grades, what: &str, node: &Node) -> Result<(), Error> {
         let held = self.steps.ty(id).grades;
-        held.within(grades) || self.names.is_open() && held.0 & grades.0 != 0
-    }
-
-    fn require(&self, id: Id, grades: Grades, what: &str, node: &Node) -> Result<(), Error> {
-        if self.fits(id, grades) {
+        let some = held.0 & grades.0 != 0;
+        if held.within(grades) || self.names.is_open() && some {
             return Ok(());
         }
-        let held = shown(self.steps.ty(id).grades);
         let kind = match grades {
             Grades::SCALAR => "a number (grade 0)",
             Grades(0b10) => "a vector (grade 1)",
             _ => "a bivector (grade 2)",
         };
         let k = grades.0.trailing_zeros();
-        let remedy = if self.steps.ty(id).grades.0 & grades.0 != 0 {
-            format!("; take its part `⟨…⟩_{k}`")
-        } else {
-            String::new()
-        };
-        Err(self.steps.error(node.span, format!("{what} needs {kind}; this has {held}{remedy}")))
+        let remedy = if some { format!("; take its part `⟨…⟩_{k}`") } else { String::new() };
+        let message = format!("{what} needs {kind}; this has {}{remedy}", shown(held));
+        self.placed(node.span, |compiler| Err(compiler.steps.error(message)))
     }
-}
 
-/// `grade 1`, `grades 0, 2`.
-fn shown(grades: Grades) -> String {
-    let list: Vec<String> = (0..16).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect();
-    format!("grade{} {}", if list.len() == 1 { "" } else { "s" }, list.join(", "))
-}
+    /// Adds steps with this place; those of an expanded definition have the place of its call.
+    fn placed<T>(&mut self, span: Span, add: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
+        let outer = self.steps.span;
+        if !self.frame.expanding {
+            self.steps.span = span;
+        }
+        let added = add(self)?;
+        self.steps.span = outer;
+        Ok(added)
+    }
 
-impl Compiler<'_> {
     fn node(&mut self, node: &Node) -> Built {
-        self.visits = self.visits.checked_sub(1).ok_or_else(|| self.steps.error(node.span, TOO_LONG))?;
-        if self.depth >= MOST_LEVELS {
-            let message = format!("more than {MOST_LEVELS} nested levels, with definitions expanded");
-            return Err(self.steps.error(node.span, message));
-        }
-        self.depth += 1;
-        let id = self.kind(node)?;
-        self.depth -= 1;
-        if self.steps.call.is_none() {
-            let ty = self.steps.ty(id);
-            self.types.entry(std::ptr::from_ref(node)).or_insert(ty);
-        }
-        Ok(id)
+        self.placed(node.span, |compiler| {
+            let visits = compiler.visits.checked_sub(1);
+            compiler.visits = visits.ok_or_else(|| compiler.steps.error(TOO_LONG))?;
+            if compiler.depth >= MOST_LEVELS {
+                let message = format!("more than {MOST_LEVELS} nested levels, with definitions expanded");
+                return Err(compiler.steps.error(message));
+            }
+            compiler.depth += 1;
+            let id = compiler.kind(node)?;
+            compiler.depth -= 1;
+            if !compiler.frame.expanding {
+                let ty = compiler.steps.ty(id);
+                compiler.types.entry(std::ptr::from_ref(node)).or_insert(ty);
+            }
+            Ok(id)
+        })
     }
 
     fn kind(&mut self, node: &Node) -> Built {
-        let span = node.span;
         match &node.kind {
-            Kind::Number(number) => self.steps.constant(*number, 0, span),
-            Kind::Pi => self.steps.step(Op::Pi, Type::SCALAR, span),
-            Kind::Blade(generators) => self.blade(generators, span),
+            Kind::Number(number) => self.steps.constant(*number, 0),
+            Kind::Pi => self.steps.step(Op::Pi, Type::SCALAR),
+            Kind::Blade(generators) => self.blade(generators),
             Kind::Pseudoscalar => {
                 let all: Vec<u8> = (1..=self.steps.count() as u8).collect();
-                self.blade(&all, span)
+                self.blade(&all)
             }
-            Kind::Name(name) => self.name(name, span),
-            Kind::Sum(terms) => self.sum(terms, span),
-            Kind::Product(factors) => {
-                let factors = self.nodes(factors)?;
-                self.steps.chain(&factors, span)
-            }
+            Kind::Name(name) => self.name(name),
+            Kind::Sum(terms) => self.sum(terms),
+            Kind::Product(factors) => self.nodes(factors).and_then(|factors| self.steps.chain(&factors)),
             Kind::Quotient(pair) => {
                 let (a, b) = (self.node(&pair.0)?, self.node(&pair.1)?);
-                self.steps.divide(a, b, span)
+                self.steps.divide(a, b)
             }
-            Kind::Tight(tight, operands) => self.tight(*tight, operands, span),
-            Kind::Reverse(x) => {
-                let x = self.node(x)?;
-                self.steps.reverse(x, span)
-            }
-            Kind::Power(x, n) => {
-                let x = self.node(x)?;
-                self.steps.power(x, *n, span)
-            }
-            Kind::Part(x, grades) => {
-                let x = self.node(x)?;
-                self.steps.part(x, *grades, span)
-            }
-            Kind::Function(function, x) => self.named(*function, x, span),
-            Kind::Call(name, arguments) => self.call(name, arguments, span),
+            Kind::Tight(tight, operands) => self.tight(*tight, operands),
+            Kind::Reverse(x) => self.node(x).and_then(|x| self.steps.reverse(x)),
+            Kind::Power(x, n) => self.node(x).and_then(|x| self.steps.power(x, *n)),
+            Kind::Part(x, grades) => self.node(x).and_then(|x| self.steps.part(x, *grades)),
+            Kind::Function(function, x) => self.named(*function, x),
+            Kind::Call(name, arguments) => self.call(name, arguments),
             Kind::Derivative(x) => match (Derivation { names: self.names, left: &mut self.visits }).of(x)? {
                 Some(x) => self.node(&x),
-                None => self.steps.constant(Number::whole(0), 0, span),
+                None => self.steps.constant(Number::whole(0), 0),
             },
-            Kind::Total(index, x) => self.total(index, x, span),
+            Kind::Total(index, x) => self.total(index, x),
         }
     }
 
@@ -186,7 +171,7 @@ impl Compiler<'_> {
         nodes.iter().map(|node| self.node(node)).collect()
     }
 
-    fn blade(&mut self, generators: &[u8], span: Span) -> Built {
+    fn blade(&mut self, generators: &[u8]) -> Built {
         let algebra = self.steps.space.algebra;
         let generator = |g: u8| algebra.blades().iter().position(|b| b.bits == 1 << (g - 1)).unwrap_or(0);
         let (mut sign, mut index) = (1, 0);
@@ -194,44 +179,42 @@ impl Compiler<'_> {
             let (s, k) = algebra.basis_product(index, generator(g));
             (sign, index) = (sign * s, k);
         }
-        self.steps.constant(Number::whole(i32::from(sign)), index, span)
+        self.steps.constant(Number::whole(i32::from(sign)), index)
     }
 
-    fn name(&mut self, name: &str, span: Span) -> Built {
+    fn name(&mut self, name: &str) -> Built {
         if let Some((_, id)) = self.frame.parameters.iter().find(|(parameter, _)| parameter == name) {
             return Ok(*id);
         }
         let unprimed = name.trim_end_matches('\'');
         if name != unprimed && self.frame.parameters.iter().any(|(parameter, _)| parameter == unprimed) {
             let message = format!("`{name}`, the derivative of a parameter, must be a parameter too");
-            return Err(self.steps.error(span, message));
+            return Err(self.steps.error(message));
         }
         let ty = match self.names.get(name) {
             Some(Meaning::Value(ty)) => *ty,
             Some(Meaning::Function(definition)) if definition.parameters.is_empty() => {
-                return self.call(name, &[], span);
+                return self.call(name, &[]);
             }
             Some(_) => {
-                return Err(self.steps.error(span, format!("`{name}` is a function; write `{name}(…)`")));
+                return Err(self.steps.error(format!("`{name}` is a function; write `{name}(…)`")));
             }
-            None => match self.substituted(name, span)? {
+            None => match self.substituted(name)? {
                 Some(id) => return Ok(id),
                 None if self.names.is_open() => Type::of(self.steps.all()),
                 None if name.ends_with('\'') => {
-                    return Err(self.steps.error(
-                        span,
-                        format!("`{name}` has no value; a derivative in this formula needs it"),
-                    ));
+                    let message = format!("`{name}` has no value; a derivative in this formula needs it");
+                    return Err(self.steps.error(message));
                 }
-                None => return Err(self.steps.error(span, format!("`{name}` has no value"))),
+                None => return Err(self.steps.error(format!("`{name}` has no value"))),
             },
         };
         let input = self.steps.input(name, InputKind::Value(ty));
-        self.steps.step(Op::Input(input), ty, span)
+        self.steps.step(Op::Input(input), ty)
     }
 
     /// The value of a name whose indices have values.
-    fn substituted(&mut self, name: &str, span: Span) -> Result<Option<Id>, Error> {
+    fn substituted(&mut self, name: &str) -> Result<Option<Id>, Error> {
         let Some((base, indices)) = indexed(name) else { return Ok(None) };
         let value = |c: char| self.frame.indices.iter().rev().find(|(index, _)| *index == c).map(|(_, k)| *k);
         let Some(values) = indices.chars().map(value).collect::<Option<Vec<usize>>>() else {
@@ -241,31 +224,30 @@ impl Compiler<'_> {
             ("δ", [i, j]) => Number::whole(i32::from(i == j)),
             ("ε", &[i, j, k]) => Number::whole(permutation([i, j, k])),
             ("e", &[k]) if self.names.get(&format!("e{k}")).is_none() => {
-                return self.blade(&[k as u8], span).map(Some);
+                return self.blade(&[k as u8]).map(Some);
             }
             _ => {
                 let digits: String = values.iter().map(usize::to_string).collect();
                 let primes = &name[base.len() + 1 + indices.len()..];
-                return self.name(&format!("{base}{digits}{primes}"), span).map(Some);
+                return self.name(&format!("{base}{digits}{primes}")).map(Some);
             }
         };
-        self.steps.constant(number, 0, span).map(Some)
+        self.steps.constant(number, 0).map(Some)
     }
 
-    fn sum(&mut self, terms: &[(bool, Node)], span: Span) -> Built {
+    fn sum(&mut self, terms: &[(bool, Node)]) -> Built {
         let mut sum = None;
         for (minus, term) in terms {
             let id = self.node(term)?;
             sum = Some(match sum {
-                None if *minus => self.steps.negate(id, term.span)?,
-                None => id,
-                Some(before) => self.steps.add(*minus, before, id, span.to(term.span))?,
+                None if *minus => self.placed(term.span, |compiler| compiler.steps.negate(id))?,
+                before => self.steps.add(*minus, before, id)?,
             });
         }
-        sum.ok_or_else(|| self.steps.error(span, "the sum has no terms"))
+        sum.ok_or_else(|| self.steps.error("the sum has no terms"))
     }
 
-    fn tight(&mut self, tight: Tight, operands: &[Node], span: Span) -> Built {
+    fn tight(&mut self, tight: Tight, operands: &[Node]) -> Built {
         let ids = self.nodes(operands)?;
         let product = match tight {
             Tight::Wedge | Tight::Cross => Product::Wedge,
@@ -276,31 +258,28 @@ impl Compiler<'_> {
         };
         if tight == Tight::Cross {
             if !self.steps.space.is_g3() {
-                return Err(self.steps.error(
-                    span,
-                    "the cross product exists only in 3-d space; elsewhere write `a∧b` or its dual",
-                ));
+                let message = "the cross product exists only in 3-d space; elsewhere write `a∧b` or its dual";
+                return Err(self.steps.error(message));
             }
             for (node, &id) in operands.iter().zip(&ids) {
                 self.require(id, Grades(0b10), "the cross product", node)?;
             }
         }
-        let mut result = ids[0];
-        for &id in &ids[1..] {
-            result = self.steps.product(product, result, id, self.steps.all(), span)?;
-        }
-        if tight == Tight::Cross { self.steps.dual(result, false, span) } else { Ok(result) }
+        let all = self.steps.all();
+        let mut products = ids[1..].iter();
+        let result = products.try_fold(ids[0], |result, &id| self.steps.product(product, result, id, all))?;
+        if tight == Tight::Cross { self.steps.dual(result, false) } else { Ok(result) }
     }
 
-    fn named(&mut self, function: Named, node: &Node, span: Span) -> Built {
+    fn named(&mut self, function: Named, node: &Node) -> Built {
         let x = self.node(node)?;
         match function {
-            Named::Function(Function::Inverse) => self.steps.inverse(x, span),
-            Named::Function(f) => self.steps.function(f, x, span),
-            Named::Norm => self.steps.step(Op::Norm(x), Type::SCALAR, span),
-            Named::Dual => self.steps.dual(x, false, span),
-            Named::Undual => self.steps.dual(x, true, span),
-            Named::Reverse => self.steps.reverse(x, span),
+            Named::Function(Function::Inverse) => self.steps.inverse(x),
+            Named::Function(f) => self.steps.function(f, x),
+            Named::Norm => self.steps.step(Op::Norm(x), Type::SCALAR),
+            Named::Dual => self.steps.dual(x, false),
+            Named::Undual => self.steps.dual(x, true),
+            Named::Reverse => self.steps.reverse(x),
             Named::Sin | Named::Cos | Named::Tan => {
                 self.require(x, Grades::SCALAR, &format!("`{}`", function.name()), node)?;
                 let op = match function {
@@ -308,36 +287,34 @@ impl Compiler<'_> {
                     Named::Cos => Op::Cos(x),
                     _ => Op::Tan(x),
                 };
-                self.steps.step(op, Type::SCALAR, span)
+                self.steps.step(op, Type::SCALAR)
             }
         }
     }
 
-    fn call(&mut self, name: &str, arguments: &[Node], span: Span) -> Built {
+    fn call(&mut self, name: &str, arguments: &[Node]) -> Built {
         let ids = self.nodes(arguments)?;
         match (self.names.get(name), &ids[..]) {
-            (Some(Meaning::Map { grade }), &[x]) => self.map(name, *grade, x, &arguments[0], span),
-            (Some(Meaning::Function(definition)), ids) => self.write_out(name, definition, ids, span),
-            (Some(Meaning::Value(_)), _) => {
-                Err(self.steps.error(span, format!("`{name}` is not a function")))
-            }
+            (Some(Meaning::Map { grade }), &[x]) => self.map(name, *grade, x, &arguments[0]),
+            (Some(Meaning::Function(definition)), ids) => self.write_out(name, definition, ids),
+            (Some(Meaning::Value(_)), _) => Err(self.steps.error(format!("`{name}` is not a function"))),
             // An open name.
             (None, &[argument]) => {
                 let input = self.steps.input(name, InputKind::Matrix { grade: 1 });
                 let ty = Type::of(self.steps.all());
-                self.steps.step(Op::Map { input, argument }, ty, span)
+                self.steps.step(Op::Map { input, argument }, ty)
             }
             (_, ids) => {
                 let message = format!("`{name}` is a linear map, which takes 1 argument, got {}", ids.len());
-                Err(self.steps.error(span, message))
+                Err(self.steps.error(message))
             }
         }
     }
 
     /// Applies a linear map to each part.
-    fn map(&mut self, name: &str, grade: u8, x: Id, node: &Node, span: Span) -> Built {
+    fn map(&mut self, name: &str, grade: u8, x: Id, node: &Node) -> Built {
         if !self.steps.space.is_g3() {
-            return Err(self.steps.error(span, "linear maps exist only in 3-d space"));
+            return Err(self.steps.error("linear maps exist only in 3-d space"));
         }
         if grade == 2 {
             self.require(x, Grades::BIVECTOR, &format!("`{name}`, a map of bivectors,"), node)?;
@@ -345,7 +322,7 @@ impl Compiler<'_> {
         let held = self.steps.ty(x).grades;
         let mut sum = None;
         for k in (0..=3).filter(|&k| held.contains(k) && (grade == 1 || k == 2)) {
-            let part = self.steps.part(x, Grades(1 << k), span)?;
+            let part = self.steps.part(x, Grades(1 << k))?;
             let kind = match k {
                 0 => None,
                 3 => Some(InputKind::Determinant),
@@ -355,35 +332,26 @@ impl Compiler<'_> {
                 None => part,
                 Some(kind) => {
                     let input = self.steps.input(name, kind);
-                    self.steps.step(Op::Map { input, argument: part }, Type::of(Grades(1 << k)), span)?
+                    self.steps.step(Op::Map { input, argument: part }, Type::of(Grades(1 << k)))?
                 }
             };
-            sum = Some(match sum {
-                None => image,
-                Some(before) => self.steps.add(false, before, image, span)?,
-            });
+            sum = Some(self.steps.add(false, sum, image)?);
         }
-        sum.ok_or_else(|| self.steps.error(span, format!("`{name}` has nothing to map")))
+        sum.ok_or_else(|| self.steps.error(format!("`{name}` has nothing to map")))
     }
 
     /// The value of a definition for these arguments.
-    fn write_out(&mut self, name: &str, definition: &Definition, arguments: &[Id], span: Span) -> Built {
+    fn write_out(&mut self, name: &str, definition: &Definition, arguments: &[Id]) -> Built {
         if definition.parameters.len() != arguments.len() {
             let (count, found) = (definition.parameters.len(), arguments.len());
-            return Err(self.steps.error(span, format!("`{name}` takes {count} arguments, got {found}")));
+            return Err(self.steps.error(format!("`{name}` takes {count} arguments, got {found}")));
         }
-        if self.frame.active.iter().any(|active| active == name) {
-            return Err(self.steps.error(span, format!("`{name}` calls itself; formulas have no recursion")));
-        }
-        let before = self.steps.call;
-        let call = before.unwrap_or(span);
-        let mut active = self.frame.active.clone();
-        active.push(name.to_owned());
+        let call = self.steps.span;
         let parameters = definition.parameters.iter().cloned().zip(arguments.iter().copied()).collect();
-        let outside = std::mem::replace(&mut self.frame, Frame { parameters, indices: Vec::new(), active });
-        self.steps.call = Some(call);
+        let frame = Frame { parameters, indices: Vec::new(), expanding: true };
+        let outside = std::mem::replace(&mut self.frame, frame);
         let value = self.node(&definition.body);
-        (self.frame, self.steps.call) = (outside, before);
+        self.frame = outside;
         // Of nested definitions the innermost is named.
         value.map_err(|Error { message, .. }| {
             let named = message.starts_with("in `");
@@ -392,32 +360,29 @@ impl Compiler<'_> {
     }
 
     /// `Σ_k`: the sum over all values of the index.
-    fn total(&mut self, index: &str, node: &Node, span: Span) -> Built {
+    fn total(&mut self, index: &str, node: &Node) -> Built {
         let index = index.chars().next().unwrap_or('k');
         let mut sum = None;
         for k in 1..=self.steps.count() {
             self.frame.indices.push((index, k));
-            let term = self.node(node);
+            let term = self.node(node)?;
             self.frame.indices.pop();
-            let term = term?;
-            sum = Some(match sum {
-                None => term,
-                Some(before) => self.steps.add(false, before, term, span)?,
-            });
+            sum = Some(self.steps.add(false, sum, term)?);
         }
-        sum.ok_or_else(|| self.steps.error(span, "the sum has no index"))
+        sum.ok_or_else(|| self.steps.error("the sum has no index"))
     }
 
     /// The free indices: an equation must hold for all their values.
     fn free_indices(&self, tree: &Tree) -> Result<Vec<char>, Error> {
         let mut free = Vec::new();
         if self.names.is_open() {
-            return Ok(Vec::new());
+            return Ok(free);
         }
-        for side in &tree.sides {
-            count_indices(side, self.names, &mut free);
+        for (index, _) in tree.sides.iter().flat_map(|side| indices_in(side, self.names)) {
+            if !free.contains(&index) {
+                free.push(index);
+            }
         }
-        let free: Vec<char> = free.into_iter().map(|(index, _)| index).collect();
         let whole = tree.sides[0].span;
         match free[..] {
             [] => Ok(free),
@@ -460,4 +425,10 @@ impl Compiler<'_> {
         }
         Ok(())
     }
+}
+
+/// `grade 1`, `grades 0, 2`.
+fn shown(grades: Grades) -> String {
+    let list = listed(grades);
+    format!("grade{} {}", if list.len() == 1 { "" } else { "s" }, list.join(", "))
 }

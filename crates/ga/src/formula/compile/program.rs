@@ -7,7 +7,7 @@ use crate::formula::syntax::number::Number;
 use crate::formula::syntax::tree::Span;
 use crate::g3::functions::Function;
 use crate::graded::size;
-use crate::product::{Grades, Product};
+use crate::product::Product;
 use crate::table::Signature;
 
 /// The number of a step, and of its value.
@@ -81,7 +81,7 @@ pub struct Step {
 }
 
 /// The operations.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// An input that is a value, by its number.
     Input(usize),
@@ -173,9 +173,4 @@ impl Op {
             *input = other_input(*input);
         }
     }
-}
-
-/// The grades of a sum.
-pub(crate) fn union(a: Grades, b: Grades) -> Grades {
-    Grades(a.0 | b.0)
 }

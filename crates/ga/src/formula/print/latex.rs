@@ -1,40 +1,21 @@
-//! Formulas in LaTeX, for amsmath, KaTeX, MathJax and Matplotlib's mathtext.
+//! Parts of formulas in LaTeX, for amsmath, KaTeX, MathJax and Matplotlib's mathtext.
 //!
 //! Fractions and exponents need no inner brackets, so there are fewer than in text. As a factor, a tight product is set
 //! close, `a{\wedge}b`, to show that it binds first.
 
-use super::glyphs::{core, subscript, word};
-use super::{Hold, blade};
-use crate::formula::syntax::number::FRACTIONS;
-use crate::formula::syntax::number::Number;
-use crate::formula::syntax::tree::{Kind, Named, Node, Tight, Tree};
+use super::{Hold, Printer, blade};
+use crate::formula::syntax::indices::INDICES;
+use crate::formula::syntax::letters::decomposed;
+use crate::formula::syntax::number::{FRACTIONS, Number};
+use crate::formula::syntax::tree::{Kind, Named, Node, Tight, listed};
 use crate::g3::functions::Function;
-use crate::product::Grades;
 
-impl Tree {
-    /// The formula in LaTeX's mathematics, without dollar signs.
-    pub fn latex(&self) -> String {
-        let sides: Vec<String> = self.sides.iter().map(Node::latex).collect();
-        sides.join(" = ")
-    }
-}
-
-impl Node {
-    /// This part of a formula in LaTeX's mathematics, without dollar signs.
-    pub fn latex(&self) -> String {
-        bare(self, false)
-    }
-}
-
-fn hold(node: &Node) -> Hold {
+/// The precedence of a node that differs from that in text.
+pub(super) fn hold(node: &Node) -> Hold {
     match &node.kind {
-        Kind::Sum(_) => Hold::Sum,
-        Kind::Product(_) | Kind::Total(..) => Hold::Product,
-        Kind::Tight(..) => Hold::Tight,
         Kind::Number(x) if x.to_string().contains('e') => Hold::Tight,
         Kind::Number(x) if number(x).starts_with('\\') => Hold::Prefix,
         Kind::Quotient(_) => Hold::Prefix,
-        Kind::Power(..) | Kind::Derivative(_) => Hold::Postfix,
         Kind::Function(Named::Function(Function::Exp | Function::Inverse), _) => Hold::Postfix,
         Kind::Reverse(x) | Kind::Function(Named::Reverse, x) if leaves(x).is_none_or(|n| n > SHORT) => {
             Hold::Postfix
@@ -43,65 +24,39 @@ fn hold(node: &Node) -> Hold {
     }
 }
 
-/// In brackets if it binds less tightly.
-fn part(node: &Node, least: Hold) -> String {
-    let text = bare(node, false);
-    if hold(node) < least { bracketed(&text) } else { text }
-}
-
-/// Brackets as high as their content.
-fn bracketed(text: &str) -> String {
-    if is_tall(text) { format!("\\left({text}\\right)") } else { format!("({text})") }
-}
-
-fn is_tall(text: &str) -> bool {
+pub(super) fn is_tall(text: &str) -> bool {
     ["\\frac", "\\sum", "\\left"].iter().any(|command| text.contains(command))
 }
 
-/// Without brackets round it. Whether more factors follow matters to a sum over an index, which takes all of
-/// them.
-fn bare(node: &Node, followed: bool) -> String {
+fn inner(node: &Node) -> String {
+    Printer::Latex.bare(node, false)
+}
+
+fn part(node: &Node, least: Hold) -> String {
+    Printer::Latex.part(node, least)
+}
+
+/// A node spelled otherwise than in text, without brackets round it. Whether more factors follow matters to a sum over an
+/// index, which takes all of them.
+pub(super) fn bare(node: &Node, followed: bool) -> String {
     match &node.kind {
         Kind::Number(x) => number(x),
         Kind::Pi => "\\pi".to_owned(),
-        Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => letters(node, "").unwrap_or_default(),
-        Kind::Sum(terms) => sum(terms),
         Kind::Product(factors) => product(factors, followed),
-        Kind::Quotient(pair) => format!("\\frac{{{}}}{{{}}}", bare(&pair.0, false), bare(&pair.1, false)),
-        Kind::Tight(product, operands) => {
-            let operands: Vec<String> = operands.iter().map(|x| part(x, Hold::Prefix)).collect();
-            operands.join(sign(*product).1)
-        }
+        Kind::Quotient(pair) => format!("\\frac{{{}}}{{{}}}", inner(&pair.0), inner(&pair.1)),
+        Kind::Tight(product, operands) => tight(operands, sign(*product).1),
         Kind::Reverse(x) | Kind::Function(Named::Reverse, x) => reverse(x),
         Kind::Power(x, n) => format!("{}^{{{n}}}", part(x, Hold::Primary)),
         Kind::Part(x, grades) => {
-            let text = bare(x, false);
+            let (text, list) = (inner(x), listed(*grades));
             let (left, right) = if is_tall(&text) { ("\\left", "\\right") } else { ("", "") };
-            format!("{left}\\langle {text} {right}\\rangle{}", grades_of(*grades))
+            let below = if list == ["0"] { String::new() } else { format!("_{{{}}}", list.join(",")) };
+            format!("{left}\\langle {text} {right}\\rangle{below}")
         }
         Kind::Function(function, x) => call_named(*function, x),
-        Kind::Call(name, arguments) if arguments.is_empty() => word(name, ""),
-        Kind::Call(name, arguments) => {
-            let arguments: Vec<String> = arguments.iter().map(|x| bare(x, false)).collect();
-            applied(&word(name, ""), &arguments.join(", "))
-        }
-        Kind::Derivative(x) => bracketed(&bare(x, false)) + "'",
         Kind::Total(index, x) => format!("\\sum_{{{}}} {}", subscript(index), part(x, Hold::Product)),
+        _ => letters(node, "").unwrap_or_default(),
     }
-}
-
-fn sum(terms: &[(bool, Node)]) -> String {
-    let mut text = String::new();
-    for (i, (negative, term)) in terms.iter().enumerate() {
-        text += match (i, negative) {
-            (0, false) => "",
-            (0, true) => "-",
-            (_, false) => " + ",
-            (_, true) => " - ",
-        };
-        text += &part(term, Hold::Product);
-    }
-    text
 }
 
 /// Letters stand side by side; what is wider has a thin space round it, also lest `R (x)` be a function of x.
@@ -110,13 +65,14 @@ fn product(factors: &[Node], followed: bool) -> String {
     for (i, factor) in factors.iter().enumerate() {
         let followed = followed || i + 1 < factors.len();
         let mut next = match &factor.kind {
-            Kind::Total(..) if !followed => bare(factor, false),
-            Kind::Tight(..) => close(factor),
+            Kind::Total(..) if !followed => inner(factor),
+            // A tight product has no space around its sign.
+            Kind::Tight(product, operands) => tight(operands, sign(*product).0),
             _ => part(factor, Hold::Tight),
         };
         if i > 0 {
             if next.starts_with(|c: char| c.is_ascii_digit()) {
-                next = bracketed(&next);
+                next = Printer::Latex.bracketed(&next);
             }
             text += if is_narrow(&factors[i - 1]) && is_narrow(factor) { " " } else { "\\," };
         }
@@ -125,11 +81,8 @@ fn product(factors: &[Node], followed: bool) -> String {
     text
 }
 
-/// A tight product without space around its sign.
-fn close(node: &Node) -> String {
-    let Kind::Tight(product, operands) = &node.kind else { return part(node, Hold::Tight) };
-    let operands: Vec<String> = operands.iter().map(|x| part(x, Hold::Prefix)).collect();
-    operands.join(sign(*product).0)
+fn tight(operands: &[Node], sign: &str) -> String {
+    operands.iter().map(|x| part(x, Hold::Prefix)).collect::<Vec<_>>().join(sign)
 }
 
 /// The sign set close and with space.
@@ -156,22 +109,17 @@ fn is_narrow(node: &Node) -> bool {
 }
 
 fn call_named(function: Named, x: &Node) -> String {
+    let text = inner(x);
     match function {
-        Named::Function(Function::Exp) => format!("e^{{{}}}", bare(x, false)),
-        Named::Function(Function::Sqrt) => format!("\\sqrt{{{}}}", bare(x, false)),
+        Named::Function(Function::Exp) => format!("e^{{{text}}}"),
+        Named::Function(Function::Sqrt) => format!("\\sqrt{{{text}}}"),
         Named::Function(Function::Inverse) => part(x, Hold::Primary) + "^{-1}",
-        Named::Norm => format!("\\left\\Vert {} \\right\\Vert", bare(x, false)),
+        Named::Norm => format!("\\left\\Vert {text} \\right\\Vert"),
         Named::Function(Function::Log) | Named::Sin | Named::Cos | Named::Tan => {
-            applied(&format!("\\{}", function.name()), &bare(x, false))
+            Printer::Latex.applied(&format!("\\{}", function.name()), &text)
         }
-        _ => applied(&format!("\\operatorname{{{}}}", function.name()), &bare(x, false)),
+        _ => Printer::Latex.applied(&format!("\\operatorname{{{}}}", function.name()), &text),
     }
-}
-
-/// A function's value; the braces keep high brackets close to its name.
-fn applied(function: &str, arguments: &str) -> String {
-    let brackets = bracketed(arguments);
-    if is_tall(arguments) { format!("{function}{{{brackets}}}") } else { function.to_owned() + &brackets }
 }
 
 /// Maximum number of letters under one tilde.
@@ -192,9 +140,9 @@ fn reverse(x: &Node) -> String {
     if let Some(text) = letters(x, tilde) {
         return text;
     }
-    let text = bare(x, false);
+    let text = inner(x);
     let short = leaves(x).is_some_and(|n| n <= SHORT);
-    if short { format!("\\widetilde{{{text}}}") } else { bracketed(&text) + "^{\\sim}" }
+    if short { format!("\\widetilde{{{text}}}") } else { Printer::Latex.bracketed(&text) + "^{\\sim}" }
 }
 
 /// A name or a blade, with an accent over what stands before its indices.
@@ -221,88 +169,100 @@ fn number(x: &Number) -> String {
     }
 }
 
-fn grades_of(grades: Grades) -> String {
-    let list: Vec<String> = (0..16).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect();
-    if list == ["0"] { String::new() } else { format!("_{{{}}}", list.join(",")) }
+// --- names: letters, accents, indices, primes and labels
+
+/// The letters of a name before its indices, primes and label.
+fn core(name: &str) -> &str {
+    let end = name.find(|c: char| c.is_ascii_digit() || "_'(∥⊥".contains(c));
+    &name[..end.unwrap_or(name.len())]
 }
+
+/// A name: letters, indices below, primes, a label `(t)`.
+pub(super) fn word(name: &str, accent: &str) -> String {
+    let letters = core(name);
+    let rest = &name[letters.len()..];
+    let (rest, label) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
+    let indices = rest.trim_end_matches('\'');
+    let primes = &rest[indices.len()..];
+
+    let mut text = upright(letters);
+    if !accent.is_empty() {
+        text = format!("{accent}{{{text}}}");
+    }
+    if !indices.is_empty() {
+        text += &format!("_{{{}}}", subscript(indices.trim_start_matches('_')));
+    }
+    // A label is a number or a name without a label.
+    let label = label.trim_start_matches('(').trim_end_matches(')');
+    let label = match label.chars().next() {
+        None => String::new(),
+        Some(c) if c.is_alphabetic() => format!("({})", word(label, "")),
+        Some(_) => format!("({label})"),
+    };
+    text + primes + &label
+}
+
+/// More than three Latin letters are a word, set upright; fewer may be factors and are set as such.
+fn upright(letters: &str) -> String {
+    if letters.len() > 3 && letters.bytes().all(|c| c.is_ascii_alphabetic()) {
+        return format!("\\mathrm{{{letters}}}");
+    }
+    let mut marked: Vec<(char, Vec<&str>)> = Vec::new();
+    let apart = |c| decomposed(c).map_or([Some(c), None], |(letter, mark)| [Some(letter), Some(mark)]);
+    for c in letters.chars().flat_map(apart).flatten() {
+        match (command(ACCENTS, c), marked.last_mut()) {
+            (Some(accent), Some((_, accents))) => accents.push(accent),
+            _ => marked.push((c, Vec::new())),
+        }
+    }
+    let texts: Vec<String> = marked.into_iter().map(|(c, accents)| accented(c, &accents)).collect();
+    texts.join(" ")
+}
+
+/// A letter below accents, the first of them the lowest.
+fn accented(c: char, accents: &[&str]) -> String {
+    let above: String = accents.iter().rev().map(|accent| format!("\\{accent}{{")).collect();
+    above + &letter(c) + &"}".repeat(accents.len())
+}
+
+fn subscript(indices: &str) -> String {
+    let parts: Vec<String> = indices.split('_').map(upright_or_digits).collect();
+    parts.join(",")
+}
+
+/// An index: digits, letters that count, or a word, which is set upright.
+fn upright_or_digits(index: &str) -> String {
+    if index.bytes().all(|c| c.is_ascii_digit()) {
+        return index.to_owned();
+    }
+    let word = index.len() > 1 && index.bytes().all(|c| c.is_ascii_alphabetic());
+    match word && !index.chars().all(|c| INDICES.contains(c)) {
+        true => format!("\\mathrm{{{index}}}"),
+        false => upright(index),
+    }
+}
+
+/// One character of a name.
+fn letter(c: char) -> String {
+    match command(LETTERS, c) {
+        Some(command) => format!("\\{command}"),
+        None if "#$%&_{}~^\\".contains(c) => format!("\\{c}"),
+        None => c.to_string(),
+    }
+}
+
+fn command(table: &str, c: char) -> Option<&str> {
+    table.split(' ').find_map(|entry| entry.strip_prefix(c))
+}
+
+/// Combining marks, each with its command.
+const ACCENTS: &str = "\u{300}grave \u{301}acute \u{302}hat \u{303}tilde \u{304}bar \u{306}breve \u{307}dot \u{308}ddot \
+                       \u{30c}check \u{20d7}vec";
+
+/// The letters that Latin ones do not serve for, and the signs of directions, each with its command.
+const LETTERS: &str = "αalpha βbeta γgamma δdelta εvarepsilon ζzeta ηeta θtheta ιiota κkappa λlambda μmu νnu ξxi πpi ρrho \
+                       ςvarsigma σsigma τtau υupsilon φvarphi χchi ψpsi ωomega ΓGamma ΔDelta ΘTheta ΛLambda ΞXi ΠPi \
+                       ΣSigma ΥUpsilon ΦPhi ΨPsi ΩOmega ∥parallel ⊥perp";
 
 #[cfg(test)]
-mod tests {
-    use super::{Function, Named, Node, Tight};
-    use crate::formula::tests::build::*;
-
-    #[track_caller]
-    fn check(node: Node, latex: &str) {
-        assert_eq!(node.latex(), latex);
-    }
-
-    #[test]
-    fn names_have_indices_primes_and_accents() {
-        for (name, latex) in [
-            ("Ω_B", "\\Omega_{B}"),
-            ("a1", "a_{1}"),
-            ("f_k'", "f_{k}'"),
-            ("omega_body", "\\mathrm{omega}_{\\mathrm{body}}"),
-            ("a∥", "a_{\\parallel}"),
-            ("R(0)", "R(0)"),
-            ("I(Ω_B')", "I(\\Omega_{B}')"),
-            ("a\u{302}\u{20d7}_k", "\\vec{\\hat{a}}_{k}"),
-            ("T_a_b", "T_{a,b}"),
-            ("ω''", "\\omega''"),
-        ] {
-            check(x(name), latex);
-        }
-        check(x("I"), "I");
-        check(x("e12"), "e_{12}");
-    }
-
-    #[test]
-    fn a_tilde_stands_over_the_letter_or_after_the_bracket() {
-        check(reverse(x("R_1'")), "\\tilde{R}_{1}'");
-        check(derivative(reverse(x("R"))), "(\\tilde{R})'");
-        check(reverse(x("spin")), "\\widetilde{\\mathrm{spin}}");
-        check(reverse(product([x("e1"), x("e2")])), "\\widetilde{e_{1} e_{2}}");
-        check(reverse(plus(x("a"), x("b"))), "(a + b)^{\\sim}");
-        check(power(reverse(plus(x("a"), x("b"))), 2), "((a + b)^{\\sim})^{2}");
-        check(power(reverse(x("R")), 2), "\\tilde{R}^{2}");
-    }
-
-    #[test]
-    fn tight_products_are_set_close_beside_other_factors() {
-        let (a, b) = (|| x("a"), || x("b"));
-        check(wedge(a(), b()), "a \\wedge b");
-        check(minus(product([x("I"), wedge(a(), b())])), "-I\\,a{\\wedge}b");
-        let turned = product([x("R"), tight(Tight::Dot, [x("x"), x("Ω")]), reverse(x("R"))]);
-        check(turned, "R\\,x{\\cdot}\\Omega\\,\\tilde{R}");
-        let crossed = tight(Tight::Cross, [a(), wedge(a(), b())]);
-        check(crossed, "a \\boldsymbol{\\times} (a \\wedge b)");
-        check(product([x("R"), plus(a(), b()), x("spin")]), "R\\,(a + b)\\,\\mathrm{spin}");
-    }
-
-    #[test]
-    fn fractions_and_exponents_need_no_brackets() {
-        let sum = || plus(x("a"), x("b"));
-        check(over(sum(), product([x("2"), x("c")])), "\\frac{a + b}{2 c}");
-        check(minus(product([x("½"), x("Ω_S"), x("R")])), "-\\frac{1}{2} \\Omega_{S} R");
-        check(exp(minus(over(x("θ"), x("2")))), "e^{-\\frac{\\theta}{2}}");
-        check(power(exp(x("a")), 2), "(e^{a})^{2}");
-        check(power(over(x("a"), x("b")), 2), "\\left(\\frac{a}{b}\\right)^{2}");
-        check(function(Named::Function(Function::Inverse), sum()), "(a + b)^{-1}");
-        check(function(Named::Function(Function::Sqrt), sum()), "\\sqrt{a + b}");
-        check(function(Named::Sin, over(x("θ"), x("2"))), "\\sin{\\left(\\frac{\\theta}{2}\\right)}");
-        check(function(Named::Dual, x("B")), "\\operatorname{dual}(B)");
-        check(function(Named::Norm, minus(x("a"))), "\\left\\Vert -a \\right\\Vert");
-    }
-
-    #[test]
-    fn numbers_grades_and_sums_over_an_index() {
-        check(product([x("2"), x("3"), x("a")]), "2 (3) a");
-        check(product([x("1.5e-7"), x("a")]), "1.5 {\\times} 10^{-7} a");
-        check(part(over(x("A"), x("B")), 4), "\\left\\langle \\frac{A}{B} \\right\\rangle_{2}");
-        check(part(x("A"), 5), "\\langle A \\rangle_{0,2}");
-        let sum = total("k", product([x("ω_k"), x("I"), x("e_k")]));
-        check(product([sum, x("a")]), "\\left(\\sum_{k} \\omega_{k} I e_{k}\\right)\\,a");
-        let equation = tree([x("a"), x("b"), x("c")]);
-        assert_eq!(equation.latex(), "a = b = c");
-    }
-}
+mod tests;

@@ -1,6 +1,5 @@
 //! Programs over many rows: each block of rows runs through all steps before the next block.
 
-pub(crate) mod lanes;
 pub(crate) mod schedule;
 pub(crate) mod side_by_side;
 pub(crate) mod single;
@@ -8,18 +7,17 @@ pub(crate) mod steps;
 #[cfg(test)]
 mod tests;
 
-use super::InputKind;
 use super::compile::program::Id;
 use crate::MathError;
 use crate::graded::{Graded, size};
 use crate::simd::threads::{Threads, for_each};
 use crate::simd::traverse::{Factor, SHARED, Target, by_blocks};
-use crate::simd::{Element, Lane, Path};
-use schedule::{Schedule, Task};
-use single::{Given, Runner};
+use crate::simd::{Element, Path};
+use schedule::Schedule;
+use single::Runner;
 use std::ops::{ControlFlow, Range};
 use std::sync::{Mutex, PoisonError};
-use steps::Work;
+use steps::{Given, Work};
 
 /// Below this number of rows, transposing them into lanes does not pay.
 const FEW: usize = 8;
@@ -47,15 +45,6 @@ pub struct RowError {
     pub step: Id,
     /// The error.
     pub error: MathError,
-}
-
-/// A value of some row of an input.
-fn given<T: Element>(kind: InputKind, numbers: &[T]) -> Given {
-    match kind {
-        InputKind::Value(ty) => Given::Value(Graded::from_fn(ty.grades, |k| numbers[k].into())),
-        InputKind::Matrix { .. } => Given::Matrix(std::array::from_fn(|k| numbers[k].into())),
-        InputKind::Determinant => Given::Determinant(numbers[0].into()),
-    }
 }
 
 impl Runner {
@@ -101,22 +90,12 @@ impl Runner {
         if rows.len() < FEW {
             return self.by_rows(&factors, &mut targets, rows.len()).map_err(late);
         }
-        let fixed = self.fixed(&factors.iter().map(|factor| factor.one).collect::<Vec<_>>());
-        let maps: Vec<Option<Vec<f64>>> = self
-            .inputs
-            .iter()
-            .zip(&factors)
-            .map(|(kind, factor)| {
-                let map = factor.one && !matches!(kind, InputKind::Value(_));
-                map.then(|| factor.rows(0, 1).iter().map(|&x| x.into()).collect())
-            })
-            .collect();
-        let of_first = |i: usize| given(self.inputs[i], factors[i].rows(0, 1));
-        let Ok(values) = self.values(of_first, |id| fixed[id]) else {
+        let known = factors.iter().enumerate();
+        let known: Vec<_> = known.map(|(i, factor)| factor.one.then(|| self.given(&factors, i, 0))).collect();
+        let Ok(schedule) = self.schedule(&known) else {
             // An earlier step may fail in the first row too.
             return self.by_rows(&factors, &mut targets, 1).map_err(late);
         };
-        let schedule = self.schedule(&fixed, &values, &maps);
         targets.iter_mut().zip(&schedule.results).for_each(|(target, &at)| target.at = at);
         let streamed = path.streams() && bytes >= STREAMED;
         let sweep = Sweep { runner: self, schedule, path, streamed, failure: Mutex::new(None) };
@@ -153,8 +132,14 @@ impl Runner {
 
     /// The values of all steps for one row.
     fn row<T: Element>(&self, factors: &[Factor<T>], row: usize) -> Result<Vec<Graded>, RowError> {
-        let values = self.values(|i| given(self.inputs[i], factors[i].rows(row, 1)), |_| true);
+        let values = self.values(|i| self.given(factors, i, row), |_| true);
         values.map_err(|(step, error)| RowError { row, step, error })
+    }
+
+    /// A row of an input.
+    fn given<T: Element>(&self, factors: &[Factor<T>], input: usize, row: usize) -> Given {
+        let numbers = factors[input].rows(row, 1);
+        Given::new(self.inputs[input], |k| numbers[k].into())
     }
 
     /// The work for a row, in units of reading or writing a number; several threads pay from a million units on.
@@ -206,15 +191,22 @@ impl Sweep<'_> {
         targets: &mut [Target<T>],
         total: usize,
     ) -> Result<(), RowError> {
-        // Lanes beyond the last rows are computed too; 1 is in the domain of nearly all functions.
-        let mut lanes = vec![Lane::<W>::filled(1.0); self.schedule.lanes];
-        for (first, numbers) in &self.schedule.fixed {
-            lanes[*first..].iter_mut().zip(numbers).for_each(|(lane, &x)| *lane = Lane::filled(x));
-        }
+        let mut lanes = self.schedule.filled::<W>();
         let ahead = self.ahead::<T, W>(factors);
         let mut result = Ok(());
         by_blocks((self.path, self.streamed), total, &mut lanes, targets, |first, count, lanes| {
-            if !self.block(factors, &ahead, first, count, lanes) {
+            let mut known = true;
+            for (task, ahead) in self.schedule.tasks.iter().zip(&ahead) {
+                for (input, lines) in ahead {
+                    let row = factors[*input].rows(first, 1);
+                    let block = row.as_ptr().wrapping_add(W * row.len()).wrapping_byte_add(AHEAD);
+                    self.path.prefetch(block, lines.clone());
+                }
+                known &= self.runner.task(task, (self.path, count), lanes, |input, lanes| {
+                    self.path.gather(factors[input].rows(first, count), lanes);
+                });
+            }
+            if !known {
                 result = (first..first + count).try_for_each(|row| self.runner.row(factors, row).map(drop));
             }
             if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
@@ -237,53 +229,4 @@ impl Sweep<'_> {
         };
         (0..tasks).map(share).collect()
     }
-
-    /// Evaluates a block of rows; false if some row may have no value.
-    fn block<T: Element, const W: usize>(
-        &self,
-        factors: &[Factor<T>],
-        ahead: &[Vec<(usize, Range<usize>)>],
-        first: usize,
-        count: usize,
-        lanes: &mut [Lane<W>],
-    ) -> bool {
-        let mut known = true;
-        for (task, ahead) in self.schedule.tasks.iter().zip(ahead) {
-            for (input, lines) in ahead {
-                let row = factors[*input].rows(first, 1);
-                let block = row.as_ptr().wrapping_add(W * row.len()).wrapping_byte_add(AHEAD);
-                self.path.prefetch(block, lines.clone());
-            }
-            match task {
-                Task::Read { input, to } => {
-                    self.path.gather(factors[*input].rows(first, count), &mut lanes[to.clone()]);
-                }
-                Task::Do { step, operands, to } => {
-                    let step = &self.runner.steps[*step];
-                    let of = self.runner.steps[step.operands[0]].grades;
-                    known &= step.block(self.path, of, count, apart(lanes, operands, to));
-                }
-            }
-        }
-        known
-    }
-}
-
-/// The lanes of two operands to read, and others to write.
-pub(super) fn apart<'a, const W: usize>(
-    lanes: &'a mut [Lane<W>],
-    [a, b]: &[Range<usize>; 2],
-    to: &Range<usize>,
-) -> (&'a [Lane<W>], &'a [Lane<W>], &'a mut [Lane<W>]) {
-    let (before, rest) = lanes.split_at_mut(to.start);
-    let (out, after) = rest.split_at_mut(to.len());
-    let (before, after) = (&*before, &*after);
-    let place = |range: &Range<usize>| {
-        if range.end <= to.start {
-            &before[range.clone()]
-        } else {
-            &after[range.start - to.end..range.end - to.end]
-        }
-    };
-    (place(a), place(b), out)
 }

@@ -1,9 +1,11 @@
 //! Assignment of values to lanes, and the order of evaluation.
 
 use super::single::Runner;
-use super::steps::Work;
+use super::steps::{Given, Work};
+use crate::MathError;
 use crate::formula::compile::program::Id;
-use crate::graded::{Graded, size};
+use crate::graded::size;
+use crate::simd::{Lane, Path};
 use std::ops::Range;
 
 /// A value, or an input that is a map, at its lanes.
@@ -23,6 +25,18 @@ pub(crate) struct Schedule {
     pub results: Vec<usize>,
     /// The number of lanes.
     pub lanes: usize,
+}
+
+impl Schedule {
+    /// The lanes with the values common to all rows. Lanes beyond the last rows are computed too; 1 is in the domain of
+    /// nearly all functions.
+    pub fn filled<const W: usize>(&self) -> Vec<Lane<W>> {
+        let mut lanes = vec![Lane::filled(1.0); self.lanes];
+        for (first, numbers) in &self.fixed {
+            lanes[*first..].iter_mut().zip(numbers).for_each(|(lane, &x)| *lane = Lane::filled(x));
+        }
+        lanes
+    }
 }
 
 /// Lanes that are in use.
@@ -55,17 +69,21 @@ impl Runner {
                 Work::Input(i) | Work::Map(i) => one[i],
                 _ => true,
             };
-            fixed.push(own && step.operands.iter().all(|&id| fixed[id]));
+            fixed.push(own && step.operands().iter().all(|&id| fixed[id]));
         }
         fixed
     }
 
-    /// Lanes for the values of steps, those `fixed` given. Lanes are reused after the last use of
-    /// their value, so that all stay in the first-level cache.
-    pub(crate) fn schedule(&self, fixed: &[bool], values: &[Graded], maps: &[Option<Vec<f64>>]) -> Schedule {
+    /// Lanes for the values of steps, and for inputs that are maps; `known` are the inputs that are the same for all rows.
+    /// Lanes are reused after the last use of their value, so that all stay in the first-level cache. Fails if a step that
+    /// depends only on known inputs has no value.
+    pub(crate) fn schedule(&self, known: &[Option<Given>]) -> Result<Schedule, (Id, MathError)> {
+        let fixed = self.fixed(&known.iter().map(Option::is_some).collect::<Vec<_>>());
+        let given = |i: usize| known[i].unwrap_or(Given::Determinant(f64::NAN));
+        let values = self.values(given, |id| fixed[id])?;
         let mut last = vec![0; self.steps.len()];
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| !fixed[*id]) {
-            step.operands.iter().for_each(|&operand| last[operand] = id);
+            step.operands().iter().for_each(|&operand| last[operand] = id);
         }
         self.results.iter().for_each(|&id| last[id] = usize::MAX);
         let mut lanes = Lanes::default();
@@ -77,15 +95,15 @@ impl Runner {
             places[id] = lanes.take(size(self.steps[id].grades));
             schedule.fixed.push((places[id].start, values[id].components().to_vec()));
         }
-        for (input, numbers) in maps.iter().enumerate() {
-            if let Some(numbers) = numbers {
-                of_maps[input] = lanes.take(numbers.len());
-                schedule.fixed.push((of_maps[input].start, numbers.clone()));
+        for (input, given) in known.iter().enumerate() {
+            if let Some(map @ (Given::Matrix(_) | Given::Determinant(_))) = given {
+                of_maps[input] = lanes.take(map.numbers().len());
+                schedule.fixed.push((of_maps[input].start, map.numbers().to_vec()));
             }
         }
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| !fixed[*id]) {
             let mut operands = [0..0, 0..0];
-            for (place, &operand) in operands.iter_mut().zip(&*step.operands) {
+            for (place, &operand) in operands.iter_mut().zip(step.operands()) {
                 *place = places[operand].clone();
             }
             if let Work::Map(input) = step.work {
@@ -101,12 +119,53 @@ impl Runner {
                 Work::Input(input) => Task::Read { input, to },
                 _ => Task::Do { step: id, operands, to },
             });
-            for &operand in step.operands.iter().filter(|&&operand| last[operand] == id && !fixed[operand]) {
+            for &operand in step.operands().iter().filter(|&&operand| last[operand] == id && !fixed[operand])
+            {
                 lanes.free(places[operand].clone());
             }
         }
         schedule.results = self.results.iter().map(|&id| places[id].start).collect();
         schedule.lanes = lanes.0.len();
-        schedule
+        Ok(schedule)
     }
+
+    /// Does a task for a block of rows, `count` of which matter; false if some row may have no value.
+    pub(crate) fn task<const W: usize>(
+        &self,
+        task: &Task,
+        (path, count): (Path, usize),
+        lanes: &mut [Lane<W>],
+        read: impl FnOnce(usize, &mut [Lane<W>]),
+    ) -> bool {
+        match task {
+            Task::Read { input, to } => {
+                read(*input, &mut lanes[to.clone()]);
+                true
+            }
+            Task::Do { step, operands, to } => {
+                let step = &self.steps[*step];
+                let of = self.steps[step.operands()[0]].grades;
+                step.block(path, of, count, apart(lanes, operands, to))
+            }
+        }
+    }
+}
+
+/// The lanes of two operands to read, and others to write.
+fn apart<'a, const W: usize>(
+    lanes: &'a mut [Lane<W>],
+    [a, b]: &[Range<usize>; 2],
+    to: &Range<usize>,
+) -> (&'a [Lane<W>], &'a [Lane<W>], &'a mut [Lane<W>]) {
+    let (before, rest) = lanes.split_at_mut(to.start);
+    let (out, after) = rest.split_at_mut(to.len());
+    let (before, after) = (&*before, &*after);
+    let place = |range: &Range<usize>| {
+        if range.end <= to.start {
+            &before[range.clone()]
+        } else {
+            &after[range.start - to.end..range.end - to.end]
+        }
+    };
+    (place(a), place(b), out)
 }

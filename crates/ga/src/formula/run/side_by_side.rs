@@ -1,10 +1,9 @@
 //! Programs on lanes that the caller fills repeatedly, for bodies stepped side by side.
 
-use super::apart;
-use super::schedule::{Schedule, Task};
-use super::single::{Given, Runner};
+use super::schedule::Schedule;
+use super::single::Runner;
+use super::steps::Given;
 use crate::formula::InputKind;
-use crate::graded::Graded;
 use crate::simd::{Lane, Path};
 
 /// A program with memory for `W` rows, a multiple of 8, as lanes. Steps common to all rows and times are computed once.
@@ -25,28 +24,13 @@ impl Runner {
     /// If the inputs are not of their kinds and grades.
     pub fn beside<const W: usize>(&self, known: &[Option<Given>]) -> Option<Beside<'_, W>> {
         assert_eq!(known.len(), self.inputs.len(), "an entry for each input");
-        let fixed = self.fixed(&known.iter().map(Option::is_some).collect::<Vec<_>>());
-        let given = |i: usize| known[i].unwrap_or(Given::Determinant(f64::NAN));
-        let values = self.values(given, |id| fixed[id]).ok()?;
-        let numbers = |given: &Given| match given {
-            Given::Value(value) => value.components().to_vec(),
-            Given::Matrix(m) => m.to_vec(),
-            Given::Determinant(d) => vec![*d],
-        };
-        let map = |(kind, given): (&InputKind, &Option<Given>)| {
-            given.as_ref().filter(|_| !matches!(kind, InputKind::Value(_))).map(numbers)
-        };
-        let maps: Vec<_> = self.inputs.iter().zip(known).map(map).collect();
-        let schedule = self.schedule(&fixed, &values, &maps);
-        let mut lanes = vec![Lane::filled(1.0); schedule.lanes];
-        for (first, numbers) in &schedule.fixed {
-            lanes[*first..].iter_mut().zip(numbers).for_each(|(lane, &x)| *lane = Lane::filled(x));
-        }
+        let schedule = self.schedule(known).ok()?;
         let input = |(kind, given): (&InputKind, &Option<Given>)| match given {
-            Some(given) => numbers(given).into_iter().map(Lane::filled).collect(),
+            Some(given) => given.numbers().iter().copied().map(Lane::filled).collect(),
             None => vec![Lane::filled(1.0); kind.size()],
         };
         let inputs = self.inputs.iter().zip(known).map(input).collect();
+        let lanes = schedule.filled();
         Some(Beside { runner: self, path: Path::best(), schedule, inputs, lanes })
     }
 }
@@ -67,14 +51,9 @@ impl<const W: usize> Beside<'_, W> {
     pub fn run(&mut self) {
         let mut known = true;
         for task in &self.schedule.tasks {
-            match task {
-                Task::Read { input, to } => self.lanes[to.clone()].copy_from_slice(&self.inputs[*input]),
-                Task::Do { step, operands, to } => {
-                    let step = &self.runner.steps[*step];
-                    let of = self.runner.steps[step.operands[0]].grades;
-                    known &= step.block(self.path, of, W, apart(&mut self.lanes, operands, to));
-                }
-            }
+            known &= self.runner.task(task, (self.path, W), &mut self.lanes, |input, lanes| {
+                lanes.copy_from_slice(&self.inputs[input]);
+            });
         }
         if !known {
             (0..W).for_each(|row| self.complete(row));
@@ -85,14 +64,7 @@ impl<const W: usize> Beside<'_, W> {
     #[cold]
     fn complete(&mut self, row: usize) {
         let runner = self.runner;
-        let given = |i: usize| {
-            let number = |k: usize| self.inputs[i][k].0[row];
-            match runner.inputs[i] {
-                InputKind::Value(ty) => Given::Value(Graded::from_fn(ty.grades, number)),
-                InputKind::Matrix { .. } => Given::Matrix(std::array::from_fn(number)),
-                InputKind::Determinant => Given::Determinant(number(0)),
-            }
-        };
+        let given = |i: usize| Given::new(runner.inputs[i], |k| self.inputs[i][k].0[row]);
         let values = runner.values(given, |_| true);
         for (number, (&id, &first)) in runner.results.iter().zip(&self.schedule.results).enumerate() {
             if self.schedule.fixed.iter().any(|(fixed, _)| *fixed == first) {

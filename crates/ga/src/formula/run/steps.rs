@@ -1,43 +1,57 @@
 //! Steps of programs in 3-d space, ready to run on single values and blocks of rows.
 
 use crate::MathError;
-use crate::formula::compile::program::{Id, Op, Program, Step};
+use crate::formula::compile::program::{Id, InputKind, Op, Program, Step};
 use crate::g3::functions::Function;
-use crate::g3::values::Multivector;
+use crate::g3::rotor::Rotor;
+use crate::g3::values::{Multivector, norm};
 use crate::graded::Graded;
-use crate::product::{Grades, Plan, Product};
+use crate::product::{Engine, Grades, Plan, Product};
+use crate::rows::compose::Compose;
+use crate::rows::product::{Geometric, Turn};
+use crate::rows::rotor_functions::{self, Cos, Exp, Log, Power, Sin, Tan};
+use crate::simd::map::{self, Map};
+use crate::simd::{Kernel, Lane, Path};
 use crate::table::G3;
 use std::f64::consts::PI;
+
+/// The value of an input.
+#[derive(Clone, Copy, Debug)]
+pub enum Given {
+    /// A value of the input's grades.
+    Value(Graded),
+    /// A matrix by rows.
+    Matrix([f64; 9]),
+    /// A determinant.
+    Determinant(f64),
+}
+
+impl Given {
+    /// An input of this kind, by its numbers.
+    pub(crate) fn new(kind: InputKind, number: impl Fn(usize) -> f64) -> Given {
+        match kind {
+            InputKind::Value(ty) => Given::Value(Graded::from_fn(ty.grades, number)),
+            InputKind::Matrix { .. } => Given::Matrix(std::array::from_fn(number)),
+            InputKind::Determinant => Given::Determinant(number(0)),
+        }
+    }
+
+    /// Its numbers.
+    pub fn numbers(&self) -> &[f64] {
+        match self {
+            Given::Value(value) => value.components(),
+            Given::Matrix(matrix) => matrix,
+            Given::Determinant(determinant) => std::slice::from_ref(determinant),
+        }
+    }
+}
 
 /// A step with its operands and the grades of its value.
 pub(crate) struct Ready {
     pub work: Work,
-    pub operands: Operands,
     pub grades: Grades,
-}
-
-/// The operands of a step, at most two.
-#[derive(Clone, Copy)]
-pub(crate) struct Operands {
-    ids: [Id; 2],
+    operands: [Id; 2],
     count: usize,
-}
-
-impl Operands {
-    fn new(ids: impl Iterator<Item = Id>) -> Operands {
-        ids.fold(Operands { ids: [0; 2], count: 0 }, |Operands { mut ids, count }, id| {
-            ids[count] = id;
-            Operands { ids, count: count + 1 }
-        })
-    }
-}
-
-impl std::ops::Deref for Operands {
-    type Target = [Id];
-
-    fn deref(&self) -> &[Id] {
-        &self.ids[..self.count]
-    }
 }
 
 /// The operation.
@@ -101,10 +115,118 @@ impl Ready {
     /// The steps of a program of 3-d space.
     pub fn steps(program: &Program) -> Vec<Ready> {
         let ready = |step: &Step| {
-            let operands = Operands::new(step.op.operands());
-            Ready { work: Work::new(program, step), operands, grades: step.ty.grades }
+            let (mut operands, mut count) = ([0; 2], 0);
+            for id in step.op.operands() {
+                operands[count] = id;
+                count += 1;
+            }
+            Ready { work: Work::new(program, step), grades: step.ty.grades, operands, count }
         };
         program.steps.iter().map(ready).collect()
+    }
+
+    /// Its operands, at most two.
+    pub fn operands(&self) -> &[Id] {
+        &self.operands[..self.count]
+    }
+
+    /// Computes the value from those of earlier steps.
+    #[inline]
+    pub fn set(
+        &self,
+        out: &mut Graded,
+        values: &[Graded],
+        input: impl Fn(usize) -> Given,
+    ) -> Result<(), MathError> {
+        let operand = |k: usize| &values[self.operands[k]];
+        let value = match &self.work {
+            Work::Input(i) => match input(*i) {
+                Given::Value(value) if value.grades() == self.grades => value,
+                other => panic!("input {i} is a value of the grades {:?}, got {other:?}", self.grades),
+            },
+            Work::Constant(value) => *value,
+            Work::Sum(sum) => {
+                sum.set(out, operand(0), operand(1), self.grades);
+                return Ok(());
+            }
+            Work::Selection(selection) => selection.of(operand(0), self.grades),
+            Work::Product(plan) => {
+                out.set_product(plan, operand(0), operand(1));
+                return Ok(());
+            }
+            Work::Compose => {
+                let product = rotor(operand(0)).compose(rotor(operand(1))).components();
+                Graded::from_fn(self.grades, |k| product[k])
+            }
+            Work::Turn => {
+                *out = *operand(1);
+                out.turn(rotor(operand(0)));
+                return Ok(());
+            }
+            Work::Divide => {
+                let divisor = number(operand(1));
+                if divisor == 0.0 {
+                    return Err(MathError::DivisionByZero);
+                }
+                operand(0).map(|x| x / divisor)
+            }
+            Work::Exp => known(rotor_functions::exp_one(three(operand(0))), self.grades)?,
+            Work::Log => known(rotor_functions::log_one(rotor(operand(0)).components()), self.grades)?,
+            Work::Power(t) => {
+                known(rotor_functions::power_one(rotor(operand(0)).components(), *t), self.grades)?
+            }
+            Work::Function(f) => applied(*f, operand(0), self.grades)?,
+            Work::Norm => Graded::from_fn(self.grades, |_| norm(operand(0).components())),
+            Work::Sin => known(Sin::value([number(operand(0))], []), self.grades)?,
+            Work::Cos => known(Cos::value([number(operand(0))], []), self.grades)?,
+            Work::Tan => known(Tan::value([number(operand(0))], []), self.grades)?,
+            Work::Map(i) => match input(*i) {
+                Given::Matrix(m) => {
+                    let [x, y, z] = three(operand(0));
+                    Graded::from_fn(self.grades, |k| m[3 * k] * x + m[3 * k + 1] * y + m[3 * k + 2] * z)
+                }
+                Given::Determinant(d) => operand(0).map(|x| 0.0 + x * d),
+                Given::Value(_) => panic!("input {i} is a linear map, got a value"),
+            },
+        };
+        out.assign(&value);
+        Ok(())
+    }
+
+    /// Evaluates the step for a block of rows, `count` of which matter. False if some row may have no value.
+    pub fn block<const W: usize>(
+        &self,
+        path: Path,
+        of: Grades,
+        count: usize,
+        (a, b, out): (&[Lane<W>], &[Lane<W>], &mut [Lane<W>]),
+    ) -> bool {
+        match &self.work {
+            Work::Input(_) | Work::Constant(_) => {}
+            Work::Sum(sum) => path.apply(sum, a, b, out),
+            Work::Selection(selection) => path.apply(selection, a, b, out),
+            Work::Product(plan) if matches!(plan.engine, Engine::Geometric) => {
+                path.apply(&Geometric(plan), a, b, out);
+            }
+            Work::Product(plan) => path.apply(plan, a, b, out),
+            Work::Compose => path.apply(&Compose, a, b, out),
+            Work::Turn => path.apply(&Turn(self.grades), a, b, out),
+            Work::Divide => {
+                path.apply(&Divide, a, b, out);
+                return b[0].0.iter().all(|x| *x != 0.0);
+            }
+            Work::Exp => return map::block(Exp, path, a, &[], out),
+            Work::Log => return map::block(Log, path, a, &[], out),
+            Work::Power(t) => return map::block(Power, path, a, &[Lane::filled(*t)], out),
+            Work::Function(f) => return function(*f, [of, self.grades], a, out, count),
+            Work::Norm => path.apply(&Norm, a, b, out),
+            Work::Sin => return map::block(Sin, path, a, &[], out),
+            Work::Cos => return map::block(Cos, path, a, &[], out),
+            Work::Tan => return map::block(Tan, path, a, &[], out),
+            Work::Map(_) if b.len() == 9 => path.apply(&Times, a, b, out),
+            Work::Map(_) => path.apply(&Scaled, a, b, out),
+        }
+        true
     }
 }
 
@@ -161,4 +283,159 @@ impl Work {
 fn dual(sign: f64, k: usize) -> (f64, usize) {
     let from = (0..8).find(|&i| G3.basis_product(i, 7).1 == k).unwrap_or(k);
     (sign * f64::from(Product::Geometric.of_basis(&G3, from, 7).0), from)
+}
+
+/// The rotor of four components.
+fn rotor(value: &Graded) -> Rotor {
+    let c = value.components();
+    Rotor::from_unit_components([c[0], c[1], c[2], c[3]])
+}
+
+/// The first component: that of a scalar.
+fn number(value: &Graded) -> f64 {
+    value.components()[0]
+}
+
+fn three(value: &Graded) -> [f64; 3] {
+    let c = value.components();
+    [c[0], c[1], c[2]]
+}
+
+/// A value of which some number was NaN for want of one.
+fn known<const N: usize>(numbers: [f64; N], grades: Grades) -> Result<Graded, MathError> {
+    if numbers[0].is_nan() { Err(MathError::NotFinite) } else { Ok(Graded::from_fn(grades, |k| numbers[k])) }
+}
+
+impl Sum {
+    /// As [`Graded::zip`], in place.
+    fn set(&self, out: &mut Graded, a: &Graded, b: &Graded, grades: Grades) {
+        let (a, b) = (a.components(), b.components());
+        let held = |place: Option<usize>, c: &[f64]| place.map_or(0.0, |k| c[k]);
+        out.fill(grades, |k| {
+            let [i, j] = self.places[k];
+            held(i, a) + self.sign * held(j, b)
+        });
+    }
+}
+
+impl Selection {
+    fn of(&self, a: &Graded, grades: Grades) -> Graded {
+        let held = a.components();
+        let component =
+            |place: &Option<(f64, usize)>| place.map_or(0.0, |(sign, k)| sign * held[k] + self.start);
+        Graded::from_fn(grades, |k| component(&self.places[k]))
+    }
+}
+
+impl<const W: usize> Kernel<W> for Sum {
+    #[inline(always)]
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        let zeros = Lane([0.0; W]);
+        for (out, [i, j]) in out.iter_mut().zip(&self.places) {
+            let x = &i.map_or(&zeros, |i| &a[i]).0;
+            let y = &j.map_or(&zeros, |j| &b[j]).0;
+            for l in 0..W {
+                out.0[l] = x[l] + self.sign * y[l];
+            }
+        }
+    }
+}
+
+impl<const W: usize> Kernel<W> for Selection {
+    #[inline(always)]
+    fn block(&self, a: &[Lane<W>], _: &[Lane<W>], out: &mut [Lane<W>]) {
+        for (out, place) in out.iter_mut().zip(&self.places) {
+            *out = Lane(place.map_or([0.0; W], |(sign, k)| a[k].0.map(|x| sign * x + self.start)));
+        }
+    }
+}
+
+/// Each component over the one of a scalar.
+struct Divide;
+
+impl<const W: usize> Kernel<W> for Divide {
+    #[inline(always)]
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        for (out, a) in out.iter_mut().zip(a) {
+            for l in 0..W {
+                out.0[l] = a.0[l] / b[0].0[l];
+            }
+        }
+    }
+}
+
+/// A matrix, nine lanes, times three.
+struct Times;
+
+impl<const W: usize> Kernel<W> for Times {
+    #[inline(always)]
+    fn block(&self, a: &[Lane<W>], m: &[Lane<W>], out: &mut [Lane<W>]) {
+        let (a, m, out) = (&a[..3], &m[..9], &mut out[..3]);
+        for k in 0..3 {
+            let row = &m[3 * k..3 * k + 3];
+            for l in 0..W {
+                out[k].0[l] = row[0].0[l] * a[0].0[l] + row[1].0[l] * a[1].0[l] + row[2].0[l] * a[2].0[l];
+            }
+        }
+    }
+}
+
+/// A number times each component.
+struct Scaled;
+
+impl<const W: usize> Kernel<W> for Scaled {
+    #[inline(always)]
+    fn block(&self, a: &[Lane<W>], s: &[Lane<W>], out: &mut [Lane<W>]) {
+        for (out, a) in out.iter_mut().zip(a) {
+            for l in 0..W {
+                out.0[l] = 0.0 + a.0[l] * s[0].0[l];
+            }
+        }
+    }
+}
+
+/// The root of the sum of squares; the sum is kept to find rows where it overflows or underflows.
+struct Norm;
+
+impl<const W: usize> Kernel<W> for Norm {
+    #[inline(always)]
+    fn block(&self, a: &[Lane<W>], _: &[Lane<W>], out: &mut [Lane<W>]) {
+        let mut sums = [0.0; W];
+        for a in a {
+            for l in 0..W {
+                sums[l] += a.0[l] * a.0[l];
+            }
+        }
+        let mut plain = true;
+        for l in 0..W {
+            plain &= (1e-290..1e290).contains(&sums[l]);
+            out[0].0[l] = sums[l].sqrt();
+        }
+        if !plain {
+            for l in 0..W {
+                out[0].0[l] = norm(&row(a, l)[..a.len()]);
+            }
+        }
+    }
+}
+
+/// Row `l` of at most eight lanes.
+fn row<const W: usize>(lanes: &[Lane<W>], l: usize) -> [f64; 8] {
+    std::array::from_fn(|k| lanes.get(k).map_or(0.0, |lane| lane.0[l]))
+}
+
+/// Evaluates a function for the first rows, one by one; whether each has a value.
+fn function<const W: usize>(
+    f: Function,
+    grades: [Grades; 2],
+    a: &[Lane<W>],
+    out: &mut [Lane<W>],
+    count: usize,
+) -> bool {
+    (0..count).all(|l| {
+        let argument = Graded::from_fn(grades[0], |k| a[k].0[l]);
+        let Ok(value) = applied(f, &argument, grades[1]) else { return false };
+        out.iter_mut().zip(value.components()).for_each(|(lane, x)| lane.0[l] = *x);
+        true
+    })
 }

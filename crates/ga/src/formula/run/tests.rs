@@ -68,7 +68,6 @@ fn random_program(random: &mut Random) -> Program {
         let rotor = latest(&|ty| ty.unit);
         let [scalar, vector, bivector] =
             [Grades::SCALAR, VECTOR, Grades::BIVECTOR].map(|g| latest(&|ty| ty.grades == g));
-        let one_grade = |k: usize| Grades(1 << (3 - k));
         steps.push(match random.below(21) {
             0 => step(Op::Add(a, b), Type::of(Grades(ga.0 | gb.0))),
             1 => step(Op::Subtract(a, b), Type::of(Grades(ga.0 | gb.0))),
@@ -80,14 +79,10 @@ fn random_program(random: &mut Random) -> Program {
             9 => step(Op::Divide(a, scalar), Type::of(ga)),
             10 => step(Op::Reverse(a), steps[a].ty),
             11 => step(Op::Part(a), Type::of(part)),
-            12 => step(
-                Op::Dual(a),
-                Type::of(Grades((0..4).map(|k| one_grade(k).0 * u16::from(ga.contains(k))).sum())),
-            ),
-            13 => step(
-                Op::Undual(a),
-                Type::of(Grades((0..4).map(|k| one_grade(k).0 * u16::from(ga.contains(k))).sum())),
-            ),
+            k @ (12 | 13) => {
+                let dual = Grades((0..4).map(|k| (1 << (3 - k)) * u16::from(ga.contains(k))).sum());
+                step(if k == 12 { Op::Dual(a) } else { Op::Undual(a) }, Type::of(dual))
+            }
             14 => step(Op::Function(Function::Exp, bivector), Type::ROTOR),
             15 => step(Op::Function(Function::Log, rotor), Type::of(Grades::BIVECTOR)),
             16 => step(Op::RotorPower(rotor, random.below(9) as i32 - 4), Type::ROTOR),
@@ -104,15 +99,6 @@ fn random_program(random: &mut Random) -> Program {
     let last = steps.len() - 1;
     let results = vec![last, random.below(last), 2];
     program(&inputs, steps, results)
-}
-
-/// A row of an input as a single value.
-fn given(kind: InputKind, row: &[f64]) -> Given {
-    match kind {
-        InputKind::Value(ty) => Given::Value(Graded::new(row, ty.grades).unwrap()),
-        InputKind::Matrix { .. } => Given::Matrix(row.try_into().unwrap()),
-        InputKind::Determinant => Given::Determinant(row[0]),
-    }
 }
 
 /// Equal bit for bit; any NaN equals any other.
@@ -139,7 +125,7 @@ fn one_by_one(
             .map(|(input, data)| {
                 let size = input.kind.size();
                 let row = if data.len() == size { 0 } else { row };
-                given(input.kind, &data[row * size..(row + 1) * size])
+                Given::new(input.kind, |k| data[row * size + k])
             })
             .collect();
         let values = runner.value(&inputs).map_err(|(step, error)| RowError { row, step, error })?;
@@ -218,8 +204,7 @@ fn lanes_against_single_values<const ROWS: usize>() -> usize {
         let first = draw(&mut random);
         let row = |data: &[Vec<f64>], i: usize, row: usize| {
             let (kind, size) = (program.inputs[i].kind, program.inputs[i].kind.size());
-            let data = if is_known(i) { &first[i][..size] } else { &data[i][row * size..(row + 1) * size] };
-            given(kind, data)
+            Given::new(kind, |k| if is_known(i) { first[i][k] } else { data[i][row * size + k] })
         };
         let known: Vec<Option<Given>> =
             (0..program.inputs.len()).map(|i| is_known(i).then(|| row(&first, i, 0))).collect();
@@ -302,14 +287,14 @@ fn steps_equal_calls_by_hand() {
     rotor_functions::log(Threads::ONE, r, &mut expected).unwrap();
     assert_same(&run(Op::Function(Function::Log, 0), Type::of(Grades::BIVECTOR)), &expected, "log");
     let mut expected = vec![0.0; 6 * rows];
-    product::turn(r, x, some, &mut expected);
+    product::turn(Threads::ONE, r, x, some, &mut expected);
     assert_same(&run(Op::Turn(0, 2), Type::of(some)), &expected, "turn");
     let turned = by_value(some, x, &|i, x| x.turned(unit(i)));
     assert_same(&expected, &turned, "turned");
     for product in Product::ALL {
         let plan = Plan::g3(product, some, VECTOR);
         let mut expected = vec![0.0; plan.sizes.2 * rows];
-        plan.run(x, v, &mut expected);
+        plan.run(Threads::ONE, x, v, &mut expected);
         assert_same(&run(Op::Product(product, 2, 4), Type::of(plan.grades)), &expected, "product");
         let vector = |i: usize| Graded::new(&v[3 * i..3 * i + 3], VECTOR).unwrap();
         let part = by_value(some, x, &|i, x| x.product(product, &vector(i)).with_grades(Grades(0b0101)));
@@ -381,8 +366,8 @@ fn large_and_narrow_rows_are_the_same() {
     let rows = crate::simd::traverse::STREAMED / 8 / 13 + 37;
     let [r, v] = kinds.map(|kind| random.rows(kind, rows));
     let (mut turned, mut planes) = (vec![0.0; 3 * rows], vec![0.0; 3 * rows]);
-    product::turn(&r, &v, VECTOR, &mut turned);
-    Plan::g3(Product::Wedge, VECTOR, VECTOR).run(&v, &turned, &mut planes);
+    product::turn(Threads::ONE, &r, &v, VECTOR, &mut turned);
+    Plan::g3(Product::Wedge, VECTOR, VECTOR).run(Threads::ONE, &v, &turned, &mut planes);
     for path in Path::available() {
         for threads in [1, 3] {
             let (mut a, mut b) = (vec![0.5; 3 * rows], vec![0.5; 3 * rows]);

@@ -6,10 +6,10 @@
 //! A [`Line`] decides this for any coefficients. [`Session`] evaluates lines over floats of 3-d space.
 
 mod line;
-mod source;
 
-pub use line::{EQUATION_AS_VALUE, Head, LAST_VALUE, Line, NO_LAST_VALUE, NOT_FINITE};
-pub use source::{Quantities, Source, Units};
+pub use line::{
+    EQUATION_AS_VALUE, Head, LAST_VALUE, Line, NO_LAST_VALUE, NOT_FINITE, Quantities, Source, Units,
+};
 
 use super::{
     Agreement, Definition, Error, Given, Kind, Meaning, Names, Node, Program, Runner, Space, Span, Style,

@@ -28,17 +28,16 @@ pub(crate) fn sum_repeated(mut sides: Vec<Node>, names: &Names) -> Result<Vec<No
     if names.is_open() {
         return Ok(sides);
     }
-    let mut counts: Vec<Vec<(char, usize)>> = Vec::new();
-    for_each_term(&mut sides, &mut |term| {
-        counts.push(indices_in(term, names));
-        Ok(())
-    })?;
+    fn terms_of(side: &mut Node) -> Vec<&mut Node> {
+        if matches!(side.kind, Kind::Sum(_)) { side.children_mut() } else { vec![side] }
+    }
+    let mut terms: Vec<&mut Node> = sides.iter_mut().flat_map(terms_of).collect();
+    let counts: Vec<Vec<(char, usize)>> = terms.iter().map(|term| indices_in(term, names)).collect();
     let free = |index: char| counts.iter().flatten().any(|&(c, count)| c == index && count == 1);
-    let mut next = counts.iter();
-    for_each_term(&mut sides, &mut |term| {
-        let mut repeated = next.next().into_iter().flatten().filter(|&&(index, _)| !free(index));
-        repeated.try_for_each(|&(index, _)| sum_over(index, term, names))
-    })?;
+    for (term, found) in terms.iter_mut().zip(&counts) {
+        let mut repeated = found.iter().filter(|&&(index, _)| !free(index));
+        repeated.try_for_each(|&(index, _)| sum_over(index, term, names))?;
+    }
     Ok(sides)
 }
 
@@ -69,61 +68,27 @@ fn sum_over(index: char, node: &mut Node, names: &Names) -> Result<(), Error> {
     Ok(())
 }
 
-/// Applies a function to each term of each side.
-fn for_each_term(
-    sides: &mut [Node],
-    f: &mut impl FnMut(&mut Node) -> Result<(), Error>,
-) -> Result<(), Error> {
-    for side in sides {
-        match &mut side.kind {
-            Kind::Sum(terms) => terms.iter_mut().try_for_each(|(_, term)| f(term))?,
-            _ => f(side)?,
+/// The free indices in the unbound names of a tree, the first first, and how often each occurs. A sum binds its own.
+pub(crate) fn indices_in(node: &Node, names: &Names) -> Vec<(char, usize)> {
+    let all: Vec<(char, usize)> = match &node.kind {
+        Kind::Name(name) if names.get(name).is_none() => {
+            indexed(name).map_or_else(Vec::new, |(_, indices)| indices.chars().map(|c| (c, 1)).collect())
         }
-    }
-    Ok(())
-}
-
-fn indices_in(node: &Node, names: &Names) -> Vec<(char, usize)> {
-    let mut found = Vec::new();
-    count_indices(node, names, &mut found);
-    found
-}
-
-/// The free indices in the unbound names of a tree, and how often each occurs. A sum binds its own index.
-pub(crate) fn count_indices(node: &Node, names: &Names, found: &mut Vec<(char, usize)>) {
-    if let Kind::Name(name) = &node.kind
-        && names.get(name).is_none()
-        && let Some((_, indices)) = indexed(name)
-    {
-        for index in indices.chars().filter(|&c| INDICES.contains(c)) {
-            add(found, index, 1);
-        }
-    }
-    let mut inner: Vec<(char, usize)> = Vec::new();
-    for child in node.children() {
-        for (index, count) in indices_in(child, names) {
-            let before = inner.iter_mut().find(|(c, _)| *c == index);
-            match before {
-                None => inner.push((index, count)),
-                // Terms of a sum count separately: an index is repeated if it is in every term that has it.
-                Some((_, least)) if matches!(node.kind, Kind::Sum(_)) => *least = count.min(*least),
-                Some((_, total)) => *total += count,
-            }
+        _ => node.children().into_iter().flat_map(|child| indices_in(child, names)).collect(),
+    };
+    let mut found: Vec<(char, usize)> = Vec::new();
+    for (index, count) in all {
+        match found.iter_mut().find(|(c, _)| *c == index) {
+            None => found.push((index, count)),
+            // Terms of a sum count separately: an index is repeated if it is in every term that has it.
+            Some((_, least)) if matches!(node.kind, Kind::Sum(_)) => *least = count.min(*least),
+            Some((_, total)) => *total += count,
         }
     }
     if let Kind::Total(index, _) = &node.kind {
-        inner.retain(|(c, _)| !index.contains(*c));
+        found.retain(|(c, _)| !index.contains(*c));
     }
-    for (index, count) in inner {
-        add(found, index, count);
-    }
-}
-
-fn add(found: &mut Vec<(char, usize)>, index: char, count: usize) {
-    match found.iter_mut().find(|(c, _)| *c == index) {
-        Some((_, total)) => *total += count,
-        None => found.push((index, count)),
-    }
+    found
 }
 
 /// The sign of a permutation of 1, 2, 3; 0 for anything else.

@@ -1,34 +1,22 @@
 //! Characters of formulas: letters, subscripts and superscripts in all their spellings.
 
+/// The second character of the pair that begins with this one, which is not ASCII.
+fn partner(pairs: &str, first: char) -> Option<char> {
+    if first.is_ascii() { None } else { pairs_of(pairs).find(|&(c, _)| c == first).map(|(_, second)| second) }
+}
+
+fn pairs_of(pairs: &str) -> impl Iterator<Item = (char, char)> {
+    pairs.chars().step_by(2).zip(pairs.chars().skip(1).step_by(2))
+}
+
 /// The plain letter for characters that differ only in style, as Python normalizes names, and for the sum sign.
 pub(crate) fn folded(c: char) -> char {
+    const PAIRS: &str = "µμϐβϑθϕφϖπϰκϱρϵεϴΘ\u{2126}Ω\u{212a}KℎhℓlℯeℐIℑIℒLℛRℜRℝRℬBℰEℱFℋHℳM∑Σ";
     match c {
-        'µ' => 'μ',
-        'ϐ' => 'β',
-        'ϑ' => 'θ',
-        'ϕ' => 'φ',
-        'ϖ' => 'π',
-        'ϰ' => 'κ',
-        'ϱ' => 'ρ',
-        'ϵ' => 'ε',
-        'ϴ' => 'Θ',
-        '\u{2126}' => 'Ω',
-        '\u{212a}' => 'K',
-        'ℎ' => 'h',
-        'ℓ' => 'l',
-        'ℯ' => 'e',
-        'ℐ' | 'ℑ' => 'I',
-        'ℒ' => 'L',
-        'ℛ' | 'ℜ' | 'ℝ' => 'R',
-        'ℬ' => 'B',
-        'ℰ' => 'E',
-        'ℱ' => 'F',
-        'ℋ' => 'H',
-        'ℳ' => 'M',
-        '∑' => 'Σ',
         '𝐀'..='𝚣' => mathematical(c, '𝐀', &['A', 'a'], 26),
         '𝚨'..='𝟉' => greek(c),
         '𝟎'..='𝟿' => mathematical(c, '𝟎', &['0'], 10),
+        'µ' | 'ϐ'..='ϵ' | '\u{2100}'..='∑' => partner(PAIRS, c).unwrap_or(c),
         _ => c,
     }
 }
@@ -59,44 +47,25 @@ fn greek(c: char) -> char {
 
 /// The plain letter below a tilde, where Unicode has both as one character.
 pub(crate) fn below_tilde(c: char) -> Option<char> {
-    const PAIRS: &str = "ÃAãaẼEẽeĨIĩiÑNñnÕOõoŨUũuṼVṽvỸYỹy";
-    let mut letters = PAIRS.chars();
-    while let (Some(with), Some(without)) = (letters.next(), letters.next()) {
-        if with == c {
-            return Some(without);
-        }
-    }
-    None
+    partner("ÃAãaẼEẽeĨIĩiÑNñnÕOõoŨUũuṼVṽvỸYỹy", c)
 }
 
 /// The plain character of a subscript.
 pub(crate) fn subscript(c: char) -> Option<char> {
-    const PAIRS: &str = "ₐaₑeₕhᵢiⱼjₖkₗlₘmₙnₒoₚpᵣrₛsₜtᵤuᵥvₓxᵦβᵧγᵨρᵩφᵪχ";
-    if let '₀'..='₉' = c {
-        return char::from_digit(c as u32 - '₀' as u32, 10);
-    }
-    let mut letters = PAIRS.chars();
-    while let (Some(low), Some(plain)) = (letters.next(), letters.next()) {
-        if low == c {
-            return Some(plain);
-        }
-    }
-    None
+    partner("₀0₁1₂2₃3₄4₅5₆6₇7₈8₉9ₐaₑeₕhᵢiⱼjₖkₗlₘmₙnₒoₚpᵣrₛsₜtᵤuᵥvₓxᵦβᵧγᵨρᵩφᵪχ", c)
 }
+
+const SUPERSCRIPTS: &str = "⁰0¹1²2³3⁴4⁵5⁶6⁷7⁸8⁹9⁻-⁺+";
 
 /// The digit, `-` or `+` of a superscript.
 pub(crate) fn superscript(c: char) -> Option<char> {
-    let plain = match c {
-        '⁰' => '0',
-        '¹' => '1',
-        '²' => '2',
-        '³' => '3',
-        '⁴'..='⁹' => return char::from_digit(c as u32 - '⁴' as u32 + 4, 10),
-        '⁻' => '-',
-        '⁺' => '+',
-        _ => return None,
-    };
-    Some(plain)
+    partner(SUPERSCRIPTS, c)
+}
+
+/// The superscript of a whole number.
+pub(crate) fn raised(number: &str) -> String {
+    let raised = |plain| pairs_of(SUPERSCRIPTS).find(|&(_, c)| c == plain).map(|(raised, _)| raised);
+    number.chars().filter_map(raised).collect()
 }
 
 /// Signs that are subscripts by themselves: parallel and perpendicular parts.
@@ -143,19 +112,18 @@ pub(crate) fn decomposed(c: char) -> Option<(char, char)> {
 
 /// Each letter, mark, and their combination.
 fn pairs() -> impl Iterator<Item = (char, char, char)> {
-    COMPOSED.into_iter().flat_map(|(mark, letters)| {
-        let plain = letters.chars().step_by(2);
-        plain.zip(letters.chars().skip(1).step_by(2)).map(move |(plain, with)| (plain, mark, with))
-    })
+    COMPOSED
+        .into_iter()
+        .flat_map(|(mark, pairs)| pairs_of(pairs).map(move |(plain, with)| (plain, mark, with)))
 }
 
-/// The number of primes in a character.
-pub(crate) fn primes(c: char) -> usize {
+/// The number of primes in a character, if it is one.
+pub(crate) fn primes(c: char) -> Option<usize> {
     match c {
-        '\'' | '′' | '’' => 1,
-        '″' => 2,
-        '‴' => 3,
-        _ => 0,
+        '\'' | '′' | '’' => Some(1),
+        '″' => Some(2),
+        '‴' => Some(3),
+        _ => None,
     }
 }
 
@@ -172,20 +140,4 @@ pub(crate) fn is_space(c: char) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn styles_of_letters_fold_to_the_letter() {
-        let cases =
-            [('𝑎', 'a'), ('𝐑', 'R'), ('𝛀', 'Ω'), ('𝜃', 'θ'), ('𝜑', 'φ'), ('𝟙', '1'), ('ϕ', 'φ'), ('𝒛', 'z')];
-        for (styled, plain) in cases {
-            assert_eq!(folded(styled), plain, "{styled}");
-        }
-        assert_eq!(below_tilde('Ã'), Some('A'));
-        assert_eq!((composed('x', '\u{307}'), decomposed('ẋ')), (Some('ẋ'), Some(('x', '\u{307}'))));
-        assert_eq!((composed('n', '\u{302}'), decomposed('x')), (None, None));
-        assert_eq!(subscript('₇'), Some('7'));
-        assert_eq!(superscript('⁷'), Some('7'));
-    }
-}
+mod tests;

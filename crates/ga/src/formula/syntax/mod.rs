@@ -4,7 +4,6 @@ pub(crate) mod indices;
 pub(crate) mod letters;
 pub(crate) mod names;
 pub(crate) mod number;
-pub(crate) mod operands;
 pub(crate) mod parser;
 pub(crate) mod reading;
 pub(crate) mod token;

@@ -2,66 +2,27 @@
 
 use super::indices::{INDICES, indexed, is_built_in};
 use super::names::{Meaning, Names};
-use super::token::{Atom, Lexeme, Sign, Token, joined};
+use super::token::{Atom, Item, Token, joined, labelled};
 use super::tree::{Named, Span, Tight};
 use crate::diagnostic::{nearest, quote};
-use crate::formula::{Error, Number, Space};
+use crate::formula::{Error, Space};
 
-/// A word, a number or a sign with its meaning in the formula.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Item {
-    Number(Number),
-    Pi,
-    /// Generators from 1, in the order written.
-    Blade(Vec<u8>),
-    /// `I`
-    Pseudoscalar,
-    /// A value, or a name with indices whose values are not known yet.
-    Name(String),
-    /// A linear map or a defined function, with its number of parameters.
-    Callable(String, usize),
-    Function(Named),
-    /// A tight product by its name.
-    Product(Tight),
-    /// The base of an exponential.
-    Euler,
-    /// `Σ`, and its index where one is written.
-    Total(Option<String>),
-    Superscript(i32),
-    Subscript(Number),
-    Sign(Sign),
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct Read {
-    pub item: Item,
-    /// Whether a tilde stands above the letter.
-    pub reversed: bool,
-    pub span: Span,
-    pub space: bool,
-}
-
-/// Reads all words of a formula.
-pub(crate) fn read(tokens: &[Token], space: Space, names: &Names) -> Result<Vec<Read>, Error> {
+/// Replaces all words of a formula by their meanings.
+pub(crate) fn read(tokens: &[Token], space: Space, names: &Names) -> Result<Vec<Token>, Error> {
     let reader = Reader { space, names, labels: names.iter().any(|name| name.contains('(')) };
     let mut items = Vec::with_capacity(tokens.len());
     let mut rest = tokens;
     while let Some((token, after)) = rest.split_first() {
         rest = after;
-        let lone = |item| Read { item, reversed: false, span: token.span, space: token.space };
-        match &token.lexeme {
-            Lexeme::Number(n) => items.push(lone(Item::Number(*n))),
-            Lexeme::Superscript(n) => items.push(lone(Item::Superscript(*n))),
-            Lexeme::Subscript(n) => items.push(lone(Item::Subscript(*n))),
-            Lexeme::Sign(sign) => items.push(lone(Item::Sign(sign.clone()))),
-            Lexeme::Word(atoms) => {
-                if let Some((name, end)) = reader.labelled(atoms, rest) {
-                    items.push(Read { span: token.span.to(end), ..lone(Item::Name(name)) });
-                    rest = &rest[3..];
-                } else {
-                    reader.word(atoms, token, rest.first(), &mut items)?;
-                }
+        if let Item::Word(atoms) = &token.item {
+            if let Some((name, end)) = reader.labelled(atoms, rest) {
+                items.push(Token { item: Item::Name(name), span: token.span.to(end), ..*token });
+                rest = &rest[3..];
+            } else {
+                reader.word(atoms, token, rest.first(), &mut items)?;
             }
+        } else {
+            items.push(token.clone());
         }
     }
     Ok(items)
@@ -76,26 +37,16 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// A name with an argument as its label, `R(0)`, and the place of its end.
     fn labelled(&self, atoms: &[Atom], rest: &[Token]) -> Option<(String, Span)> {
-        let [open, argument, close, ..] = rest else { return None };
         // With open names `R(0)`, `V(x)` and `I(B)` may mean anything, so they stay one name.
         let unknown = match atoms {
             [atom] => self.names.is_open() && !matches!(&atom.name[..], "e" | "π" | "Σ"),
             _ => false,
         };
-        if !(self.labels || unknown)
-            || open.space
-            || open.lexeme != Lexeme::Sign(Sign::Open('('))
-            || close.lexeme != Lexeme::Sign(Sign::Close('('))
-        {
+        if !(self.labels || unknown) || rest.first().is_some_and(|open| open.space) {
             return None;
         }
-        let label = match &argument.lexeme {
-            Lexeme::Number(n) => n.to_string(),
-            Lexeme::Word(atoms) => joined(atoms)?,
-            _ => return None,
-        };
-        let name = format!("{}({label})", joined(atoms)?);
-        (unknown || self.names.get(&name).is_some()).then_some((name, close.span))
+        let name = labelled(atoms, rest)?;
+        (unknown || self.names.get(&name).is_some()).then_some((name, rest[2].span))
     }
 
     fn word(
@@ -103,44 +54,37 @@ impl Reader<'_> {
         atoms: &[Atom],
         token: &Token,
         next: Option<&Token>,
-        items: &mut Vec<Read>,
+        items: &mut Vec<Token>,
     ) -> Result<(), Error> {
-        let called = next.is_some_and(|next| next.lexeme == Lexeme::Sign(Sign::Open('(')));
-        let whole = |item, reversed| Read { item, reversed, span: token.span, space: token.space };
-        if let [atom] = atoms {
-            let item =
-                self.atom(atom, called).ok_or_else(|| self.unknown(&atom.name, token.span, None))??;
-            items.push(whole(item, atom.reversed));
+        let next = next.filter(|next| next.item == Item::Open('('));
+        if let Some(item) = self.one_name(atoms, token.span, next) {
+            items.push(Token { item: item?, ..*token });
             return Ok(());
         }
-        if let Some(name) = joined(atoms) {
-            if let Some(item) = self.bound(&name, token.span, called) {
-                items.push(whole(item?, false));
-                return Ok(());
-            }
-            if let Some(item) = self.built_in_word(&name, called) {
-                items.push(whole(item, false));
-                return Ok(());
-            }
-            if let Some(name) = self.run_together(atoms) {
-                items.push(whole(Item::Name(name), false));
-                return Ok(());
-            }
-            let letters_alone = atoms.iter().all(|atom| self.built_in_atom(&atom.name).is_some());
-            if self.names.is_open() && !letters_alone {
-                let adjacent = called && next.is_some_and(|next| !next.space);
-                let item = if adjacent { Item::Callable(name, usize::MAX) } else { Item::Name(name) };
-                items.push(whole(item, false));
-                return Ok(());
-            }
-        }
         for (i, atom) in atoms.iter().enumerate() {
-            let item = self.atom(atom, called && i + 1 == atoms.len());
-            let item = item.ok_or_else(|| self.unknown(&atom.name, token.span, Some(atoms)))??;
+            let item = self.atom(atom, next.is_some() && i + 1 == atoms.len());
+            let item = item.ok_or_else(|| self.unknown(token.span, atoms))??;
             let space = token.space && i == 0;
-            items.push(Read { item, reversed: atom.reversed, span: atom.span, space });
+            items.push(Token { item, reversed: atom.reversed, span: atom.span, space });
         }
         Ok(())
+    }
+
+    /// What several letters are as one name, before this opening bracket if any; `None` if they are read one by one.
+    fn one_name(&self, atoms: &[Atom], span: Span, open: Option<&Token>) -> Option<Result<Item, Error>> {
+        let name = joined(atoms).filter(|_| atoms.len() > 1)?;
+        let bound = self.bound(&name, span, open.is_some());
+        bound.or_else(|| {
+            let built_in = self.built_in_word(&name, open.is_some());
+            let item = built_in.or_else(|| self.run_together(atoms).map(Item::Name));
+            let letters_alone = || atoms.iter().all(|atom| self.built_in_atom(&atom.name).is_some());
+            Some(Ok(match item {
+                Some(item) => item,
+                None if !self.names.is_open() || letters_alone() => return None,
+                None if open.is_some_and(|open| !open.space) => Item::Callable(name, usize::MAX),
+                None => Item::Name(name),
+            }))
+        })
     }
 
     /// What one letter is; `None` if nothing.
@@ -151,8 +95,10 @@ impl Reader<'_> {
         if let Some(item) = self.built_in_atom(&atom.name) {
             return Some(Ok(item));
         }
-        if let Some(number) = generators(&atom.name) {
-            return Some(Err(self.no_blade(&atom.name, number, atom.span)));
+        if let Some(problem) = generators(&atom.name).and_then(|generators| self.no_blade(&generators)) {
+            let digits = atom.name.trim_start_matches('e');
+            let message = format!("`{}` {problem}. Write a power of ten as `1e+{digits}`", atom.name);
+            return Some(Err(Error::new(atom.span, message)));
         }
         let is_index = self.is_indexed(&atom.name);
         (is_index || self.names.is_open()).then(|| Ok(Item::Name(atom.name.clone())))
@@ -166,10 +112,8 @@ impl Reader<'_> {
             // The handout writes I for the inertia and for the pseudoscalar; only one of them is called.
             Meaning::Map { .. } if name == "I" => Item::Pseudoscalar,
             Meaning::Map { .. } => {
-                return Some(Err(Error::new(
-                    span,
-                    format!("`{name}` is a linear map; write its argument, `{name}(…)`"),
-                )));
+                let message = format!("`{name}` is a linear map; write its argument, `{name}(…)`");
+                return Some(Err(Error::new(span, message)));
             }
             Meaning::Function(definition) => match definition.parameters.len() {
                 0 => Item::Callable(name.to_owned(), 0),
@@ -188,8 +132,8 @@ impl Reader<'_> {
         if name == "pi" {
             return Some(Item::Pi);
         }
-        if let Some(index) = name.strip_prefix("sum_").filter(|i| i.len() == 1 && INDICES.contains(i)) {
-            return Some(Item::Total(Some(index.to_owned())));
+        if let Some(total) = total(name, "sum_") {
+            return Some(total);
         }
         let product = Tight::ALL.into_iter().find(|tight| tight.name() == name).map(Item::Product);
         let function = product.or_else(|| Named::from_name(name).map(Item::Function));
@@ -204,21 +148,11 @@ impl Reader<'_> {
             "I" => Some(Item::Pseudoscalar),
             "e" => Some(Item::Euler),
             "Σ" => Some(Item::Total(None)),
-            _ => {
-                if let Some(index) = name.strip_prefix("Σ_").filter(|i| i.len() == 1 && INDICES.contains(i))
-                {
-                    return Some(Item::Total(Some(index.to_owned())));
-                }
+            _ => total(name, "Σ_").or_else(|| {
                 let generators = generators(name)?;
-                let fits = |g: &u8| (1..=self.count()).contains(&usize::from(*g));
-                let distinct = (1..generators.len()).all(|i| !generators[..i].contains(&generators[i]));
-                (distinct && generators.iter().all(fits)).then_some(Item::Blade(generators))
-            }
+                self.no_blade(&generators).is_none().then_some(Item::Blade(generators))
+            }),
         }
-    }
-
-    fn count(&self) -> usize {
-        self.space.algebra.signature().generators()
     }
 
     /// `e_k` or `ε_ijk` written as `ek` or `εijk`, if some of these letters have no meaning of their own.
@@ -235,24 +169,24 @@ impl Reader<'_> {
         is_built_in(name) || self.names.get(&first).is_some()
     }
 
-    fn no_blade(&self, name: &str, generators: Vec<u8>, span: Span) -> Error {
-        let n = self.count();
-        let repeated = (1..generators.len()).find(|&i| generators[..i].contains(&generators[i]));
-        let why = match repeated {
-            Some(i) => {
-                format!("`{name}` contains e{} twice; the vectors of a blade must be distinct", generators[i])
-            }
-            None => format!("`{name}` is not a basis element; the basis vectors are e1 to e{n}"),
-        };
-        Error::new(span, format!("{why}. Write a power of ten as `1e+{}`", name.trim_start_matches('e')))
+    /// Why these generators are not a basis element.
+    fn no_blade(&self, generators: &[u8]) -> Option<String> {
+        let n = self.space.algebra.signature().generators();
+        if let Some(i) = (1..generators.len()).find(|&i| generators[..i].contains(&generators[i])) {
+            return Some(format!(
+                "contains e{} twice; the vectors of a blade must be distinct",
+                generators[i]
+            ));
+        }
+        let fits = generators.iter().all(|&g| (1..=n).contains(&usize::from(g)));
+        (!fits).then(|| format!("is not a basis element; the basis vectors are e1 to e{n}"))
     }
 
-    /// The error for a name without a value; `letters` are those of a word that was also read letter by letter.
-    fn unknown(&self, name: &str, span: Span, letters: Option<&[Atom]>) -> Error {
-        let word: String =
-            letters.map_or(name.to_owned(), |atoms| atoms.iter().map(|a| a.name.as_str()).collect());
+    /// The error for a name without a value, which was also read letter by letter.
+    fn unknown(&self, span: Span, atoms: &[Atom]) -> Error {
+        let word: String = atoms.iter().map(|atom| &atom.name[..]).collect();
         let mut message = format!("{} has no value", quote(&word));
-        if let Some(atoms) = letters {
+        if atoms.len() > 1 {
             let missing: Vec<&str> =
                 atoms.iter().filter(|a| self.atom(a, false).is_none()).map(|a| &a.name[..]).collect();
             let mut shown: Vec<&str> = missing.iter().take(5).copied().collect();
@@ -275,6 +209,12 @@ impl Reader<'_> {
         }
         Error::new(span, message)
     }
+}
+
+/// `Σ_k` after this spelling of the sign.
+fn total(name: &str, sign: &str) -> Option<Item> {
+    let index = name.strip_prefix(sign).filter(|i| i.len() == 1 && INDICES.contains(i))?;
+    Some(Item::Total(Some(index.to_owned())))
 }
 
 /// The generators of `e12`; `None` for other names.

@@ -5,10 +5,9 @@ use super::letters::{
     superscript,
 };
 use super::number::{Number, fraction};
-use super::tree::{Span, Tight};
+use super::tree::{Named, Span, Tight};
 use crate::formula::{Error, MAX_NODES};
-use std::iter::Peekable;
-use std::str::CharIndices;
+use std::str::Chars;
 
 /// A letter with its marks, subscripts and primes.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,15 +20,39 @@ pub(crate) struct Atom {
     pub span: Span,
 }
 
+/// A number, a word or a sign; then a part of a formula, once the reader has replaced the words by their meanings.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Sign {
+pub(crate) enum Item {
+    Number(Number),
+    /// Letters without a space between them; the reader leaves none.
+    Word(Vec<Atom>),
+    /// A raised number.
+    Superscript(i32),
+    /// A lowered number that does not belong to a letter.
+    Subscript(Number),
+    Pi,
+    /// Generators from 1, in the order written.
+    Blade(Vec<u8>),
+    /// `I`
+    Pseudoscalar,
+    /// A value, or a name with indices whose values are not known yet.
+    Name(String),
+    /// A linear map or a defined function, with its number of parameters.
+    Callable(String, usize),
+    Function(Named),
+    /// A tight product by its name.
+    Product(Tight),
+    /// The base of an exponential.
+    Euler,
+    /// `Σ`, and its index where one is written.
+    Total(Option<String>),
     Plus,
     Minus,
     Star,
     Slash,
     /// `^`: a wedge or a power.
     Caret,
-    /// Another tight product.
+    /// Another tight product by its sign.
     Tight(Tight),
     Tilde,
     Dagger,
@@ -45,21 +68,11 @@ pub(crate) enum Sign {
     CloseAngle,
 }
 
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Lexeme {
-    Number(Number),
-    /// Letters without a space between them.
-    Word(Vec<Atom>),
-    /// A raised number.
-    Superscript(i32),
-    /// A lowered number that does not belong to a letter.
-    Subscript(Number),
-    Sign(Sign),
-}
-
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Token {
-    pub lexeme: Lexeme,
+    pub item: Item,
+    /// Whether a tilde stands above the letter.
+    pub reversed: bool,
     pub span: Span,
     /// Whether a space stands before it.
     pub space: bool,
@@ -67,11 +80,11 @@ pub(crate) struct Token {
 
 /// Cuts a text into tokens; each letter counts.
 pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Error> {
-    let mut lexer = Lexer { text, chars: text.char_indices().peekable() };
+    let mut lexer = Lexer { text, chars: text.chars() };
     let mut tokens: Vec<Token> = Vec::new();
     let mut count = 0;
     while let Some(token) = lexer.token()? {
-        count += if let Lexeme::Word(atoms) = &token.lexeme { atoms.len() } else { 1 };
+        count += if let Item::Word(atoms) = &token.item { atoms.len() } else { 1 };
         if count > MAX_NODES {
             return Err(too_long(token.span));
         }
@@ -87,48 +100,48 @@ fn too_long(span: Span) -> Error {
     )
 }
 
+fn digit(c: char) -> Option<char> {
+    Some(c).filter(char::is_ascii_digit)
+}
+
 struct Lexer<'t> {
     text: &'t str,
-    chars: Peekable<CharIndices<'t>>,
+    chars: Chars<'t>,
 }
 
 impl Lexer<'_> {
-    fn peek(&mut self) -> Option<char> {
-        self.chars.peek().map(|&(_, c)| folded(c))
+    /// A character after so many others.
+    fn ahead(&self, count: usize) -> Option<char> {
+        self.chars.clone().nth(count).map(folded)
     }
 
-    /// The character after the next one.
-    fn second(&self) -> Option<char> {
-        let mut ahead = self.chars.clone();
-        ahead.next();
-        ahead.next().map(|(_, c)| folded(c))
+    fn peek(&self) -> Option<char> {
+        self.ahead(0)
     }
 
     /// The place of the next character.
-    fn at(&mut self) -> usize {
-        self.chars.peek().map_or(self.text.len(), |&(at, _)| at)
+    fn at(&self) -> usize {
+        self.text.len() - self.chars.as_str().len()
     }
 
-    fn since(&mut self, start: usize) -> Span {
+    fn since(&self, start: usize) -> Span {
         Span { start, end: self.at() }
     }
 
+    /// The next character as a function gives it, if it wants it.
+    fn take<T>(&mut self, wanted: impl Fn(char) -> Option<T>) -> Option<T> {
+        let found = wanted(self.peek()?)?;
+        self.chars.next();
+        Some(found)
+    }
+
     fn eat(&mut self, wanted: impl Fn(char) -> bool) -> bool {
-        let found = self.peek().is_some_and(wanted);
-        if found {
-            self.chars.next();
-        }
-        found
+        self.take(|c| wanted(c).then_some(())).is_some()
     }
 
     /// The next characters as long as they are wanted.
     fn run(&mut self, wanted: impl Fn(char) -> Option<char>) -> String {
-        let mut run = String::new();
-        while let Some(c) = self.peek().and_then(&wanted) {
-            self.chars.next();
-            run.push(c);
-        }
-        run
+        std::iter::from_fn(|| self.take(&wanted)).collect()
     }
 
     fn token(&mut self) -> Result<Option<Token>, Error> {
@@ -136,44 +149,42 @@ impl Lexer<'_> {
         while self.eat(is_space) {}
         let start = self.at();
         let Some(c) = self.peek() else { return Ok(None) };
-        let lexeme = if c.is_ascii_digit() || c == '.' && self.second().is_some_and(|d| d.is_ascii_digit()) {
-            self.number()?
-        } else if let Some(number) = fraction(c) {
-            self.chars.next();
-            Lexeme::Number(number)
+        let item = if digit(c).is_some() || c == '.' && self.ahead(1).and_then(digit).is_some() {
+            self.number(start)?
+        } else if let Some(number) = self.take(fraction) {
+            Item::Number(number)
         } else if is_letter(c) {
-            Lexeme::Word(self.word()?)
+            Item::Word(self.word()?)
         } else if superscript(c).is_some() {
-            self.superscript()?
-        } else if subscript(c).is_some_and(|d| d.is_ascii_digit()) {
-            let digits = self.run(|c| subscript(c).filter(char::is_ascii_digit));
-            Lexeme::Subscript(self.read(&digits, start)?)
+            let power = self.run(superscript).parse().map_err(|_| {
+                let message = "a power must be a whole number of at most nine digits, such as ² or ⁻¹";
+                Error::new(self.since(start), message)
+            })?;
+            Item::Superscript(power)
+        } else if subscript(c).and_then(digit).is_some() {
+            let digits = self.run(|c| subscript(c).and_then(digit));
+            Item::Subscript(self.read(&digits, start)?)
         } else {
             self.sign(c)?
         };
-        Ok(Some(Token { lexeme, span: self.since(start), space: before < start }))
+        Ok(Some(Token { item, reversed: false, span: self.since(start), space: before < start }))
     }
 
-    fn read(&mut self, digits: &str, start: usize) -> Result<Number, Error> {
-        let span = self.since(start);
-        Number::decimal(digits)
-            .ok_or_else(|| Error::new(span, "the number is beyond the range of floating point (1.8e308)"))
+    fn read(&self, digits: &str, start: usize) -> Result<Number, Error> {
+        let message = "the number is beyond the range of floating point (1.8e308)";
+        Number::decimal(digits).ok_or_else(|| Error::new(self.since(start), message))
     }
 
     /// Digits with a point; an exponent with a sign, or after a capital E: `2e1` is 2 times `e1`.
-    fn number(&mut self) -> Result<Lexeme, Error> {
-        let start = self.at();
-        let digit = |c: char| Some(c).filter(char::is_ascii_digit);
+    fn number(&mut self, start: usize) -> Result<Item, Error> {
         let mut digits = self.run(digit);
         if self.eat(|c| c == '.') {
             digits.push('.');
             digits += &self.run(digit);
         }
-        let mut ahead = self.chars.clone().map(|(_, c)| folded(c));
-        let (e, next, after) = (ahead.next(), ahead.next(), ahead.next());
-        let is_digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
-        let signed = matches!(next, Some('+' | '-' | '−')) && is_digit(after);
-        if matches!(e, Some('e' | 'E')) && signed || e == Some('E') && is_digit(next) {
+        let [e, next, after] = [0, 1, 2].map(|count| self.ahead(count));
+        let signed = matches!(next, Some('+' | '-' | '−')) && after.and_then(digit).is_some();
+        if matches!(e, Some('e' | 'E')) && signed || e == Some('E') && next.and_then(digit).is_some() {
             self.chars.next();
             digits.push('e');
             if signed {
@@ -182,56 +193,38 @@ impl Lexer<'_> {
             }
             digits += &self.run(digit);
         }
-        Ok(Lexeme::Number(self.read(&digits, start)?))
-    }
-
-    fn superscript(&mut self) -> Result<Lexeme, Error> {
-        let start = self.at();
-        let digits = self.run(superscript);
-        let power = digits.parse().map_err(|_| {
-            let span = self.since(start);
-            Error::new(span, "a power must be a whole number of at most nine digits, such as ² or ⁻¹")
-        })?;
-        Ok(Lexeme::Superscript(power))
+        Ok(Item::Number(self.read(&digits, start)?))
     }
 
     fn word(&mut self) -> Result<Vec<Atom>, Error> {
         let mut atoms = Vec::new();
-        while self.peek().is_some_and(is_letter) {
+        while let Some(letter) = self.peek().filter(|&c| is_letter(c)) {
             if atoms.len() > MAX_NODES {
-                let at = self.at();
-                return Err(too_long(self.since(at)));
+                return Err(too_long(self.since(self.at())));
             }
-            atoms.push(self.atom()?);
+            atoms.push(self.atom(letter)?);
         }
         Ok(atoms)
     }
 
-    fn atom(&mut self) -> Result<Atom, Error> {
+    fn atom(&mut self, letter: char) -> Result<Atom, Error> {
         let start = self.at();
-        let mut name = String::new();
-        let mut reversed = false;
-        if let Some(c) = self.peek() {
-            self.chars.next();
-            reversed = below_tilde(c).is_some();
-            name.push(below_tilde(c).unwrap_or(c));
-        }
+        self.chars.next();
+        let plain = below_tilde(letter);
+        let (mut name, mut reversed) = (String::from(plain.unwrap_or(letter)), plain.is_some());
         let mut below = String::new();
         let mut prime_count = 0;
-        while let Some(c) = self.peek() {
-            if c == TILDE {
-                self.chars.next();
+        loop {
+            if self.eat(|c| c == TILDE) {
                 reversed = !reversed;
-            } else if is_mark(c) {
-                self.chars.next();
-                match name.chars().next().and_then(|letter| composed(letter, c)) {
+            } else if let Some(mark) = self.take(|c| Some(c).filter(|&c| is_mark(c))) {
+                match name.chars().next().and_then(|letter| composed(letter, mark)) {
                     Some(both) if name.chars().nth(1).is_none() => name = both.into(),
-                    _ => name.push(c),
+                    _ => name.push(mark),
                 }
-            } else if primes(c) > 0 {
-                self.chars.next();
-                prime_count += primes(c);
-            } else if !self.below(c, &mut below)? {
+            } else if let Some(count) = self.take(primes) {
+                prime_count += count;
+            } else if !self.below(&mut below)? {
                 break;
             }
         }
@@ -241,36 +234,27 @@ impl Lexer<'_> {
     }
 
     /// Reads a subscript, if one follows, in canonical form: `1` for `_1` and `₁`, otherwise `_B`.
-    fn below(&mut self, c: char, below: &mut String) -> Result<bool, Error> {
+    fn below(&mut self, below: &mut String) -> Result<bool, Error> {
         let start = self.at();
-        let piece = if let Some(sign) = part_sign(c) {
-            self.chars.next();
+        let underscore = self.eat(|c| c == '_');
+        if let Some(sign) = self.take(part_sign) {
             below.push(sign);
             return Ok(true);
-        } else if c.is_ascii_digit() {
-            self.run(|c| Some(c).filter(char::is_ascii_digit))
-        } else if subscript(c).is_some() {
-            self.run(subscript)
-        } else if c == '_' {
-            self.chars.next();
-            if let Some(sign) = self.peek().and_then(part_sign) {
-                self.chars.next();
-                below.push(sign);
-                return Ok(true);
-            }
+        }
+        let piece = if underscore {
             let in_braces = self.eat(|c| c == '{');
             let piece = self.run(|c| Some(c).filter(|&c| c.is_ascii_digit() || is_letter(c)));
             if piece.is_empty() || in_braces && !self.eat(|c| c == '}') {
-                let span = self.since(start);
-                return Err(Error::new(
-                    span,
-                    "a subscript must be letters and digits, such as `Ω_B` or `e_12`",
-                ));
+                let message = "a subscript must be letters and digits, such as `Ω_B` or `e_12`";
+                return Err(Error::new(self.since(start), message));
             }
             piece
         } else {
-            return Ok(false);
+            Some(self.run(digit)).filter(|digits| !digits.is_empty()).unwrap_or_else(|| self.run(subscript))
         };
+        if piece.is_empty() {
+            return Ok(false);
+        }
         if !(below.is_empty() && piece.bytes().all(|b| b.is_ascii_digit())) {
             below.push('_');
         }
@@ -278,46 +262,42 @@ impl Lexer<'_> {
         Ok(true)
     }
 
-    fn sign(&mut self, c: char) -> Result<Lexeme, Error> {
+    fn sign(&mut self, c: char) -> Result<Item, Error> {
         let start = self.at();
-        let sign = match c {
-            '+' => Sign::Plus,
-            '-' | '−' | '–' => Sign::Minus,
-            '*' | '∗' => Sign::Star,
-            '/' => Sign::Slash,
-            '^' => Sign::Caret,
-            '∧' | '⋀' => Sign::Tight(Tight::Wedge),
-            '·' | '⋅' | '∙' | '•' | '|' => Sign::Tight(Tight::Dot),
-            '×' => Sign::Tight(Tight::Commutator),
-            '⨯' => Sign::Tight(Tight::Cross),
-            '⌋' => Sign::Tight(Tight::LeftContraction),
-            '⌊' => Sign::Tight(Tight::RightContraction),
-            '~' | '∼' | '˜' => Sign::Tilde,
-            '†' => Sign::Dagger,
-            '=' => Sign::Equals,
-            ',' => Sign::Comma,
-            '_' => Sign::Underscore,
-            '(' | '[' | '{' => Sign::Open(c),
-            ')' => Sign::Close('('),
-            ']' => Sign::Close('['),
-            '}' => Sign::Close('{'),
-            '<' | '⟨' | '〈' => Sign::OpenAngle,
-            '>' | '⟩' | '〉' => Sign::CloseAngle,
-            _ if primes(c) > 0 => Sign::Prime,
-            _ => {
-                self.chars.next();
-                return Err(Error::new(self.since(start), no_meaning(c)));
-            }
-        };
         self.chars.next();
-        if sign == Sign::Equals {
+        let sign = match c {
+            '+' => Item::Plus,
+            '-' | '−' | '–' => Item::Minus,
+            '*' | '∗' => Item::Star,
+            '/' => Item::Slash,
+            '^' => Item::Caret,
+            '∧' | '⋀' => Item::Tight(Tight::Wedge),
+            '·' | '⋅' | '∙' | '•' | '|' => Item::Tight(Tight::Dot),
+            '×' => Item::Tight(Tight::Commutator),
+            '⨯' => Item::Tight(Tight::Cross),
+            '⌋' => Item::Tight(Tight::LeftContraction),
+            '⌊' => Item::Tight(Tight::RightContraction),
+            '~' | '∼' | '˜' => Item::Tilde,
+            '†' => Item::Dagger,
+            '=' => Item::Equals,
+            ',' => Item::Comma,
+            '_' => Item::Underscore,
+            '(' | '[' | '{' => Item::Open(c),
+            ')' => Item::Close('('),
+            ']' => Item::Close('['),
+            '}' => Item::Close('{'),
+            '<' | '⟨' | '〈' => Item::OpenAngle,
+            '>' | '⟩' | '〉' => Item::CloseAngle,
+            _ if primes(c).is_some() => Item::Prime,
+            _ => return Err(Error::new(self.since(start), no_meaning(c))),
+        };
+        if sign == Item::Equals {
             self.eat(|c| c == '=');
         }
-        if sign == Sign::Star && self.peek() == Some('*') {
-            self.chars.next();
+        if sign == Item::Star && self.eat(|c| c == '*') {
             return Err(Error::new(self.since(start), "write a power as `A^2` or `A²`"));
         }
-        Ok(Lexeme::Sign(sign))
+        Ok(sign)
     }
 }
 
@@ -340,23 +320,25 @@ fn no_meaning(c: char) -> String {
 /// The canonical spelling of a name, such as `Ω_B`, `a1` for `a_1` and `a₁`, or `R(0)`; `None` for anything else.
 pub fn canonical(name: &str) -> Option<String> {
     let tokens = tokens(name).ok()?;
-    let word = |token: &Token| match &token.lexeme {
-        Lexeme::Word(atoms) => joined(atoms),
-        _ => None,
-    };
-    match &tokens[..] {
-        [name] => word(name),
-        [name, open, argument, close] => {
-            let brackets = open.lexeme == Lexeme::Sign(Sign::Open('('))
-                && close.lexeme == Lexeme::Sign(Sign::Close('('));
-            let argument = match &argument.lexeme {
-                Lexeme::Number(n) => n.to_string(),
-                _ => word(argument)?,
-            };
-            brackets.then_some(format!("{}({argument})", word(name)?))
-        }
+    let (first, rest) = tokens.split_first()?;
+    let Item::Word(atoms) = &first.item else { return None };
+    match rest.len() {
+        0 => joined(atoms),
+        3 => labelled(atoms, rest),
         _ => None,
     }
+}
+
+/// The canonical name of letters whose label follows in brackets, `R(0)`.
+pub(crate) fn labelled(atoms: &[Atom], rest: &[Token]) -> Option<String> {
+    let [open, argument, close, ..] = rest else { return None };
+    let label = match &argument.item {
+        Item::Number(n) => n.to_string(),
+        Item::Word(atoms) => joined(atoms)?,
+        _ => return None,
+    };
+    let brackets = open.item == Item::Open('(') && close.item == Item::Close('(');
+    brackets.then_some(format!("{}({label})", joined(atoms)?))
 }
 
 /// The canonical name of letters that form one name; `None` if one of them is reversed.
@@ -365,50 +347,4 @@ pub(crate) fn joined(atoms: &[Atom]) -> Option<String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_canonical() {
-        let cases = [
-            ("a₁", "a1"),
-            ("a_1", "a1"),
-            ("e_{12}", "e12"),
-            ("Ω_B", "Ω_B"),
-            ("fₖ'", "f_k'"),
-            ("f′_k", "f_k'"),
-            ("a∥", "a∥"),
-            ("a_⊥", "a⊥"),
-            ("omega_body", "omega_body"),
-            ("x_0", "x0"),
-            ("𝑅", "R"),
-            ("R(0)", "R(0)"),
-            ("R( t )", "R(t)"),
-            ("n̂", "n\u{302}"),
-            ("x\u{307}", "ẋ"),
-        ];
-        for (name, expected) in cases {
-            assert_eq!(canonical(name).as_deref(), Some(expected), "{name}");
-        }
-        for name in ["", "1", "a b", "R̃", "a+b", "a^2", "f(a, b)", "a_"] {
-            assert_eq!(canonical(name), None, "{name}");
-        }
-    }
-
-    #[test]
-    fn numbers_end_where_basis_vectors_begin() {
-        let kinds = |text: &str| -> Vec<String> {
-            let show = |t: Token| match t.lexeme {
-                Lexeme::Number(n) => n.to_string(),
-                Lexeme::Word(atoms) => joined(&atoms).unwrap(),
-                other => format!("{other:?}"),
-            };
-            tokens(text).unwrap().into_iter().map(show).collect()
-        };
-        assert_eq!(kinds("2e1"), ["2", "e1"]);
-        assert_eq!(kinds("2e-1"), ["0.2"]);
-        assert_eq!(kinds("2E1 x"), ["20", "x"]);
-        assert_eq!(kinds(".5e12"), ["0.5", "e12"]);
-        assert_eq!(kinds("½ΩR"), ["0.5", "ΩR"]);
-    }
-}
+mod tests;

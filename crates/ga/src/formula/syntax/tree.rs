@@ -45,6 +45,8 @@ pub struct Node {
     pub kind: Kind,
     /// Its place, without brackets around it.
     pub span: Span,
+    /// The number of its levels.
+    height: usize,
 }
 
 /// Nodes are equal if they are the same formula, in any place.
@@ -54,10 +56,34 @@ impl PartialEq for Node {
     }
 }
 
+macro_rules! children {
+    ($node:ident, $iter:ident $(, $mut:ident)?) => {
+        match &$($mut)? $node.kind {
+            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => Vec::new(),
+            Kind::Sum(terms) => terms.$iter().map(|(_, term)| term).collect(),
+            Kind::Product(nodes) | Kind::Call(_, nodes) | Kind::Tight(_, nodes) => nodes.$iter().collect(),
+            Kind::Quotient(pair) => vec![&$($mut)? pair.0, &$($mut)? pair.1],
+            Kind::Reverse(x)
+            | Kind::Power(x, _)
+            | Kind::Part(x, _)
+            | Kind::Function(_, x)
+            | Kind::Derivative(x)
+            | Kind::Total(_, x) => vec![x],
+        }
+    };
+}
+
 impl Node {
     /// A node.
     pub fn new(kind: Kind, span: Span) -> Node {
-        Node { kind, span }
+        let mut node = Node { kind, span, height: 1 };
+        node.height += node.children().iter().map(|child| child.height).max().unwrap_or(0);
+        node
+    }
+
+    /// The number of levels of the tree, when it was made.
+    pub(crate) fn height(&self) -> usize {
+        self.height
     }
 
     /// Calls a function with the node and all its descendants.
@@ -70,36 +96,12 @@ impl Node {
 
     /// Its children, from left to right.
     pub fn children(&self) -> Vec<&Node> {
-        match &self.kind {
-            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => Vec::new(),
-            Kind::Sum(terms) => terms.iter().map(|(_, term)| term).collect(),
-            Kind::Product(factors) | Kind::Call(_, factors) => factors.iter().collect(),
-            Kind::Tight(_, operands) => operands.iter().collect(),
-            Kind::Quotient(pair) => vec![&pair.0, &pair.1],
-            Kind::Reverse(x)
-            | Kind::Power(x, _)
-            | Kind::Part(x, _)
-            | Kind::Function(_, x)
-            | Kind::Derivative(x)
-            | Kind::Total(_, x) => vec![x],
-        }
+        children!(self, iter)
     }
 
     /// Its children, mutable.
     pub(crate) fn children_mut(&mut self) -> Vec<&mut Node> {
-        match &mut self.kind {
-            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => Vec::new(),
-            Kind::Sum(terms) => terms.iter_mut().map(|(_, term)| term).collect(),
-            Kind::Product(factors) | Kind::Call(_, factors) => factors.iter_mut().collect(),
-            Kind::Tight(_, operands) => operands.iter_mut().collect(),
-            Kind::Quotient(pair) => vec![&mut pair.0, &mut pair.1],
-            Kind::Reverse(x)
-            | Kind::Power(x, _)
-            | Kind::Part(x, _)
-            | Kind::Function(_, x)
-            | Kind::Derivative(x)
-            | Kind::Total(_, x) => vec![x],
-        }
+        children!(self, iter_mut, mut)
     }
 }
 
@@ -159,37 +161,19 @@ pub enum Tight {
 
 impl Tight {
     /// Every one.
-    pub const ALL: [Tight; 6] = [
-        Tight::Wedge,
-        Tight::Dot,
-        Tight::Commutator,
-        Tight::Cross,
-        Tight::LeftContraction,
-        Tight::RightContraction,
-    ];
+    pub const ALL: [Tight; 6] = {
+        use Tight::{Commutator, Cross, Dot, LeftContraction, RightContraction, Wedge};
+        [Wedge, Dot, Commutator, Cross, LeftContraction, RightContraction]
+    };
 
     /// The sign on paper.
     pub fn symbol(self) -> char {
-        match self {
-            Tight::Wedge => '∧',
-            Tight::Dot => '·',
-            Tight::Commutator => '×',
-            Tight::Cross => '⨯',
-            Tight::LeftContraction => '⌋',
-            Tight::RightContraction => '⌊',
-        }
+        ['∧', '·', '×', '⨯', '⌋', '⌊'][self as usize]
     }
 
     /// Its name as a function, which is also its ASCII spelling apart from `^` and `|`.
     pub fn name(self) -> &'static str {
-        match self {
-            Tight::Wedge => "wedge",
-            Tight::Dot => "dot",
-            Tight::Commutator => "commutator",
-            Tight::Cross => "cross",
-            Tight::LeftContraction => "left_contraction",
-            Tight::RightContraction => "right_contraction",
-        }
+        ["wedge", "dot", "commutator", "cross", "left_contraction", "right_contraction"][self as usize]
     }
 }
 
@@ -259,4 +243,9 @@ pub(crate) fn is_numeric(node: &Node) -> bool {
         }
         _ => false,
     }
+}
+
+/// The numbers of some grades.
+pub(crate) fn listed(grades: Grades) -> Vec<String> {
+    (0..16).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect()
 }

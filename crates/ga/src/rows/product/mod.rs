@@ -3,10 +3,10 @@
 use crate::g3::rotor::Rotor;
 use crate::g3::values::{Vector, geometric};
 use crate::product::{Engine, Grades, Plan, Term};
+pub use crate::simd::Element;
 use crate::simd::threads::Threads;
 use crate::simd::traverse::{beyond_caches, sweep};
-use crate::simd::{ByRow, Kernel, LANES, Lane, Path};
-pub use crate::simd::{Element, multiply_adds};
+use crate::simd::{ByRow, Kernel, LANES, Lane, Path, by_lanes};
 
 impl ByRow for Plan {
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
@@ -66,15 +66,8 @@ impl ByRow for Geometric<'_> {
 impl<const W: usize> Kernel<W> for Geometric<'_> {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
-        let (a, b, out) = (&a[..8], &b[..8], &mut out[..8]);
-        for l in 0..W {
-            let row = |lanes: &[Lane<W>]| std::array::from_fn(|k| lanes[k].0[l]);
-            let product = geometric(row(a), row(b));
-            for k in 0..8 {
-                // A sum that begins with 0, as in the plan, is never −0.
-                out[k].0[l] = product[k] + 0.0;
-            }
-        }
+        // A sum that begins with 0, as in the plan, is never −0.
+        by_lanes(a, b, out, |a, b| geometric(a, b).map(|x| x + 0.0));
     }
 }
 
@@ -92,17 +85,21 @@ impl Turn {
     }
 }
 
+#[inline(always)]
+fn turned(rotor: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
+    Rotor::from_unit_components(rotor).apply(Vector(vector)).0
+}
+
 impl ByRow for Turn {
     const FAST_ROWS: bool = true;
 
     fn row(&self, rotor: &[f64], value: &[f64], out: &mut [f64]) {
-        let rotor = Rotor::from_unit_components(std::array::from_fn(|k| rotor[k]));
+        let rotor = std::array::from_fn(|k| rotor[k]);
         for (at, width) in self.parts() {
             if width == 1 {
                 out[at] = value[at];
             } else {
-                let turned = rotor.apply(Vector([value[at], value[at + 1], value[at + 2]]));
-                out[at..at + 3].copy_from_slice(&turned.0);
+                out[at..at + 3].copy_from_slice(&turned(rotor, [value[at], value[at + 1], value[at + 2]]));
             }
         }
     }
@@ -111,38 +108,23 @@ impl ByRow for Turn {
 impl<const W: usize> Kernel<W> for Turn {
     #[inline(always)]
     fn block(&self, rotors: &[Lane<W>], values: &[Lane<W>], out: &mut [Lane<W>]) {
-        let rotors = &rotors[..4];
         for (at, width) in self.parts() {
             if width == 1 {
                 out[at] = values[at];
-                continue;
-            }
-            let (values, out) = (&values[at..at + 3], &mut out[at..at + 3]);
-            for l in 0..W {
-                let rotor = Rotor::from_unit_components(std::array::from_fn(|k| rotors[k].0[l]));
-                let turned = rotor.apply(Vector([values[0].0[l], values[1].0[l], values[2].0[l]]));
-                for k in 0..3 {
-                    out[k].0[l] = turned.0[k];
-                }
+            } else {
+                by_lanes(rotors, &values[at..], &mut out[at..], turned);
             }
         }
     }
 }
 
 impl Plan {
-    /// Multiplies row by row into `out`; a single row is broadcast.
+    /// Multiplies row by row into `out`, by several threads where there are enough rows for it to pay; a single row is
+    /// broadcast.
     ///
     /// # Panics
     /// If a slice is not a whole number of rows, or the numbers of rows do not fit together.
-    pub fn run<T: Element>(&self, a: &[T], b: &[T], out: &mut [T]) {
-        self.run_threads(Threads::ONE, a, b, out);
-    }
-
-    /// [`Plan::run`] by several threads, where there are enough rows for it to pay.
-    ///
-    /// # Panics
-    /// As [`Plan::run`].
-    pub fn run_threads<T: Element>(&self, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
+    pub fn run<T: Element>(&self, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
         self.run_on(Path::best(), threads, a, b, out);
     }
 
@@ -164,19 +146,12 @@ impl Plan {
     }
 }
 
-/// `R X ~R` for rows of rotor components and rows of values of these grades; a single row is broadcast.
+/// `R X ~R` for rows of rotor components and rows of values of these grades, by several threads where there are enough
+/// rows for it to pay; a single row is broadcast.
 ///
 /// # Panics
 /// If there are no grades, or the numbers of rows do not fit together.
-pub fn turn<T: Element>(rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
-    turn_threads(Threads::ONE, rotors, values, grades, out);
-}
-
-/// [`turn`] by several threads, where there are enough rows for it to pay.
-///
-/// # Panics
-/// As [`turn`].
-pub fn turn_threads<T: Element>(threads: Threads, rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
+pub fn turn<T: Element>(threads: Threads, rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
     turn_on(Path::best(), threads, rotors, values, grades, out);
 }
 

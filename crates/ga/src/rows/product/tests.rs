@@ -160,7 +160,7 @@ fn streamed_results_are_the_same() {
     let mut expected = vec![0.0; 3 * rows];
     for (i, out) in expected.chunks_mut(3 * piece).enumerate() {
         let (first, last) = (i * piece, i * piece + out.len() / 3);
-        turn(&r[4 * first..4 * last], &v[3 * first..3 * last], Grades(0b0010), out);
+        turn(Threads::ONE, &r[4 * first..4 * last], &v[3 * first..3 * last], Grades(0b0010), out);
     }
     for path in Path::available() {
         for offset in 0..8 {
@@ -181,10 +181,10 @@ fn threads_change_nothing() {
         let (a, b) = (numbers(rows * 8, true), numbers(rows * 4, false));
         for (a, b) in [(&a[..], &b[..]), (&a[..8], &b[..]), (&a[..], &b[..4])] {
             let mut expected = vec![0.5; rows * 8];
-            plan.run(a, b, &mut expected);
+            plan.run(Threads::ONE, a, b, &mut expected);
             for threads in [2, 3, 7] {
                 let mut out = vec![0.5; rows * 8];
-                plan.run_threads(Threads::new(threads), a, b, &mut out);
+                plan.run(Threads::new(threads), a, b, &mut out);
                 assert_same(&out, &expected, &format!("{threads} threads, {rows} rows"));
             }
         }
@@ -207,7 +207,7 @@ fn single_precision_is_double_rounded() {
         let (na, nb, nout) = plan.sizes;
         let (a, b) = (narrow(&numbers(rows * na, true)), narrow(&numbers(rows * nb, false)));
         let mut expected = vec![0.5; rows * nout];
-        plan.run(&wide(&a), &wide(&b), &mut expected);
+        plan.run(Threads::ONE, &wide(&a), &wide(&b), &mut expected);
         for path in Path::available() {
             let mut out = vec![0.5_f32; rows * nout + 1];
             plan.run_on(path, Threads::ONE, &a, &b, &mut out[1..]);
@@ -218,7 +218,7 @@ fn single_precision_is_double_rounded() {
         let (r, x) = (narrow(&numbers(4, false)), narrow(&numbers(8 * 70, false)));
         let (mut out, mut expected) = (vec![0.5_f32; 8 * 70], vec![0.5; 8 * 70]);
         turn_on(path, Threads::ONE, &r, &x, Grades::ALL, &mut out);
-        turn(&wide(&r), &wide(&x), Grades::ALL, &mut expected);
+        turn(Threads::ONE, &wide(&r), &wide(&x), Grades::ALL, &mut expected);
         assert_same(&wide(&out), &wide(&narrow(&expected)), &format!("{path:?}"));
     }
 }

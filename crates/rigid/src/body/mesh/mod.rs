@@ -14,11 +14,12 @@ mod ply;
 mod stl;
 mod text;
 
-pub use error::{MeshError, MeshProblem, Place};
+pub use error::{MeshError, MeshProblem};
 
 use super::Body;
 use super::inertia::Inertia;
 use super::solids::Amount;
+use error::Place;
 use integrals::integrals;
 use polhode_ga::Vector;
 use std::collections::HashMap;
@@ -33,18 +34,6 @@ pub enum MeshFormat {
     Obj,
     /// PLY, ASCII or binary of either byte order.
     Ply,
-}
-
-impl MeshFormat {
-    /// The format of a file name's extension, in upper or lower case.
-    pub fn from_extension(extension: &str) -> Option<MeshFormat> {
-        match extension.to_ascii_lowercase().as_str() {
-            "stl" => Some(MeshFormat::Stl),
-            "obj" => Some(MeshFormat::Obj),
-            "ply" => Some(MeshFormat::Ply),
-            _ => None,
-        }
-    }
 }
 
 /// Finite vertices and valid triangles between them, counterclockwise seen from outside; [`TriangleMesh::body`] checks
@@ -64,29 +53,37 @@ impl TriangleMesh {
 
     fn named(name: &str, vertices: Vec<Vector>, faces: Vec<[u32; 3]>) -> Result<TriangleMesh, MeshError> {
         let mesh = TriangleMesh { name: name.to_owned(), vertices, faces };
-        match check::numbers(&mesh.vertices, &mesh.faces) {
-            Ok(()) => Ok(mesh),
-            Err(problem) => Err(mesh.error(problem)),
-        }
+        check::numbers(&mesh.vertices, &mesh.faces).map_err(|problem| mesh.error(problem))?;
+        Ok(mesh)
     }
 
-    /// The mesh in a file whose extension is `stl`, `obj` or `ply`.
+    /// The mesh in a file whose extension is `stl`, `obj` or `ply`, in upper or lower case.
     pub fn read(path: &Path) -> Result<TriangleMesh, MeshError> {
+        TriangleMesh::read_with(path, || match std::fs::metadata(path) {
+            Ok(metadata) if !metadata.is_file() => Err("it is not a regular file".to_owned()),
+            _ => std::fs::read(path).map_err(|e| e.to_string()),
+        })
+    }
+
+    /// The mesh in a file with these contents, or the reason why they cannot be read.
+    pub fn read_with<B: AsRef<[u8]>>(
+        path: &Path,
+        contents: impl FnOnce() -> Result<B, String>,
+    ) -> Result<TriangleMesh, MeshError> {
         let name = path.display().to_string();
-        let fail = |problem| Err(MeshError { name: name.clone(), problem });
+        let fail = |message: String| MeshError { name: name.clone(), problem: message.into() };
         let extension = path.extension().unwrap_or_default().to_string_lossy();
-        let Some(format) = MeshFormat::from_extension(&extension) else {
-            return fail(MeshProblem::UnknownExtension(extension.into_owned()));
+        let format = match extension.to_ascii_lowercase().as_str() {
+            "stl" => MeshFormat::Stl,
+            "obj" => MeshFormat::Obj,
+            "ply" => MeshFormat::Ply,
+            _ => {
+                let expected = "expected stl, obj or ply; convert the mesh";
+                return Err(fail(format!("unknown extension '{extension}', {expected}")));
+            }
         };
-        match std::fs::metadata(path) {
-            Ok(metadata) if metadata.is_file() => {}
-            Ok(_) => return fail(MeshProblem::Unreadable("it is not a regular file".into())),
-            Err(e) => return fail(MeshProblem::Unreadable(e.to_string())),
-        }
-        match std::fs::read(path) {
-            Ok(bytes) => TriangleMesh::parse(&bytes, format, &name),
-            Err(e) => fail(MeshProblem::Unreadable(e.to_string())),
-        }
+        let bytes = contents().map_err(|reason| fail(format!("cannot be read: {reason}; check the path")))?;
+        TriangleMesh::parse(bytes.as_ref(), format, &name)
     }
 
     /// The mesh in the bytes of a file; `name` appears in errors.
@@ -94,18 +91,17 @@ impl TriangleMesh {
         // Some editors write a UTF-8 byte order mark.
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let parsed = match format {
-            _ if bytes.is_empty() => Err(MeshProblem::Empty),
+            _ if bytes.is_empty() => Err("the file is empty; export the mesh again".to_owned()),
             MeshFormat::Stl => stl::parse(bytes),
             MeshFormat::Obj => obj::parse(bytes),
             MeshFormat::Ply => ply::parse(bytes),
         };
         match parsed {
-            Ok((_, faces)) if faces.is_empty() => {
-                Err(MeshError { name: name.to_owned(), problem: MeshProblem::NoTriangles })
-            }
-            Ok((vertices, faces)) => TriangleMesh::named(name, vertices, faces),
-            Err(problem) => Err(MeshError { name: name.to_owned(), problem }),
+            Ok((_, faces)) if faces.is_empty() => Err(check::no_triangles()),
+            parsed => parsed,
         }
+        .map_err(|message| MeshError { name: name.to_owned(), problem: message.into() })
+        .and_then(|(vertices, faces)| TriangleMesh::named(name, vertices, faces))
     }
 
     /// The positions, in metres unless the file had another unit: see [`TriangleMesh::scaled`].
@@ -121,7 +117,7 @@ impl TriangleMesh {
     /// The mesh with all positions times a positive factor, such as 0.001 for a file in millimetres.
     pub fn scaled(&self, factor: f64) -> Result<TriangleMesh, MeshError> {
         if !(factor > 0.0 && factor.is_finite()) {
-            return Err(self.error(MeshProblem::Factor(factor)));
+            return Err(self.error(format!("scale must be positive and finite, got {factor:?}")));
         }
         let vertices = self.vertices.iter().map(|&x| x * factor).collect();
         TriangleMesh::named(&self.name, vertices, self.faces.clone())
@@ -146,8 +142,9 @@ impl TriangleMesh {
     fn checked_body(&self, amount: Amount) -> Result<Body, MeshProblem> {
         check::size(self)?;
         check::triangles(self)?;
-        check::repetitions(self)?;
-        check::edges(self)?;
+        let (faces, vertices) = self.welded();
+        check::repetitions(&faces)?;
+        check::edges(&faces, &vertices)?;
         let middle = check::middle(self);
         let rough = integrals(self, middle);
         check::volume(&rough)?;
@@ -161,8 +158,15 @@ impl TriangleMesh {
         Ok(Body::extended(mass, Inertia::from_second_moment(second)?, center)?)
     }
 
-    fn error(&self, problem: MeshProblem) -> MeshError {
-        MeshError { name: self.name.clone(), problem }
+    /// The triangles between vertices of which no two have equal coordinates, and these vertices.
+    fn welded(&self) -> (Vec<[u32; 3]>, Vec<Vector>) {
+        let mut welder = Welder::default();
+        let corners = |face: &[u32; 3]| face.map(|i| welder.number(self.vertices[i as usize]));
+        (self.faces.iter().map(corners).collect(), welder.vertices)
+    }
+
+    fn error(&self, problem: impl Into<MeshProblem>) -> MeshError {
+        MeshError { name: self.name.clone(), problem: problem.into() }
     }
 }
 
@@ -190,7 +194,13 @@ impl Welder {
 }
 
 /// The fan of triangles from a polygon's first corner.
-fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
-    let first = corners.first().copied().unwrap_or(0);
-    corners.windows(2).skip(1).map(move |pair| [first, pair[0], pair[1]])
+fn fan(
+    corners: impl ExactSizeIterator<Item = Result<u32, String>>,
+    place: Place,
+) -> Result<Vec<[u32; 3]>, String> {
+    if corners.len() < 3 {
+        return Err(place.corrupt(format!("a face needs at least 3 corners, got {}", corners.len())));
+    }
+    let corners: Vec<u32> = corners.collect::<Result<_, _>>()?;
+    Ok(corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]]).collect())
 }

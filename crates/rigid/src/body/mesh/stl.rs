@@ -6,38 +6,39 @@
 //! begin with "solid", but only binary files contain zero bytes. Normals are ignored: they follow from the order of the
 //! corners. Corners with equal coordinates become one vertex.
 
-use super::error::{MeshProblem, Place};
-use super::text::{corrupt, finite, lines, number, quoted, words};
+use super::error::Place;
+use super::text::{finite, lines, number, quoted, words};
 use super::{Parsed, Welder};
 use std::array::from_fn;
+use std::iter::Peekable;
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
+pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, String> {
     let start = bytes.trim_ascii_start();
     let solid = start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     if solid && !bytes.contains(&0) { parse_text(bytes) } else { parse_binary(bytes) }
 }
 
-fn parse_binary(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
+fn parse_binary(bytes: &[u8]) -> Result<Parsed, String> {
     let end = Place::Byte(bytes.len());
     let Some(&[a, b, c, d]) = bytes.get(HEADER - 4..HEADER) else {
-        let what = "neither a text STL nor long enough for the 84-byte header of a binary one".into();
-        return Err(MeshProblem::Truncated { place: end, what });
+        let what = "neither a text STL nor long enough for the 84-byte header of a binary one";
+        return Err(end.truncated(what));
     };
     let count = u32::from_le_bytes([a, b, c, d]);
     let expected = HEADER as u64 + RECORD as u64 * u64::from(count);
     if bytes[..HEADER].iter().all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace()) {
         let what = "not an STL file: a text STL begins with 'solid', a binary one has zero bytes";
-        return Err(corrupt(Place::Byte(0), what));
+        return Err(Place::Byte(0).corrupt(what));
     }
     let what = format!("{count} triangles need {expected} bytes, but there are {}", bytes.len());
     if (bytes.len() as u64) < expected {
-        return Err(MeshProblem::Truncated { place: end, what });
+        return Err(end.truncated(what));
     }
     if bytes.len() as u64 > expected {
-        return Err(corrupt(Place::Byte(HEADER - 4), format!("wrong number of triangles: {what}")));
+        return Err(Place::Byte(HEADER - 4).corrupt(format!("wrong number of triangles: {what}")));
     }
     let mut welder = Welder::default();
     let mut faces = Vec::new();
@@ -57,8 +58,9 @@ fn parse_binary(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
     Ok((welder.vertices, faces))
 }
 
-fn parse_text(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
-    let mut words = Words::of(bytes);
+fn parse_text(bytes: &[u8]) -> Result<Parsed, String> {
+    let each = lines(bytes).flat_map(|(line, text)| words(text).map(move |word| (line, word)));
+    let mut words = Words { words: each.peekable(), line: 1, last: lines(bytes).count() };
     let mut welder = Welder::default();
     let mut faces = Vec::new();
     let mut in_solid = false;
@@ -78,7 +80,11 @@ fn parse_text(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
 }
 
 /// The rest of a facet.
-fn facet(words: &mut Words, index: usize, welder: &mut Welder) -> Result<[u32; 3], MeshProblem> {
+fn facet<'a>(
+    words: &mut Words<impl Iterator<Item = (usize, &'a [u8])>>,
+    index: usize,
+    welder: &mut Welder,
+) -> Result<[u32; 3], String> {
     words.expect("normal")?;
     for _ in 0..3 {
         words.required("a normal")?;
@@ -100,54 +106,49 @@ fn facet(words: &mut Words, index: usize, welder: &mut Welder) -> Result<[u32; 3
     Ok(face)
 }
 
-/// The words of a text, across lines.
-struct Words<'a> {
-    lines: Box<dyn Iterator<Item = (usize, &'a [u8])> + 'a>,
-    rest: Box<dyn Iterator<Item = &'a [u8]> + 'a>,
+/// The words of a text with their lines.
+struct Words<I: Iterator> {
+    words: Peekable<I>,
+    /// That of the last word read.
     line: usize,
+    /// The number of lines.
+    last: usize,
 }
 
-impl<'a> Words<'a> {
-    fn of(bytes: &'a [u8]) -> Words<'a> {
-        Words { lines: Box::new(lines(bytes)), rest: Box::new(std::iter::empty()), line: 1 }
-    }
-
+impl<'a, I: Iterator<Item = (usize, &'a [u8])>> Words<I> {
     fn next(&mut self) -> Option<&'a [u8]> {
-        loop {
-            if let Some(word) = self.rest.next() {
-                return Some(word);
-            }
-            let (number, line) = self.lines.next()?;
-            self.line = number;
-            self.rest = Box::new(words(line));
-        }
+        let (line, word) = self.words.next()?;
+        self.line = line;
+        Some(word)
     }
 
     fn skip_line(&mut self) {
-        self.rest = Box::new(std::iter::empty());
+        while self.words.next_if(|(line, _)| *line == self.line).is_some() {}
     }
 
     fn place(&self) -> Place {
         Place::Line(self.line)
     }
 
-    fn required(&mut self, what: &str) -> Result<&'a [u8], MeshProblem> {
+    fn required(&mut self, what: &str) -> Result<&'a [u8], String> {
         self.next().ok_or_else(|| self.truncated(what))
     }
 
-    fn expect(&mut self, keyword: &str) -> Result<(), MeshProblem> {
-        let word = self.required(&format!("'{keyword}'"))?;
+    fn expect(&mut self, keyword: &str) -> Result<(), String> {
+        let wanted = format!("'{keyword}'");
+        let word = self.required(&wanted)?;
         if word.eq_ignore_ascii_case(keyword.as_bytes()) {
-            return Ok(());
+            Ok(())
+        } else {
+            Err(self.unexpected(word, &wanted))
         }
-        Err(self.unexpected(word, &format!("'{keyword}'")))
     }
 
-    fn unexpected(&self, word: &[u8], wanted: &str) -> MeshProblem {
-        corrupt(self.place(), format!("expected {wanted}, got {}", quoted(word)))
+    fn unexpected(&self, word: &[u8], wanted: &str) -> String {
+        self.place().corrupt(format!("expected {wanted}, got {}", quoted(word)))
     }
 
-    fn truncated(&self, wanted: &str) -> MeshProblem {
-        MeshProblem::Truncated { place: self.place(), what: format!("expected {wanted}") }
+    fn truncated(&self, wanted: &str) -> String {
+        Place::Line(self.last).truncated(format!("expected {wanted}"))
     }
 }

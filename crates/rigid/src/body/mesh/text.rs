@@ -1,6 +1,6 @@
 //! Lines, words and numbers of the text formats.
 
-use super::error::{MeshProblem, Place};
+use super::error::{self, Place};
 use polhode_ga::Vector;
 
 /// The lines of a file, numbered from 1. They end with LF, CR LF, or CR alone in a file without LF.
@@ -23,22 +23,12 @@ pub(super) fn quoted(word: &[u8]) -> String {
 }
 
 /// A word read as a number, which may be infinite or NaN.
-pub(super) fn number(word: &[u8], place: Place) -> Result<f64, MeshProblem> {
+pub(super) fn number(word: &[u8], place: Place) -> Result<f64, String> {
     let value = std::str::from_utf8(word).ok().and_then(|text| text.parse().ok());
-    value.ok_or_else(|| corrupt(place, format!("{} is not a number", quoted(word))))
+    value.ok_or_else(|| place.corrupt(format!("{} is not a number", quoted(word))))
 }
 
 /// The position of a vertex, or an error if it is not finite.
-pub(super) fn finite(position: [f64; 3], vertex: usize, place: Place) -> Result<Vector, MeshProblem> {
-    let position = Vector(position);
-    if position.0.iter().all(|x| x.is_finite()) {
-        Ok(position)
-    } else {
-        Err(MeshProblem::NotFinite { vertex, position, place: Some(place) })
-    }
-}
-
-/// The error for a violation of the format.
-pub(super) fn corrupt(place: Place, what: impl Into<String>) -> MeshProblem {
-    MeshProblem::Corrupt { place, what: what.into() }
+pub(super) fn finite(position: [f64; 3], vertex: usize, place: Place) -> Result<Vector, String> {
+    error::finite(vertex, Vector(position)).map_err(|message| format!("{place}: {message}"))
 }

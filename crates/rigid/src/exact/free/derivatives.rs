@@ -16,7 +16,7 @@
 //!
 //! [`super::variation`] derives δω and the integrals of ω².
 
-use super::variation::{Form, Variation};
+use super::variation::{Form, Tumbling, steady};
 use super::{FreeMotion, power_of_two};
 use polhode_ga::{Bivector, Rotor};
 use std::array::from_fn;
@@ -55,7 +55,7 @@ pub struct Differentiated {
     size: f64,
     /// The motion in principal axes, from attitude 1, with moments and rates near 1.
     unit: FreeMotion,
-    variation: Variation,
+    tumbling: Option<Box<Tumbling>>,
 }
 
 impl FreeMotion {
@@ -64,7 +64,7 @@ impl FreeMotion {
         let size = power_of_two(self.moments);
         let moments = self.moments.map(|i| i / size);
         let unit = FreeMotion::in_principal_axes(moments, Rotor::IDENTITY, self.omega / self.scale);
-        Differentiated { motion: *self, size, unit, variation: Variation::of(&unit) }
+        Differentiated { motion: *self, size, unit, tumbling: Tumbling::new(&unit) }
     }
 }
 
@@ -105,7 +105,8 @@ impl Differentiated {
     /// The turn ε in the body, δω and ω' of the unit motion.
     fn in_principal_axes(&self, t: f64) -> ([Form; 3], [Form; 3], [f64; 3]) {
         let (i, start) = (self.unit.moments, self.unit.omega.0);
-        let (rotor, varied) = (self.unit.at(t).0, self.variation.at(t));
+        let rotor = self.unit.at(t).0;
+        let varied = self.tumbling.as_ref().map_or_else(|| steady(i, start, t), |tumbling| tumbling.at(t));
         let w = varied.omega;
         let m: [f64; 3] = from_fn(|k| i[k] * w[k]);
         let rate = from_fn(|x| {

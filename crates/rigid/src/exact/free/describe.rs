@@ -1,4 +1,5 @@
-//! Description of a free motion by its invariants.
+//! Description of a free motion by its invariants, and the curves of its angular velocity: polhode in the body,
+//! herpolhode in space.
 //!
 //! **Phase.** In one period T of the angular velocity m circles d once, and the body turns about L. With the energy
 //! `2E = (G² + sP)/c` and ν of [`super`], `ν − 2E/G = −s A/T` with
@@ -14,14 +15,20 @@
 //! largest where cn = 0, `bA_b/(cA_c k')`.
 
 use super::FreeMotion;
+use super::orbit::Invariants;
 use crate::body::inertia::equal;
+use crate::error::SimulateError;
 use crate::exact::regime::{FreeDescription, Regime};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::mean_and_sum;
 use crate::numerics::wide::Wide;
+use crate::state::checks::check_horizons;
 use crate::state::phase::Gyrostat;
 use polhode_ga::Bivector;
 use std::f64::consts::PI;
+
+/// Half the range of u drawn on the separatrix: sech 20 = 4e-9 of the way from pole to pole is missing.
+const NEARLY_ALL: f64 = 20.0;
 
 /// Parameter 1 − k²/n above which the other form of A is used; A is then nearly 2π.
 const FAR: f64 = 1e4;
@@ -88,13 +95,9 @@ impl FreeMotion {
         let mean = orbit.mean?;
         let size = super::power_of_two(self.moments);
         let in_units = |x: f64, unit: f64| Wide::from(x) / unit.into();
-        let [a, b, c] = orbit.axes.map(|k| in_units(self.moments[k], size));
-        let [wa, wb, wc] = orbit.axes.map(|k| in_units(self.omega.0[k], self.scale));
-        let [ma, mb, mc] = [a * wa, b * wb, c * wc];
-        let (ab, ac, bc) = ((b - a).abs(), (c - a).abs(), (c - b).abs());
-        let p = ac * ma * wa + bc * mb * wb;
-        let q = ab * mb * wb + ac * mc * wc;
-        let g2 = ma * ma + mb * mb + mc * mc;
+        let moments = orbit.axes.map(|k| in_units(self.moments[k], size));
+        let rates = orbit.axes.map(|k| in_units(self.omega.0[k], self.scale));
+        let Invariants { a, b, c, ab, ac, bc, p, q, g2 } = Invariants::new(moments, rates);
         let (g, turn, half) = (g2.sqrt(), Wide::from(orbit.lambda * mean), DoubleDouble::from(0.5));
         // 1 − k²/n.
         let p2 = ac * g2 / (c * q);
@@ -119,5 +122,45 @@ impl FreeMotion {
         let square = (i[c] - i[a]) / i[a] * ((i[c] - i[b]) / i[b]);
         let about = w[a] == 0.0 && w[b] == 0.0 && square > 0.0;
         Some(2.0 * PI / (square.sqrt() * w[c].abs())).filter(|period| about && period.is_finite())
+    }
+
+    /// Start and duration in s that cover the polhode: one period; on the separatrix from one end of the middle axis to
+    /// the other; 0 if the rotation is steady.
+    fn once_round(&self) -> (f64, f64) {
+        let Some(orbit) = &self.orbit else { return (0.0, 0.0) };
+        match orbit.mean {
+            Some(_) => (0.0, self.period().unwrap_or(0.0)),
+            None => {
+                let rate = orbit.lambda.hi * self.scale;
+                ((-NEARLY_ALL - orbit.start.1) / rate, 2.0 * NEARLY_ALL / rate)
+            }
+        }
+    }
+
+    /// `count` angular velocities in body axes along the polhode, at equal time steps from the start; the last equals
+    /// the first, except on the separatrix, where the curve goes from pole to pole.
+    pub fn polhode(&self, count: usize) -> Vec<Bivector> {
+        let (start, length) = self.once_round();
+        let step = length / count.saturating_sub(1).max(1) as f64;
+        let mut curve: Vec<_> = (0..count).map(|k| self.at(start + step * k as f64).1).collect();
+        if self.period().is_some()
+            && let [first, .., last] = &mut curve[..]
+        {
+            *last = *first;
+        }
+        curve
+    }
+
+    /// `count` angular velocities in space axes over `periods` times the duration of the polhode.
+    pub fn herpolhode(&self, count: usize, periods: f64) -> Result<Vec<Bivector>, SimulateError> {
+        let (start, length) = self.once_round();
+        let step = periods * length / count.saturating_sub(1).max(1) as f64;
+        let times: Vec<f64> = (0..count).map(|k| start + step * k as f64).collect();
+        check_horizons(0.0, &times, [self.horizon(); 2])?;
+        let in_space = |&t: &f64| {
+            let (rotor, omega) = self.at(t);
+            rotor.apply_bivector(omega)
+        };
+        Ok(times.iter().map(in_space).collect())
     }
 }

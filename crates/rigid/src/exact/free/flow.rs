@@ -67,28 +67,21 @@ impl<S: Series<C>, const C: usize> Flow<S, C> {
 
     /// Puts a motion into lane l.
     pub fn put(&mut self, l: usize, motion: &Flow<S::One>) {
-        let numbers: Vec<f64> = motion.coefficients().map(|&[c]| c).collect();
-        self.coefficients_mut().enumerate().for_each(|(k, lanes)| lanes[l] = numbers[k]);
+        let mut motion = *motion;
+        self.coefficients().zip(motion.coefficients()).for_each(|(lanes, one)| lanes[l] = one[0]);
     }
 
     /// The motion in lane l.
-    pub fn take(&self, l: usize) -> Flow<S::One> {
-        let numbers: Vec<f64> = self.coefficients().map(|lanes| lanes[l]).collect();
+    pub fn take(mut self, l: usize) -> Flow<S::One> {
         let mut motion = Flow::empty();
-        motion.coefficients_mut().enumerate().for_each(|(k, c)| *c = [numbers[k]]);
+        motion.coefficients().zip(self.coefficients()).for_each(|(one, lanes)| *one = [lanes[l]]);
         motion
     }
 
-    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]> {
-        let phases = self.orbit.0.iter().chain(&self.precession.0);
-        let frames = self.rotor.as_flattened().iter().chain(self.omega.as_flattened());
-        phases.chain([&self.scale]).chain(frames).chain(self.series.coefficients())
-    }
-
-    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+    fn coefficients(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
         let phases = self.orbit.0.iter_mut().chain(&mut self.precession.0);
         let frames = self.rotor.as_flattened_mut().iter_mut().chain(self.omega.as_flattened_mut());
-        phases.chain([&mut self.scale]).chain(frames).chain(self.series.coefficients_mut())
+        phases.chain([&mut self.scale]).chain(frames).chain(self.series.coefficients())
     }
 
     /// `exp(½νt) Z`, up to its norm, as quaternion components; and the state.

@@ -80,7 +80,6 @@ mod describe;
 mod flow;
 mod many;
 pub(crate) mod orbit;
-mod path;
 pub(crate) mod series;
 mod variation;
 
@@ -202,38 +201,53 @@ fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
     AnyFlow::Circular(flow.with_frames(rotor, [Rotor::IDENTITY, d, d, d], frame.reverse()))
 }
 
-/// A motion that is not steady.
-fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
-    let (whole, rest) = orbit.start;
-    // AGM(1, k) = π/2K'.
-    let other = mean(orbit.k2.sqrt());
-    let Some(mean) = orbit.mean else {
-        let rate = orbit.lambda / NEVER.into();
-        let phase = Phase { rate, start: [rest / NEVER, 0.0] };
-        let series = Hyperbolic::separatrix(0.5 * orbit.eta() * other, orbit.s);
-        return AnyFlow::Hyperbolic(flow(orbit, scale, phase, (series, series.normalizers()), rotor, frame));
+/// The phase v/2π, and the nome if the trigonometric series converge rapidly: from λ, AGM(1, k') if not on the separatrix,
+/// u at time 0, and AGM(1, k). On the separatrix `u = NEVER · turns`.
+pub(crate) fn phase_and_nome(
+    lambda: DoubleDouble,
+    mean: Option<DoubleDouble>,
+    (whole, rest): (f64, f64),
+    other: f64,
+) -> (Phase, Option<f64>) {
+    let Some(mean) = mean else {
+        return (Phase { rate: lambda / NEVER.into(), start: [rest / NEVER, 0.0] }, None);
     };
     // 1/4K.
     let per_u = mean * DoubleDouble::OVER_TWO_PI;
-    let phase = Phase { rate: orbit.lambda * per_u, start: [0.25 * whole, rest * per_u.hi] };
+    let phase = Phase { rate: lambda * per_u, start: [0.25 * whole, rest * per_u.hi] };
     let nome = if other > 0.0 { (-PI * mean.hi / other).exp() } else { 0.0 };
-    if nome <= LARGEST_NOME {
-        let rho = (-orbit.rest_of_eta() * mean.hi).exp();
-        let series = Circular::new(nome, rho, orbit.s);
-        AnyFlow::Circular(flow(orbit, scale, phase, (series, series.normalizers()), rotor, frame))
-    } else {
-        // πK/4K' and πη/4K'.
-        let series = Hyperbolic::new(0.25 * PI * other / mean.hi, 0.5 * orbit.eta() * other, orbit.s);
-        AnyFlow::Hyperbolic(flow(orbit, scale, phase, (series, series.normalizers()), rotor, frame))
+    (phase, Some(nome).filter(|&nome| nome <= LARGEST_NOME))
+}
+
+/// A motion that is not steady.
+fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
+    // AGM(1, k) = π/2K'.
+    let other = mean(orbit.k2.sqrt());
+    let (phase, nome) = phase_and_nome(orbit.lambda, orbit.mean, orbit.start, other);
+    match (orbit.mean, nome) {
+        (Some(mean), Some(nome)) => {
+            let rho = (-orbit.rest_of_eta() * mean.hi).exp();
+            let series = Circular::new(nome, rho, orbit.s);
+            AnyFlow::Circular(flow(orbit, scale, phase, series, rotor, frame))
+        }
+        (mean, _) => {
+            // πK/4K' and πη/4K'.
+            let gamma = 0.5 * orbit.eta() * other;
+            let series = match mean {
+                Some(mean) => Hyperbolic::new(0.25 * PI * other / mean.hi, gamma, orbit.s),
+                None => Hyperbolic::separatrix(gamma, orbit.s),
+            };
+            AnyFlow::Hyperbolic(flow(orbit, scale, phase, series, rotor, frame))
+        }
     }
 }
 
-/// Phases, series with their normalizers, and frames together.
+/// Phases, series and frames together.
 fn flow<S: Series<1>>(
     top: &Orbit,
     scale: f64,
     phase: Phase,
-    (series, factors): (S, [f64; 3]),
+    series: S,
     rotor: Rotor,
     frame: Rotor,
 ) -> Flow<S> {
@@ -244,6 +258,7 @@ fn flow<S: Series<1>>(
         axis[top.axes[k]] = 1.0;
         axis
     };
+    let factors = series.normalizers();
     // Quaternion units are the negatives of the planes.
     let unit = |k: usize| {
         let [x, y, z] = axis(k).map(|x| -top.signs[k] * x);

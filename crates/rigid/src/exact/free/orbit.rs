@@ -45,18 +45,18 @@ impl Orbit {
 
 /// Positive moments and invariants in double-double precision. Those of a needle or a nearly steady rotation are beyond
 /// the range of floats.
-struct Invariants {
-    a: Wide,
-    b: Wide,
-    c: Wide,
+pub(super) struct Invariants {
+    pub a: Wide,
+    pub b: Wide,
+    pub c: Wide,
     /// |b − a|, |c − a| and |c − b|.
-    ab: Wide,
-    ac: Wide,
-    bc: Wide,
-    p: Wide,
-    q: Wide,
+    pub ab: Wide,
+    pub ac: Wide,
+    pub bc: Wide,
+    pub p: Wide,
+    pub q: Wide,
     /// G².
-    g2: Wide,
+    pub g2: Wide,
 }
 
 impl Orbit {
@@ -116,7 +116,7 @@ impl Orbit {
 
 impl Invariants {
     /// From the moments a, b, c and the rates about their axes.
-    fn new([a, b, c]: [Wide; 3], w: [Wide; 3]) -> Invariants {
+    pub fn new([a, b, c]: [Wide; 3], w: [Wide; 3]) -> Invariants {
         let [wa, wb, wc] = w.map(|w| w * w);
         let (ab, ac, bc) = ((b - a).abs(), (c - a).abs(), (c - b).abs());
         let (p, q) = (a * ac * wa + b * bc * wb, b * ab * wb + c * ac * wc);

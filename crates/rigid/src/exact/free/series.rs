@@ -10,7 +10,7 @@
 //!
 //! all with `p_{n+1} = 2x p_n − p_{n−1}`. The factors sin v etc. keep the relative accuracy where a function vanishes.
 
-use crate::numerics::lanes::{exp_minus, half_turns, horner_in_lane, in_lane, sin_cos_turns};
+use crate::numerics::lanes::{exp_minus, half_period, horner_in_lane, in_lane, sin_cos_turns};
 use std::f64::consts::PI;
 
 /// Largest nome of the trigonometric series.
@@ -30,6 +30,9 @@ pub(super) trait Series<const C: usize>: Copy + Sync {
     /// From `v/2π = u/4K`, reduced to [−½, ½], and its rounding error.
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W>;
 
+    /// Factors that make cn 0, sn K and dn 0 equal to 1, in lane 0.
+    fn normalizers(&self) -> [f64; 3];
+
     /// The series of one motion.
     type One: Series<1>;
 
@@ -37,10 +40,7 @@ pub(super) trait Series<const C: usize>: Copy + Sync {
     fn empty() -> Self;
 
     /// All coefficients, always in the same order.
-    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]>;
-
-    /// All coefficients, mutable.
-    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]>;
+    fn coefficients(&mut self) -> impl Iterator<Item = &mut [f64; C]>;
 }
 
 /// `Σ h_n p_n(x)` in powers of x, with `p_0 = 1` and the given `p_{−1}`.
@@ -122,14 +122,6 @@ impl Circular {
     pub fn steady() -> Circular {
         Circular::new(0.0, 0.0, 1.0)
     }
-
-    /// Factors that make cn 0, sn K and dn 0 equal to 1.
-    pub fn normalizers(&self) -> [f64; 3] {
-        let ratio = |k: usize, x: f64| {
-            horner_in_lane(&self.denominator, 0, x) / horner_in_lane(&self.functions[k], 0, x)
-        };
-        [ratio(0, 1.0), ratio(1, -1.0), ratio(2, 1.0)]
-    }
 }
 
 impl<const C: usize> Series<C> for Circular<C> {
@@ -159,6 +151,13 @@ impl<const C: usize> Series<C> for Circular<C> {
         State { z, functions, denominator, ahead: [0.0; W] }
     }
 
+    fn normalizers(&self) -> [f64; 3] {
+        let ratio = |k: usize, x: f64| {
+            horner_in_lane(&self.denominator, 0, x) / horner_in_lane(&self.functions[k], 0, x)
+        };
+        [ratio(0, 1.0), ratio(1, -1.0), ratio(2, 1.0)]
+    }
+
     type One = Circular;
 
     fn empty() -> Circular<C> {
@@ -166,12 +165,7 @@ impl<const C: usize> Series<C> for Circular<C> {
         Circular { z: [[none; 4]; 4], functions: [[none; 5]; 3], denominator: [none; 5] }
     }
 
-    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]> {
-        let (z, functions) = (self.z.as_flattened(), self.functions.as_flattened());
-        z.iter().chain(functions).chain(&self.denominator)
-    }
-
-    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+    fn coefficients(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
         let (z, functions) = (self.z.as_flattened_mut(), self.functions.as_flattened_mut());
         z.iter_mut().chain(functions).chain(&mut self.denominator)
     }
@@ -231,18 +225,6 @@ impl Hyperbolic {
     pub fn separatrix(gamma: f64, s: f64) -> Hyperbolic {
         Hyperbolic { ahead: [0.0], ..Hyperbolic::new(NEVER / 8.0, gamma, s) }
     }
-
-    /// From cn and dn at x = 0, and sn at X, where `k² sn² + dn² = 1` with dn = k'.
-    pub fn normalizers(&self) -> [f64; 3] {
-        let denominator = |y: f64| horner_in_lane(&self.denominator, 0, y);
-        let function = |k: usize, y: f64| horner_in_lane(&self.functions[k], 0, y);
-        let at_0 = |k: usize| denominator(1.0) / function(k, 1.0);
-        let double = 2.0 * self.border[0].min(176.0);
-        let (g, y) = ((-double).exp(), (2.0 * double).cosh());
-        let sinh = (1.0 - g * g) / (1.0 + g * g) * function(1, y);
-        let less = (1.0 - self.nome[0]) * (1.0 - self.nome[0]);
-        [at_0(0) / less, denominator(y) / sinh, at_0(2)]
-    }
 }
 
 impl<const C: usize> Series<C> for Hyperbolic<C> {
@@ -254,17 +236,12 @@ impl<const C: usize> Series<C> for Hyperbolic<C> {
         // 4|x| and 8(X − |x|), as far as they matter.
         let (mut near, mut far) = ([0.0; W], [0.0; W]);
         for l in 0..W {
-            // Half periods, f = v/π in [−½, ½] and a rest.
-            let turn = turns[l];
-            let whole = half_turns(turn);
-            let f = 2.0 * turn - whole;
-            odd[l] = 1.0 - 2.0 * f64::abs(whole);
-            side[l] = 1f64.copysign(f);
-            ahead[l] = in_lane(&self.ahead, l) * (f + 2.0 * rest[l]);
-            let more = 2.0 * side[l] * rest[l];
+            let at = half_period(turns[l], rest[l]);
+            (odd[l], side[l]) = (at.odd, at.side);
+            ahead[l] = in_lane(&self.ahead, l) * (at.part + 2.0 * rest[l]);
             let border = in_lane(&self.border, l);
-            near[l] = (4.0 * border * (f.abs() + more).max(0.0)).min(MOST);
-            far[l] = (8.0 * border * ((0.5 - f.abs()) - more).max(0.0)).min(700.0);
+            near[l] = (4.0 * border * at.from_middle).min(MOST);
+            far[l] = (8.0 * border * at.to_border).min(700.0);
         }
         // e^{−2|x|} and less 1; 1 − e^{−4(X − |x|)}.
         let (mut g, mut m, mut last) = ([0.0; W], [0.0; W], [0.0; W]);
@@ -300,6 +277,18 @@ impl<const C: usize> Series<C> for Hyperbolic<C> {
         State { z, functions, denominator, ahead }
     }
 
+    /// From cn and dn at x = 0, and sn at X, where `k² sn² + dn² = 1` with dn = k'.
+    fn normalizers(&self) -> [f64; 3] {
+        let denominator = |y: f64| horner_in_lane(&self.denominator, 0, y);
+        let function = |k: usize, y: f64| horner_in_lane(&self.functions[k], 0, y);
+        let at_0 = |k: usize| denominator(1.0) / function(k, 1.0);
+        let double = 2.0 * in_lane(&self.border, 0).min(176.0);
+        let (g, y) = ((-double).exp(), (2.0 * double).cosh());
+        let sinh = (1.0 - g * g) / (1.0 + g * g) * function(1, y);
+        let less = (1.0 - self.nome[0]) * (1.0 - self.nome[0]);
+        [at_0(0) / less, denominator(y) / sinh, at_0(2)]
+    }
+
     type One = Hyperbolic;
 
     fn empty() -> Hyperbolic<C> {
@@ -314,13 +303,7 @@ impl<const C: usize> Series<C> for Hyperbolic<C> {
         }
     }
 
-    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]> {
-        let (z, functions) = (self.z.as_flattened(), self.functions.as_flattened());
-        let single = [&self.border, &self.nome, &self.ahead];
-        z.iter().chain(functions).chain(&self.denominator).chain(single)
-    }
-
-    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+    fn coefficients(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
         let (z, functions) = (self.z.as_flattened_mut(), self.functions.as_flattened_mut());
         let single = [&mut self.border, &mut self.nome, &mut self.ahead];
         z.iter_mut().chain(functions).chain(&mut self.denominator).chain(single)

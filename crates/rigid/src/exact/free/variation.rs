@@ -88,34 +88,11 @@ pub(super) struct Varied {
     pub squares: [f64; 3],
 }
 
-/// The variation of a motion with moments and rates near 1.
-#[derive(Clone, Debug)]
-pub(super) enum Variation {
-    Steady(Steady),
-    Tumbling(Box<Tumbling>),
-}
-
-impl Variation {
-    /// Of a motion in principal axes.
-    pub fn of(motion: &FreeMotion) -> Variation {
-        match &motion.orbit {
-            Some(orbit) => Variation::Tumbling(Box::new(Tumbling::new(motion, orbit))),
-            None => Variation::Steady(Steady { moments: motion.moments, omega: motion.omega.0 }),
-        }
-    }
-
-    pub fn at(&self, t: f64) -> Varied {
-        match self {
-            Variation::Steady(steady) => steady.at(t),
-            Variation::Tumbling(tumbling) => tumbling.at(t),
-        }
-    }
-}
-
 /// Largest change of u for the addition theorems, whose denominators are then not small.
 const NEAR: f64 = 1.0;
 
-#[derive(Clone, Copy, Debug)]
+/// The variation of a motion that is not steady, with moments and rates near 1.
+#[derive(Clone, Debug)]
 pub(super) struct Tumbling {
     orbit: Orbit,
     motion: FreeMotion,
@@ -148,7 +125,9 @@ struct Functions {
 }
 
 impl Tumbling {
-    fn new(motion: &FreeMotion, orbit: &Orbit) -> Tumbling {
+    /// None if the motion is steady.
+    pub fn new(motion: &FreeMotion) -> Option<Box<Tumbling>> {
+        let orbit = motion.orbit.as_ref()?;
         let [[a, b, c], [wa, wb, wc]] = [motion.moments, motion.omega.0].map(|x| orbit.axes.map(|k| x[k]));
         let [va, vb, vc] = orbit.axes.map(Form::rate);
         let [ia, ib, ic] = orbit.axes.map(Form::moment);
@@ -209,7 +188,7 @@ impl Tumbling {
             parameter,
             shift,
         };
-        Tumbling { first: tumbling.functions(start, motion.omega.0), ..tumbling }
+        Some(Box::new(Tumbling { first: tumbling.functions(start, motion.omega.0), ..tumbling }))
     }
 
     /// Of u, where the angular velocity is `omega`.
@@ -254,7 +233,7 @@ impl Tumbling {
         }
     }
 
-    fn at(&self, t: f64) -> Varied {
+    pub fn at(&self, t: f64) -> Varied {
         let Orbit { axes, amplitudes, lambda, k2: m, .. } = self.orbit;
         let omega = self.motion.at(t).1.0;
         let (first, now) = (self.first, self.functions(self.start + lambda.hi * t, omega));
@@ -283,44 +262,30 @@ impl Tumbling {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Steady {
-    moments: [f64; 3],
-    omega: [f64; 3],
-}
-
-impl Steady {
-    /// A and p.
-    fn field(&self) -> ([[f64; 3]; 3], [Form; 3]) {
-        let Steady { moments: i, omega: w } = self;
-        let mut matrix = [[0.0; 3]; 3];
-        let push = from_fn(|x| {
-            let (y, z) = ((x + 1) % 3, (x + 2) % 3);
-            let ratio = (i[y] - i[z]) / i[x];
-            (matrix[x][y], matrix[x][z]) = (ratio * w[z], ratio * w[y]);
-            (Form::moment(y) - Form::moment(z)) * (w[y] * w[z] / i[x])
-        });
-        (matrix, push)
-    }
-
-    fn at(&self, t: f64) -> Varied {
-        let (matrix, push) = self.field();
-        let mu: f64 = (0..3).map(|x| matrix[x][(x + 1) % 3] * matrix[(x + 1) % 3][x]).sum();
-        let root = mu.abs().sqrt();
-        let (first, second) = if mu == 0.0 {
-            (t, 0.5 * t * t)
-        } else {
-            let function = if mu > 0.0 { f64::sinh } else { f64::sin };
-            let half = function(0.5 * root * t) / root;
-            (function(root * t) / root, 2.0 * half * half)
-        };
-        let times = |x: [Form; 3]| matrix.map(|row| x[0] * row[0] + x[1] * row[1] + x[2] * row[2]);
-        let start = from_fn(Form::rate);
-        let once = times(start);
-        let (twice, pushed) = (times(once), times(push));
-        let change = from_fn(|k| {
-            start[k] + once[k] * first + twice[k] * second + push[k] * t + pushed[k] * (0.5 * t * t)
-        });
-        Varied { omega: self.omega, change, squares: self.omega.map(|w| w * w * t) }
-    }
+/// Of a steady motion with the moments i and the rates w.
+pub(super) fn steady(i: [f64; 3], w: [f64; 3], t: f64) -> Varied {
+    // A and p.
+    let mut matrix = [[0.0; 3]; 3];
+    let push = from_fn(|x| {
+        let (y, z) = ((x + 1) % 3, (x + 2) % 3);
+        let ratio = (i[y] - i[z]) / i[x];
+        (matrix[x][y], matrix[x][z]) = (ratio * w[z], ratio * w[y]);
+        (Form::moment(y) - Form::moment(z)) * (w[y] * w[z] / i[x])
+    });
+    let mu: f64 = (0..3).map(|x| matrix[x][(x + 1) % 3] * matrix[(x + 1) % 3][x]).sum();
+    let root = mu.abs().sqrt();
+    let (first, second) = if mu == 0.0 {
+        (t, 0.5 * t * t)
+    } else {
+        let function = if mu > 0.0 { f64::sinh } else { f64::sin };
+        let half = function(0.5 * root * t) / root;
+        (function(root * t) / root, 2.0 * half * half)
+    };
+    let times = |x: [Form; 3]| matrix.map(|row| x[0] * row[0] + x[1] * row[1] + x[2] * row[2]);
+    let start = from_fn(Form::rate);
+    let once = times(start);
+    let (twice, pushed) = (times(once), times(push));
+    let change =
+        from_fn(|k| start[k] + once[k] * first + twice[k] * second + push[k] * t + pushed[k] * (0.5 * t * t));
+    Varied { omega: w, change, squares: w.map(|w| w * w * t) }
 }

@@ -1,12 +1,12 @@
 //! The regime of a heavy symmetric top, and its periods.
 
-use super::{Form, LagrangeTop};
+use super::LagrangeTop;
+use crate::exact::regime::regimes;
 use crate::facts;
 use crate::facts::Facts;
 use crate::numerics::wide::Wide;
 use crate::state::phase::Gyrostat;
 use std::f64::consts::PI;
-use std::fmt;
 
 /// Tolerance of equal tilts in rad, and of rates relative to their terms: rounding of the start.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -14,51 +14,33 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// A top is nearly upright up to this relative loss of height of its centre of mass, a tilt of 11.5 degrees.
 const NEARLY: f64 = 0.02;
 
-/// How a heavy top moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LagrangeRegime {
-    /// No rotation, and no torque.
-    Rest,
-    /// Upright, with a spin of the critical rate or more: stable.
-    Sleeping,
-    /// Nearly upright at all times, with at least the critical spin: a sleeping top after a small push.
-    NearlySleeping,
-    /// Upright, with less than the critical spin: unstable.
-    Upright,
-    /// Upside down, with or without spin.
-    Hanging,
-    /// The tilt is constant.
-    Steady,
-    /// The precession changes its sign between the bounds of the tilt.
-    Loops,
-    /// The precession has one sign.
-    Waves,
-    /// The precession is 0 at the upper bound.
-    Cusps,
-    /// A pendulum that does not reach the upright.
-    Swinging,
-    /// A pendulum that passes the upright.
-    Circulating,
-    /// The axis tends to the upright.
-    Separatrix,
-}
-
-impl fmt::Display for LagrangeRegime {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            LagrangeRegime::Rest => "at rest",
-            LagrangeRegime::Sleeping => "sleeping, upright",
-            LagrangeRegime::NearlySleeping => "sleeping, nearly upright",
-            LagrangeRegime::Upright => "upright, unstable",
-            LagrangeRegime::Hanging => "hanging",
-            LagrangeRegime::Steady => "regular precession",
-            LagrangeRegime::Loops => "nutating with loops",
-            LagrangeRegime::Waves => "nutating with waves",
-            LagrangeRegime::Cusps => "nutating with cusps",
-            LagrangeRegime::Swinging => "pendulum, swinging",
-            LagrangeRegime::Circulating => "pendulum, circulating",
-            LagrangeRegime::Separatrix => "separatrix",
-        })
+regimes! {
+    /// How a heavy top moves.
+    LagrangeRegime {
+        /// No rotation, and no torque.
+        Rest = "at rest",
+        /// Upright, with a spin of the critical rate or more: stable.
+        Sleeping = "sleeping, upright",
+        /// Nearly upright at all times, with at least the critical spin: a sleeping top after a small push.
+        NearlySleeping = "sleeping, nearly upright",
+        /// Upright, with less than the critical spin: unstable.
+        Upright = "upright, unstable",
+        /// Upside down, with or without spin.
+        Hanging = "hanging",
+        /// The tilt is constant.
+        Steady = "regular precession",
+        /// The precession changes its sign between the bounds of the tilt.
+        Loops = "nutating with loops",
+        /// The precession has one sign.
+        Waves = "nutating with waves",
+        /// The precession is 0 at the upper bound.
+        Cusps = "nutating with cusps",
+        /// A pendulum that does not reach the upright.
+        Swinging = "pendulum, swinging",
+        /// A pendulum that passes the upright.
+        Circulating = "pendulum, circulating",
+        /// The axis tends to the upright.
+        Separatrix = "separatrix",
     }
 }
 
@@ -116,7 +98,7 @@ impl LagrangeTop {
         let momentum = self.momentum();
         let above = start.above.value();
         let potential = axes.c * (above - 1.0);
-        let tilt = tilt(start.below, start.above);
+        let constant = tilt(start.below, start.above);
         let g = start.g.map(|g| g.value());
         let vertical = momentum.0[0] * g[0] + momentum.0[1] * g[1] + momentum.0[2] * (above - 1.0);
         let critical_spin = 2.0 * (axes.c * axes.i1).sqrt() / axes.i3;
@@ -129,8 +111,8 @@ impl LagrangeTop {
                 () if start.above.is_zero() => LagrangeRegime::Hanging,
                 () => LagrangeRegime::Steady,
             },
-            tilt_min: tilt,
-            tilt_max: tilt,
+            tilt_min: constant,
+            tilt_max: constant,
             nutation_period: None,
             precession_rate: None,
             spin_rate: None,
@@ -141,10 +123,7 @@ impl LagrangeTop {
             critical_spin,
             sleeps,
         };
-        let orbit = match &self.form {
-            Form::Steady(_) => return still,
-            Form::Circular(orbit, _) | Form::Hyperbolic(orbit, _) => orbit,
-        };
+        let Some(orbit) = &self.orbit else { return still };
         let (delta, sigma, spin) = (orbit.delta, orbit.sigma, start.spin);
         let [(tilt_max, lower, _), (tilt_min, upper, term)] = [0, 1].map(|k| {
             let (below, above) = (orbit.below[k], orbit.above[k]);
@@ -155,7 +134,7 @@ impl LagrangeTop {
                 () if below < Wide::ONE => (delta + spin * below, spin * below),
                 () => (sigma - spin * above, spin * above),
             };
-            (super::description::tilt(below, above), numerator, term)
+            (tilt(below, above), numerator, term)
         });
         let small = term.abs() * ROUNDING.into();
         let pendulum = delta.is_zero() && sigma.is_zero();

@@ -64,8 +64,7 @@ mod orbit;
 mod series;
 mod start;
 
-use super::free::series::{LARGEST_NOME, NEVER};
-use super::free::{FreeMotion, MOST_TURNS};
+use super::free::{FreeMotion, MOST_TURNS, phase_and_nome};
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::numerics::double_double::DoubleDouble;
@@ -89,18 +88,21 @@ use std::f64::consts::PI;
 pub struct LagrangeTop {
     axes: Axes,
     start: Start,
+    /// None for rotation about the axis without a torque.
+    orbit: Option<Orbit>,
     form: Form,
 }
 
 /// The series cannot represent tilts and rates below this.
 const LEAST: f64 = 1e-303;
 
+// A box could not be copied.
+#[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug)]
 enum Form {
-    /// No torque, and rotation about the axis.
     Steady(FreeMotion),
-    Circular(Orbit, Flow<Circular>),
-    Hyperbolic(Orbit, Flow<Hyperbolic>),
+    Circular(Flow<Circular>),
+    Hyperbolic(Flow<Hyperbolic>),
 }
 
 impl LagrangeTop {
@@ -119,10 +121,10 @@ impl LagrangeTop {
             let moments = [axes.i1, axes.i1, axes.i3];
             let along = Bivector([0.0, 0.0, start.omega3]);
             let motion = FreeMotion::in_frame(axes.frame, moments, rotor * axes.frame, along);
-            return Ok(LagrangeTop { axes, start, form: Form::Steady(motion) });
+            return Ok(LagrangeTop { axes, start, orbit: None, form: Form::Steady(motion) });
         }
         let orbit = Orbit::new(&start).ok_or(SimulateError::Unresolved)?;
-        let top = LagrangeTop { axes, start, form: form(&axes, &start, orbit) };
+        let top = LagrangeTop { axes, start, orbit: Some(orbit), form: form(&axes, &start, &orbit) };
         if top.starts_at(rotor, omega, &orbit) && top.keeps_energy(&orbit) {
             Ok(top)
         } else {
@@ -171,15 +173,13 @@ impl LagrangeTop {
             return 0.0;
         }
         // Near the upright a change grows like the tilt, until the top has fallen.
-        let (growth, most) = match &self.form {
-            Form::Circular(orbit, _) | Form::Hyperbolic(orbit, _) => {
-                (orbit.lambda.hi, 1.0 / orbit.kc.value())
-            }
-            Form::Steady(_) if below < Wide::ONE => {
+        let (growth, most) = match &self.orbit {
+            Some(orbit) => (orbit.lambda.hi, 1.0 / orbit.kc.value()),
+            None if below < Wide::ONE => {
                 let square = gravity * 0.5.into() - spin * spin * 0.25.into();
                 (square.sqrt().value(), f64::INFINITY)
             }
-            Form::Steady(_) => (0.0, 1.0),
+            None => (0.0, 1.0),
         };
         let turned = scale * t.abs();
         2.0 * self.axes.apart * turned * (growth * turned).exp().min(most)
@@ -187,23 +187,22 @@ impl LagrangeTop {
 
     /// How far in time, in s, the phases are accurate: 1e17 turns.
     pub fn horizon(&self) -> f64 {
-        let fastest = |orbit: &Orbit, phases: &[Phase; 3]| {
-            let rates = phases.iter().map(|phase| phase.rate.hi.abs());
-            MOST_TURNS / (rates.fold(orbit.lambda.hi / PI, f64::max) * self.start.scale)
+        let phases = match &self.form {
+            Form::Steady(motion) => return motion.horizon(),
+            Form::Circular(flow) => &flow.phases,
+            Form::Hyperbolic(flow) => &flow.phases,
         };
-        match &self.form {
-            Form::Steady(motion) => motion.horizon(),
-            Form::Circular(orbit, flow) => fastest(orbit, &flow.phases),
-            Form::Hyperbolic(orbit, flow) => fastest(orbit, &flow.phases),
-        }
+        let nutation = self.orbit.map_or(0.0, |orbit| orbit.lambda.hi / PI);
+        let rates = phases.iter().map(|phase| phase.rate.hi.abs());
+        MOST_TURNS / (rates.fold(nutation, f64::max) * self.start.scale)
     }
 
     /// Rotor and body angular velocity at time `t` in s, the same bits as [`LagrangeTop::at_many`].
     pub fn at(&self, t: f64) -> (Rotor, Bivector) {
         let (rotor, omega) = match &self.form {
             Form::Steady(motion) => return motion.at(t),
-            Form::Circular(_, flow) => value(flow, t),
-            Form::Hyperbolic(_, flow) => value(flow, t),
+            Form::Circular(flow) => value(flow, t),
+            Form::Hyperbolic(flow) => value(flow, t),
         };
         (Rotor::from_unit_components(rotor), Bivector(omega))
     }
@@ -215,8 +214,8 @@ impl LagrangeTop {
     pub fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
         match &self.form {
             Form::Steady(motion) => motion.at_many(threads, times, rotors, omegas),
-            Form::Circular(_, flow) => sample(flow, threads, times, rotors, omegas),
-            Form::Hyperbolic(_, flow) => sample(flow, threads, times, rotors, omegas),
+            Form::Circular(flow) => sample(flow, threads, times, rotors, omegas),
+            Form::Hyperbolic(flow) => sample(flow, threads, times, rotors, omegas),
         }
     }
 
@@ -232,27 +231,23 @@ impl LagrangeTop {
 }
 
 /// The form with the rapidly converging series.
-fn form(axes: &Axes, start: &Start, orbit: Orbit) -> Form {
-    let (whole, rest) = orbit.start;
+fn form(axes: &Axes, start: &Start, orbit: &Orbit) -> Form {
     // AGM(1, k) = π/2K'.
     let other = mean(orbit.k2.sqrt());
-    let gammas = orbit.zeros.map(|zero| (zero.side, zero.eta * other));
-    let Some(mean) = orbit.mean else {
-        let rate = orbit.lambda / NEVER.into();
-        let phase = Phase { rate, start: [rest / NEVER, 0.0] };
-        let series = Hyperbolic::separatrix(gammas[0].1, gammas[0].0);
-        return Form::Hyperbolic(orbit, flow(axes, start, &orbit, phase, series));
-    };
-    // 1/4K.
-    let per_u = mean * DoubleDouble::OVER_TWO_PI;
-    let phase = Phase { rate: orbit.lambda * per_u, start: [0.25 * whole, rest * per_u.hi] };
-    let nome = if other > 0.0 { (-PI * mean.hi / other).exp() } else { 0.0 };
-    if nome <= LARGEST_NOME {
-        let series = Circular::new(nome, mean.hi, orbit.zeros);
-        Form::Circular(orbit, flow(axes, start, &orbit, phase, series))
-    } else {
-        let series = Hyperbolic::new(0.5 * PI * other / mean.hi, gammas);
-        Form::Hyperbolic(orbit, flow(axes, start, &orbit, phase, series))
+    let (phase, nome) = phase_and_nome(orbit.lambda, orbit.mean, orbit.start, other);
+    match (orbit.mean, nome) {
+        (Some(mean), Some(nome)) => {
+            let series = Circular::new(nome, mean.hi, orbit.zeros);
+            Form::Circular(flow(axes, start, orbit, phase, series))
+        }
+        (mean, _) => {
+            let gammas = orbit.zeros.map(|zero| (zero.side, zero.eta * other));
+            let series = match mean {
+                Some(mean) => Hyperbolic::new(0.5 * PI * other / mean.hi, gammas),
+                None => Hyperbolic::separatrix(gammas[0].1, gammas[0].0),
+            };
+            Form::Hyperbolic(flow(axes, start, orbit, phase, series))
+        }
     }
 }
 

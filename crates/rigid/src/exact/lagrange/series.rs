@@ -5,7 +5,7 @@
 //! beyond, where `q' = exp(−πK/K')` is below 0.0022.
 
 use crate::exact::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev, sign};
-use crate::numerics::lanes::{exp_minus, half_turns, horner, sin_cos_turns};
+use crate::numerics::lanes::{HalfPeriod, exp_minus, half_period, horner, sin_cos_turns};
 use std::f64::consts::PI;
 
 /// The zero of one of the three functions, at `v = i s y` or `π/2 + i s y`.
@@ -36,9 +36,8 @@ pub(super) trait Series: Copy + Sync {
 /// polynomials in cos 2v, in units of `q^¼ e^y`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Circular {
-    alpha: [[f64; 5]; 2],
-    beta: [[f64; 5]; 2],
-    across: [[f64; 5]; 2],
+    /// Of the three functions, the two brackets.
+    z: [[[f64; 5]; 2]; 3],
     denominator: [f64; 5],
 }
 
@@ -67,11 +66,9 @@ impl Circular {
         let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * sign(n) * q.powi((n * n) as i32) };
         // Subnormal coefficients are slow on many machines and negligible.
         let normal = |c: f64| if c.abs() < 1e-200 { 0.0 } else { c };
-        let both = |c: [[f64; 5]; 2]| c.map(|c| c.map(normal));
+        let z = [odd(zeros[0]), even(zeros[1]), even(zeros[2])];
         Circular {
-            alpha: both(odd(zeros[0])),
-            beta: both(even(zeros[1])),
-            across: both(even(zeros[2])),
+            z: z.map(|brackets| brackets.map(|c| c.map(normal))),
             denominator: chebyshev::<5>(std::array::from_fn(squares), FIRST).map(normal),
         }
     }
@@ -84,12 +81,10 @@ impl Series for Circular {
         for l in 0..W {
             let (sin, cos) = sin_cos_turns::<FMA>(turns[l], rest[l]);
             let x = 1.0 - 2.0 * (sin * sin);
-            z[0][0][l] = sin * horner(&self.alpha[0], x);
-            z[0][1][l] = cos * horner(&self.alpha[1], x);
-            z[1][0][l] = cos * horner(&self.beta[0], x);
-            z[1][1][l] = sin * horner(&self.beta[1], x);
-            z[2][0][l] = cos * horner(&self.across[0], x);
-            z[2][1][l] = sin * horner(&self.across[1], x);
+            for (k, [re, im]) in [[sin, cos], [cos, sin], [cos, sin]].into_iter().enumerate() {
+                z[k][0][l] = re * horner(&self.z[k][0], x);
+                z[k][1][l] = im * horner(&self.z[k][1], x);
+            }
             denominator[l] = horner(&self.denominator, x);
         }
         State { z, denominator, ahead: [[0.0; W]; 3] }
@@ -179,15 +174,9 @@ impl Series for Hyperbolic {
         let (mut z, mut denominator, mut ahead) = ([[[0.0; W]; 2]; 3], [0.0; W], [[0.0; W]; 3]);
         let tail = [-(self.nome * self.nome) * (1.0 + self.nome * self.nome), self.nome.powi(6)];
         for l in 0..W {
-            // Half periods, v/π in [−½, ½] and a rest.
-            let turn = turns[l];
-            let whole = half_turns(turn);
-            let part = 2.0 * turn - whole;
-            let odd = 1.0 - 2.0 * f64::abs(whole);
-            let side = 1f64.copysign(part);
-            let more = 2.0 * side * rest[l];
-            let near = (2.0 * self.border * (part.abs() + more).max(0.0)).min(MOST);
-            let far = (4.0 * self.border * ((0.5 - part.abs()) - more).max(0.0)).min(MOST);
+            let HalfPeriod { odd, side, part, from_middle, to_border } = half_period(turns[l], rest[l]);
+            let near = (2.0 * self.border * from_middle).min(MOST);
+            let far = (4.0 * self.border * to_border).min(MOST);
             let (root, root_less) = exp_minus(near);
             let (g, g_less) = (root * root, root_less * (1.0 + root));
             let (f, f_less) = exp_minus(far);

@@ -7,7 +7,6 @@ pub(crate) mod side_by_side;
 
 pub(crate) use side_by_side::Formulas;
 
-use super::torque::Axes;
 use crate::error::TorqueError;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
@@ -23,6 +22,15 @@ use std::fmt;
 use std::sync::Arc;
 
 const VECTOR: Grades = Grades(0b0010);
+
+/// The axes of the components of a torque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of the body.
+    Body,
+    /// Those of space.
+    Space,
+}
 
 /// The meaning of the value of a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,8 +84,13 @@ struct Compiled {
     result: usize,
 }
 
+/// The names that the motion defines in the formula of a torque.
+pub(crate) fn given_names() -> impl Iterator<Item = &'static str> {
+    given(Purpose::Torque(Axes::Body)).into_iter().map(|(name, _)| name)
+}
+
 /// The names that the motion defines. `Ω` is the angular velocity in the axes of the torque.
-pub(crate) fn given(purpose: Purpose) -> Vec<(&'static str, Motion)> {
+fn given(purpose: Purpose) -> Vec<(&'static str, Motion)> {
     let mut names = vec![
         ("R", Motion::Rotor),
         ("t", Motion::Time),
@@ -262,7 +275,7 @@ impl Formula {
     }
 
     /// The names that the motion does not define, with their values.
-    pub(crate) fn known(&self) -> impl Iterator<Item = (&str, Given)> {
+    pub fn known(&self) -> impl Iterator<Item = (&str, Given)> {
         self.compiled.program.inputs.iter().zip(&*self.sources).filter_map(|(input, source)| match source {
             Source::Known(given) => Some((input.name.as_str(), *given)),
             Source::Motion(_) => None,
@@ -271,6 +284,11 @@ impl Formula {
 
     pub(crate) fn purpose(&self) -> Purpose {
         self.compiled.purpose
+    }
+
+    /// The axes of the value of a torque.
+    pub fn axes(&self) -> Axes {
+        if self.purpose() == Purpose::Torque(Axes::Space) { Axes::Space } else { Axes::Body }
     }
 
     /// The rotor from the axes of the motion to those of the body.

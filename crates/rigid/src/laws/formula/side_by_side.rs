@@ -1,9 +1,8 @@
 //! Torque formulas for bodies in lanes: one program with values for each body.
 
-use super::{Compiled, Formula, Motion, Purpose, Source, inertia};
+use super::{Axes, Compiled, Formula, Motion, Purpose, Source, inertia};
 use crate::laws::forcing::Place;
-use crate::laws::torque::Axes;
-use crate::laws::torque::lanes::{Three, reversed, seen, turned};
+use crate::laws::torque::lanes::{Three, in_lanes, reversed, seen, turned};
 use crate::state::phase::Gyrostat;
 use polhode_ga::Rotor;
 use polhode_ga::formula::{Beside, Given};
@@ -60,23 +59,14 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
             Source::Motion(Motion::Inertia) | Source::Known(_) => None,
             Source::Motion(motion) => Some((input, *motion)),
         };
-        let (mut frame, mut moments, mut wheel) = ([Lanes::ZERO; 4], [Lanes::ZERO; 3], [Lanes::ZERO; 3]);
-        for l in 0..W {
-            let components = each[l].frame.components();
-            for k in 0..4 {
-                frame[k].0[l] = components[k];
-            }
-            for k in 0..3 {
-                (moments[k].0[l], wheel[k].0[l]) = (bodies[l].moments[k], bodies[l].wheel.0[k]);
-            }
-        }
+        let frame = || in_lanes(|l| each[l].frame.components());
         Some(Formulas {
             program,
             motions: sources.iter().enumerate().filter_map(motion).collect(),
-            frame: each.iter().any(|formula| formula.frame != Rotor::IDENTITY).then_some(frame),
+            frame: each.iter().any(|formula| formula.frame != Rotor::IDENTITY).then(frame),
             in_space: *purpose == Purpose::Torque(Axes::Space),
-            moments,
-            wheel,
+            moments: in_lanes(|l| bodies[l].moments),
+            wheel: in_lanes(|l| bodies[l].wheel.0),
         })
     }
 

@@ -3,7 +3,7 @@
 use super::{Entry, Kernel, Shape, TORQUES};
 use crate::error::TorqueError;
 use crate::laws::formula::{Formula, Purpose};
-use crate::laws::torque::{Axes, FormulaLaw, FormulaTorque, Torque};
+use crate::laws::torque::{Axes, FormulaLaw, Torque};
 use polhode_ga::formula::{Error, Given, Input, Meaning, Names, Type};
 use polhode_ga::product::Grades;
 use polhode_ga::{Graded, Vector};
@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 
 /// The formulas of an entry, with all arguments 0.
 struct Compiled {
-    torque: FormulaTorque,
+    torque: Formula,
     potential: Option<Formula>,
     size: Formula,
 }
@@ -28,9 +28,10 @@ fn compiled(entry: &Entry<Torque>) -> Option<Result<Compiled, TorqueError>> {
     }
     let compile = || {
         let value = |input: &Input| given(entry, &zeros, input);
-        let scalar = |text| Formula::new(text, Purpose::Event, names.clone(), value);
+        let formula = |text, purpose| Formula::new(text, purpose, names.clone(), value);
+        let scalar = |text| formula(text, Purpose::Event);
         Ok(Compiled {
-            torque: FormulaTorque::new(entry.formula, Axes::Body, names.clone(), value)?,
+            torque: formula(entry.formula, Purpose::Torque(Axes::Body))?,
             potential: if potential.is_empty() { None } else { Some(scalar(potential)?) },
             size: scalar(size)?,
         })

@@ -8,6 +8,19 @@ use polhode_ga::simd::lanes::{Lanes, composed, cross, dot};
 /// Three numbers for each body: a vector, a bivector, or a diagonal.
 pub(crate) type Three<const W: usize, const F: bool> = [Lanes<W, F>; 3];
 
+/// The numbers of each body, in lanes.
+pub(crate) fn in_lanes<const N: usize, const W: usize, const F: bool>(
+    each: impl Fn(usize) -> [f64; N],
+) -> [Lanes<W, F>; N] {
+    let mut lanes = [Lanes::ZERO; N];
+    for l in 0..W {
+        for (lane, x) in lanes.iter_mut().zip(each(l)) {
+            lane.0[l] = x;
+        }
+    }
+    lanes
+}
+
 /// `~R v R`: a vector or bivector of space in body axes. With the axial vector q of the rotor's plane
 /// `v + 2s q x v + 2 q x (q x v)`.
 #[inline(always)]

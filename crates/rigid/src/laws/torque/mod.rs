@@ -1,27 +1,23 @@
 //! Torque laws; torques add up. A torque is a bivector; its components are those of the axial vector.
 
-mod formula;
-mod function;
 mod gains;
 pub(crate) mod lanes;
 mod orbit;
-mod registered;
 mod table;
 
-use crate::error::TorqueError;
-pub use formula::{FormulaTorque, given_names};
-pub use function::FunctionTorque;
-pub use gains::Gains;
-pub use orbit::Orbit;
-pub use registered::FormulaLaw;
-pub use table::{Kind, Table};
-
-use crate::error::SimulateError;
+pub use super::formula::Axes;
+use super::formula::{Formula, Motion};
+use crate::error::{SimulateError, TorqueError};
+use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
+use crate::state::point::{Function, Point};
+pub use gains::Gains;
 use lanes::{gradient, quadratic, seen};
+pub use orbit::Orbit;
 use polhode_ga::simd::lanes::One;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::sync::Arc;
+pub use table::{Kind, Table};
 
 pub(crate) const E3: Vector = Vector([0.0, 0.0, 1.0]);
 
@@ -77,21 +73,27 @@ pub enum Torque {
     Larmor(Vector),
     /// Interpolated between the rows of a table.
     Tabulated(Arc<Table>),
-    /// A formula.
-    Formula(FormulaTorque),
+    /// A formula of [`super::formula::Purpose::Torque`].
+    Formula(Formula),
     /// A law of the registry that is computed by its formula.
     Registered(Box<FormulaLaw>),
-    /// A function of the caller.
-    Function(FunctionTorque),
+    /// A function of the caller: the torque in body axes.
+    Function(Function<Bivector>),
 }
 
-/// The axes of the components of a torque.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axes {
-    /// Those of the body.
-    Body,
-    /// Those of space.
-    Space,
+/// A law of the registry with the formulas of its torque and potential.
+#[derive(Clone, Debug)]
+pub struct FormulaLaw {
+    pub(crate) name: &'static str,
+    /// The numbers of its arguments, in the axes in which they were given.
+    pub(crate) numbers: Vec<f64>,
+    pub(crate) torque: Formula,
+    /// The potential energy in J.
+    pub(crate) potential: Option<Formula>,
+    /// The largest torque in N m, and the largest size of the potential in J.
+    pub(crate) size: f64,
+    /// The axis of space about which there is no torque.
+    pub(crate) axis: Option<Vector>,
 }
 
 /// Dependence of a torque on the state.
@@ -126,7 +128,11 @@ impl Torque {
                 Axes::Space => Torque::Tabulated(table),
             },
             Torque::Formula(law) => Torque::Formula(law.in_axes(frame)),
-            Torque::Registered(law) => Torque::Registered(law.in_axes(frame).into()),
+            Torque::Registered(law) => {
+                let potential = law.potential.map(|potential| potential.in_axes(frame));
+                let torque = law.torque.in_axes(frame);
+                Torque::Registered(Box::new(FormulaLaw { torque, potential, ..*law }))
+            }
             Torque::Function(law) => Torque::Function(law.in_axes(frame)),
             same @ (Torque::GravityGradient(_)
             | Torque::ConstantSpace(_)
@@ -154,18 +160,31 @@ impl Torque {
             | Torque::Control { .. }
             | Torque::Larmor(_)
             | Torque::Function(_) => Dependence::Rate,
-            Torque::Formula(law) => law.dependence(),
-            Torque::Registered(law) => law.torque.dependence(),
+            Torque::Formula(_) | Torque::Registered(_) => match self.needs(Motion::is_rate) {
+                true => Dependence::Rate,
+                false => Dependence::Attitude,
+            },
         }
+    }
+
+    /// The formula of a law that is computed by one.
+    pub(crate) fn formula(&self) -> Option<&Formula> {
+        match self {
+            Torque::Formula(formula) => Some(formula),
+            Torque::Registered(law) => Some(&law.torque),
+            _ => None,
+        }
+    }
+
+    fn needs(&self, what: impl Fn(Motion) -> bool) -> bool {
+        self.formula().is_some_and(|formula| formula.needs(what))
     }
 
     /// Whether the torque does not depend on time explicitly.
     pub fn is_autonomous(&self) -> bool {
         match self {
             Torque::GravityGradient(_) | Torque::Tabulated(_) | Torque::Function(_) => false,
-            Torque::Formula(law) => !law.needs_time(),
-            Torque::Registered(law) => !law.torque.needs_time(),
-            _ => true,
+            _ => !self.needs(|motion| motion == Motion::Time),
         }
     }
 
@@ -175,6 +194,7 @@ impl Torque {
         let rotor = state.rotor;
         let r = One::each(rotor.components());
         let from_space = |b: Bivector| Bivector(One::alone(seen(&r, &One::each(b.0))));
+        let at = Point { body, mass: f64::NAN, phase: state, center: &Center::default() };
         Ok(match self {
             Torque::Heavy(c) => state.vertical().wedge(*c),
             Torque::GravityGradient(orbit) => {
@@ -205,9 +225,28 @@ impl Torque {
                     Axes::Space => from_space(torque),
                 }
             }
-            Torque::Formula(law) => law.value(body, state)?,
-            Torque::Registered(law) => law.torque.value(body, state)?,
-            Torque::Function(law) => law.value(body, state)?,
+            Torque::Formula(_) | Torque::Registered(_) => {
+                let Some(formula) = self.formula() else { return Ok(Bivector::default()) };
+                let torque = Bivector(formula.value(&at)?.components().try_into().unwrap_or_default());
+                match formula.frame() {
+                    _ if formula.axes() == Axes::Space => from_space(torque),
+                    Rotor::IDENTITY => torque,
+                    frame => {
+                        let frame = One::each(frame.components());
+                        Bivector(One::alone(seen(&frame, &One::each(torque.0))))
+                    }
+                }
+            }
+            Torque::Function(law) => {
+                let torque = law.value(&at)?;
+                if !torque.0.iter().all(|x| x.is_finite()) {
+                    let Bivector(torque) = torque;
+                    return Err(TorqueError(format!(
+                        "the torque that the function returned is {torque:?}; it must be finite"
+                    )));
+                }
+                law.frame().reverse().apply_bivector(torque)
+            }
         })
     }
 
@@ -255,7 +294,10 @@ impl Torque {
                 Some(0.5 * stiffness * turn_from(*rest, state.rotor).norm_squared())
             }
             Torque::Wheel(_) => Some(0.0),
-            Torque::Registered(law) => law.potential(body, state),
+            Torque::Registered(law) => {
+                let at = Point { body, mass: f64::NAN, phase: state, center: &Center::default() };
+                law.potential.as_ref()?.value(&at).ok()?.components().first().copied()
+            }
             _ => None,
         }
     }
@@ -301,6 +343,11 @@ pub(crate) fn total_torque(
         total += law.value(body, state).map_err(failed)?;
     }
     Ok(total)
+}
+
+/// The g of all dampings together, in 1/s.
+pub(crate) fn damping_rate(torques: &[Torque]) -> f64 {
+    torques.iter().map(Torque::damping_rate).sum()
 }
 
 /// The momentum of all wheels together.

@@ -16,34 +16,35 @@
 //! Where forces act, the centre of mass is stepped too: `x' = v`, `v' = F/m`. Bodies are stepped in lanes, each by its
 //! own step; a single body is one lane.
 
+mod dop853;
 mod exponential;
 mod points;
-mod tableau;
 
 use super::classical::{Bodies, renormalize};
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
 use crate::laws::forcing::{BodyForcing, Forcing, Place};
-use crate::laws::torque::Torque;
+use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
+pub(crate) use dop853::STAGES;
+use dop853::{FIFTH, NODES, ROWS, THIRD, WEIGHTS};
 use exponential::exponential;
 pub(crate) use points::Points;
 use polhode_ga::simd::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
-pub use tableau::{DOP853, Tableau};
 
 /// Largest angle of one step in rad; the exponential's differential has a pole at 2π.
 const LARGEST_TURN: f64 = 3.0;
 
 /// σ and the change of L, six numbers; twelve with the changes of position and velocity.
-type Change<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
+#[derive(Clone, Copy)]
+struct Change<const N: usize, const W: usize, const F: bool>([Lanes<W, F>; N]);
 
 /// One step of lengths `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
 /// angular velocity relative to `fastest` (rad/s), whichever is larger; with N = 12 also the relative errors of velocity
 /// and position. NaN if the step is too long for an estimate.
 #[inline(always)]
 pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
-    tableau: &Tableau,
     bodies: &Bodies<W, F>,
     forcing: &mut E,
     from: &Points<W, F>,
@@ -51,35 +52,34 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     fastest: Lanes<W, F>,
 ) -> (Points<W, F>, Lanes<W, F>) {
     let nothing = Lanes::all(f64::NAN);
-    let mut slopes = [[Lanes::ZERO; N]; 12];
+    let mut slopes = [Change([Lanes::ZERO; N]); STAGES];
     let mut widest = Lanes::ZERO;
-    for stage in 0..tableau.rows.len() {
-        let change = combined(tableau.rows[stage], &slopes, h);
-        let turned = part(&change, 0);
+    for stage in 0..STAGES {
+        let change = Change::combined(ROWS[stage], &slopes, h);
+        let turned = change.part(0);
         let square = dot(&turned, &turned);
         widest = square.max(widest);
         if !any_within(&square) {
             return (*from, nothing);
         }
-        let dt = Lanes::all(tableau.nodes[stage]) * h;
-        slopes[stage] = slope(bodies, forcing, from, &change, square, dt);
+        let dt = Lanes::all(NODES[stage]) * h;
+        slopes[stage] = change.slope(bodies, forcing, from, square, dt);
     }
-    let change = combined(tableau.weights, &slopes, h);
-    let mut to = moved(from, &change, h);
+    let change = Change::combined(WEIGHTS, &slopes, h);
+    let mut to = change.moved(from, h);
     for k in 0..3 {
         // Kahan's sum (1965), since a steady torque would be rounded alike in every step.
-        let kick = change[3 + k] + from.lost[k];
+        let kick = change.0[3 + k] + from.lost[k];
         to.momentum[k] = from.momentum[k] + kick;
         to.lost[k] = kick - (to.momentum[k] - from.momentum[k]);
     }
-    let turned = part(&change, 0);
+    let turned = change.part(0);
     let square = dot(&turned, &turned);
     widest = square.max(widest);
     to.rotor = composed(&exponential(&turned, square).0, &from.rotor);
     renormalize(&mut to.rotor);
-    let back = matrix(&from.rotor);
-    let fifth = size(bodies, from, &back, &combined(tableau.fifth, &slopes, h), h, fastest);
-    let third = size(bodies, from, &back, &combined(tableau.third, &slopes, h), h, fastest);
+    let fifth = Change::combined(FIFTH, &slopes, h).size(bodies, from, h, fastest);
+    let third = Change::combined(THIRD, &slopes, h).size(bodies, from, h, fastest);
     // Weighted as in Hairer's code: of order 8 where both are small.
     let square = fifth * fifth;
     let weighed = (third * third).times_plus(Lanes::all(0.01), square).sqrt();
@@ -105,74 +105,113 @@ fn any_within<const W: usize, const F: bool>(square: &Lanes<W, F>) -> bool {
     any
 }
 
-/// σ' and L' at `from` changed by σ and ΔL.
-#[inline(always)]
-fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
-    bodies: &Bodies<W, F>,
-    forcing: &mut E,
-    from: &Points<W, F>,
-    change: &Change<N, W, F>,
-    square: Lanes<W, F>,
-    dt: Lanes<W, F>,
-) -> Change<N, W, F> {
-    let turned = part(change, 0);
-    let (turn, cotangent) = exponential(&turned, square);
-    let rotor = composed(&turn, &from.rotor);
-    let at = moved(from, change, dt);
-    let axes = matrix(&rotor);
-    let momentum = mapped_back(&axes, &at.momentum);
-    let omega = bodies.omega(&momentum);
-    let place = Place { rotor, omega, time: at.time };
-    let omega = mapped(&axes, &omega);
-    let first = cross(&turned, &omega);
-    let second = cross(&turned, &first);
-    let mut slope = [Lanes::ZERO; N];
-    for k in 0..3 {
-        let straight = first[k].times_plus(Lanes::all(-0.5), omega[k]);
-        slope[k] = cotangent.times_plus(second[k], straight);
-    }
-    if E::ACTS {
-        let mut torque = forcing.torque(&place);
-        for k in 0..3 {
-            let carried = momentum[k] - bodies.wheel[k];
-            torque[k] = bodies.damping.times_from(carried, torque[k]);
+impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
+    /// `h Σ a_j k_j`.
+    #[inline(always)]
+    fn combined(row: &[(usize, f64)], slopes: &[Self; STAGES], h: Lanes<W, F>) -> Self {
+        let mut sum = [Lanes::ZERO; N];
+        for &(stage, a) in row {
+            let (slope, a) = (&slopes[stage].0, Lanes::all(a));
+            for k in 0..N {
+                sum[k] = slope[k].times_plus(a, sum[k]);
+            }
         }
-        slope[3..6].copy_from_slice(&mapped(&axes, &torque));
+        for k in 0..N {
+            sum[k] = h * sum[k];
+        }
+        Change(sum)
     }
-    if N == 12 {
-        // The position relative to uniform motion from the start of the step.
-        slope[6..9].copy_from_slice(&part(change, 9));
-        slope[9..12].copy_from_slice(&forcing.acceleration(&place, &at.center));
-    }
-    slope
-}
 
-/// The size of a change: of attitude, of angular velocity relative to `fastest`, of velocity relative to the speed, of
-/// position relative to the distance or the path of the step.
-#[inline(always)]
-fn size<const N: usize, const W: usize, const F: bool>(
-    bodies: &Bodies<W, F>,
-    at: &Points<W, F>,
-    axes: &[[Lanes<W, F>; 3]; 3],
-    change: &Change<N, W, F>,
-    h: Lanes<W, F>,
-    fastest: Lanes<W, F>,
-) -> Lanes<W, F> {
-    let mut omega = mapped_back(axes, &part(change, 3));
-    for k in 0..3 {
-        omega[k] = omega[k] * bodies.inverse[k];
+    /// Three components from an index on.
+    #[inline(always)]
+    fn part(&self, from: usize) -> [Lanes<W, F>; 3] {
+        [self.0[from], self.0[from + 1], self.0[from + 2]]
     }
-    let relative = relative(norm(&omega), fastest);
-    let rotation = larger(Lanes::all(0.5) * norm(&part(change, 0)), relative);
-    if N < 12 {
-        return rotation;
+
+    /// All but the rotor a time dt after `from`.
+    #[inline(always)]
+    fn moved(&self, from: &Points<W, F>, dt: Lanes<W, F>) -> Points<W, F> {
+        let mut to = *from;
+        to.time = from.time + dt;
+        for k in 0..3 {
+            to.momentum[k] = from.momentum[k] + self.0[3 + k];
+        }
+        if N == 12 {
+            for k in 0..3 {
+                to.center[k] = from.center[k] + from.center[3 + k].times_plus(dt, self.0[6 + k]);
+                to.center[3 + k] = from.center[3 + k] + self.0[9 + k];
+            }
+        }
+        to
     }
-    let [x, y, z, u, v, w] = at.center;
-    let (speed, distance) = (norm(&[u, v, w]), norm(&[x, y, z]));
-    let way = distance.max(speed * h.abs());
-    let place = super::runge_kutta::relative(norm(&part(change, 6)), way);
-    let velocity = super::runge_kutta::relative(norm(&part(change, 9)), speed.max(way / h.abs()));
-    larger(rotation, larger(place, velocity))
+
+    /// σ' and L' at `from` changed by σ, whose square is given, and ΔL.
+    #[inline(always)]
+    fn slope<E: Forcing<W, F>>(
+        &self,
+        bodies: &Bodies<W, F>,
+        forcing: &mut E,
+        from: &Points<W, F>,
+        square: Lanes<W, F>,
+        dt: Lanes<W, F>,
+    ) -> Self {
+        let turned = self.part(0);
+        let (turn, cotangent) = exponential(&turned, square);
+        let rotor = composed(&turn, &from.rotor);
+        let at = self.moved(from, dt);
+        let axes = matrix(&rotor);
+        let momentum = mapped_back(&axes, &at.momentum);
+        let omega = bodies.omega(&momentum);
+        let place = Place { rotor, omega, time: at.time };
+        let omega = mapped(&axes, &omega);
+        let first = cross(&turned, &omega);
+        let second = cross(&turned, &first);
+        let mut slope = [Lanes::ZERO; N];
+        for k in 0..3 {
+            let straight = first[k].times_plus(Lanes::all(-0.5), omega[k]);
+            slope[k] = cotangent.times_plus(second[k], straight);
+        }
+        if E::ACTS {
+            let mut torque = forcing.torque(&place);
+            for k in 0..3 {
+                let carried = momentum[k] - bodies.wheel[k];
+                torque[k] = bodies.damping.times_from(carried, torque[k]);
+            }
+            slope[3..6].copy_from_slice(&mapped(&axes, &torque));
+        }
+        if N == 12 {
+            // The position relative to uniform motion from the start of the step.
+            slope[6..9].copy_from_slice(&self.part(9));
+            slope[9..12].copy_from_slice(&forcing.acceleration(&place, &at.center));
+        }
+        Change(slope)
+    }
+
+    /// The size: of attitude, of angular velocity relative to `fastest`, of velocity relative to the speed, of position
+    /// relative to the distance or the path of the step.
+    #[inline(always)]
+    fn size(
+        &self,
+        bodies: &Bodies<W, F>,
+        at: &Points<W, F>,
+        h: Lanes<W, F>,
+        fastest: Lanes<W, F>,
+    ) -> Lanes<W, F> {
+        let mut omega = mapped_back(&matrix(&at.rotor), &self.part(3));
+        for k in 0..3 {
+            omega[k] = omega[k] * bodies.inverse[k];
+        }
+        let rotation = larger(Lanes::all(0.5) * norm(&self.part(0)), relative(norm(&omega), fastest));
+        if N < 12 {
+            return rotation;
+        }
+        let [x, y, z, u, v, w] = at.center;
+        let (speed, distance) = (norm(&[u, v, w]), norm(&[x, y, z]));
+        let way = distance.max(speed * h.abs());
+        let place = relative(norm(&self.part(6)), way);
+        let velocity = relative(norm(&self.part(9)), speed.max(way / h.abs()));
+        larger(rotation, larger(place, velocity))
+    }
 }
 
 /// `part/whole`, 0 where `whole` is 0.
@@ -196,86 +235,25 @@ fn larger<const W: usize, const F: bool>(a: Lanes<W, F>, b: Lanes<W, F>) -> Lane
     larger
 }
 
-/// Three components from an index on.
-#[inline(always)]
-fn part<const N: usize, const W: usize, const F: bool>(
-    change: &Change<N, W, F>,
-    from: usize,
-) -> [Lanes<W, F>; 3] {
-    [change[from], change[from + 1], change[from + 2]]
-}
-
-/// All but the rotor a time dt after `from`.
-#[inline(always)]
-fn moved<const N: usize, const W: usize, const F: bool>(
-    from: &Points<W, F>,
-    change: &Change<N, W, F>,
-    dt: Lanes<W, F>,
-) -> Points<W, F> {
-    let mut to = *from;
-    to.time = from.time + dt;
-    for k in 0..3 {
-        to.momentum[k] = from.momentum[k] + change[3 + k];
-    }
-    if N == 12 {
-        for k in 0..3 {
-            to.center[k] = from.center[k] + from.center[3 + k].times_plus(dt, change[6 + k]);
-            to.center[3 + k] = from.center[3 + k] + change[9 + k];
-        }
-    }
-    to
-}
-
-/// `h Σ a_j k_j`.
-#[inline(always)]
-fn combined<const N: usize, const W: usize, const F: bool>(
-    row: &[(usize, f64)],
-    slopes: &[Change<N, W, F>; 12],
-    h: Lanes<W, F>,
-) -> Change<N, W, F> {
-    let mut sum = [Lanes::ZERO; N];
-    for &(stage, a) in row {
-        let (slope, a) = (&slopes[stage], Lanes::all(a));
-        for k in 0..N {
-            sum[k] = slope[k].times_plus(a, sum[k]);
-        }
-    }
-    for k in 0..N {
-        sum[k] = h * sum[k];
-    }
-    sum
-}
-
 #[inline(always)]
 fn norm<const W: usize, const F: bool>(a: &[Lanes<W, F>; 3]) -> Lanes<W, F> {
     dot(a, a).sqrt()
 }
 
-/// A single body and its laws, stepped by a Runge–Kutta method.
+/// A single body and its laws, stepped by the method.
 #[derive(Clone, Debug)]
 pub struct RungeKutta {
     body: Gyrostat,
     torques: Vec<Torque>,
     translation: Option<Translation>,
     alone: Bodies<1, false>,
-    tableau: &'static Tableau,
 }
 
 impl RungeKutta {
     /// Moments must be positive; torques and forces in principal axes. Without a translation the centre of mass stays.
-    pub fn new(
-        body: Gyrostat,
-        torques: Vec<Torque>,
-        translation: Option<Translation>,
-        tableau: &'static Tableau,
-    ) -> RungeKutta {
-        let damping = torques.iter().map(Torque::damping_rate).sum();
-        RungeKutta { body, torques, translation, alone: Bodies::new([(body, damping)]), tableau }
-    }
-
-    /// The method.
-    pub fn tableau(&self) -> &'static Tableau {
-        self.tableau
+    pub fn new(body: Gyrostat, torques: Vec<Torque>, translation: Option<Translation>) -> RungeKutta {
+        let alone = Bodies::new([(body, damping_rate(&torques))]);
+        RungeKutta { body, torques, translation, alone }
     }
 
     /// One step of length `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
@@ -285,10 +263,10 @@ impl RungeKutta {
         let mut at = Points::NONE;
         at.set(0, from);
         let mut acting = BodyForcing::new(&self.body, &self.torques, self.translation.as_ref());
-        let (tableau, alone, h): (_, _, One) = (self.tableau, &self.alone, Lanes([h]));
+        let (alone, h) = (&self.alone, One::each([h])[0]);
         let (to, error) = match self.translation {
-            None => step::<6, 1, false, _>(tableau, alone, &mut acting, &at, h, fastest),
-            Some(_) => step::<12, 1, false, _>(tableau, alone, &mut acting, &at, h, fastest),
+            None => step::<6, 1, false, _>(alone, &mut acting, &at, h, fastest),
+            Some(_) => step::<12, 1, false, _>(alone, &mut acting, &at, h, fastest),
         };
         acting.finish()?;
         Ok((to.get(0), error.0[0]))

@@ -19,7 +19,7 @@
 //! A wheel with the relative momentum `h` ([`Gyrostat`]) adds `−h·I⁻¹m` to the energy: a turn about the fixed body axis
 //! of `I⁻¹h`, put in the middle.
 //!
-//! Runge–Kutta–Nyström splittings ([`Nystrom`]) need the exact free motion between kicks: one turn for a symmetric body,
+//! Runge–Kutta–Nyström splittings ([`RKN6`]) need the exact free motion between kicks: one turn for a symmetric body,
 //! [`FreeMotion`] for any other.
 //!
 //! Without a torque L is constant in space. Against rounding each step rescales |m| and turns R so that `R m ~R` is L.
@@ -28,35 +28,16 @@
 mod sequences;
 pub(crate) mod turns;
 
-use super::kicks::fixed_momentum;
+use super::momentum::fixed_momentum;
 use crate::error::SimulateError;
 use crate::exact::free::FreeMotion;
 use crate::laws::forcing::BodyForcing;
-use crate::laws::torque::Torque;
+use crate::laws::torque::{Torque, damping_rate};
 use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::Bivector;
 use polhode_ga::simd::lanes::One;
-use polhode_ga::{Bivector, Rotor};
-pub use sequences::{COMPOSITIONS, Composition, Nystrom, RKN6};
+pub use sequences::{COMPOSITIONS, RKN6, Sequence};
 use turns::{Spin, Turns};
-
-/// The sequence of kicks and free motions.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sequence {
-    /// Second-order steps, composed.
-    Composition(&'static Composition),
-    /// Kicks between exact free motions.
-    Nystrom(&'static Nystrom),
-}
-
-impl Sequence {
-    /// Kicks and drifts in turn, as fractions of a step, and the kick after the last.
-    pub(crate) fn stages(self) -> (Vec<(f64, f64)>, f64) {
-        match self {
-            Sequence::Composition(composition) => composition.kicks_and_drifts(),
-            Sequence::Nystrom(nystrom) => (nystrom.stages().collect(), nystrom.last()),
-        }
-    }
-}
 
 /// A body in its principal axes and its torques, stepped by a splitting.
 #[derive(Clone, Debug)]
@@ -71,30 +52,19 @@ pub struct Splitting {
 
 impl Splitting {
     /// Moments must be positive; torques in principal axes, each dependent on attitude and time at most.
-    pub fn new(body: Gyrostat, torques: Vec<Torque>, sequence: Sequence, start: &Phase) -> Splitting {
-        let damping = torques.iter().map(Torque::damping_rate).sum();
-        let exact = matches!(sequence, Sequence::Nystrom(_));
+    pub fn new(body: Gyrostat, torques: Vec<Torque>, sequence: &Sequence, start: &Phase) -> Splitting {
         let fixed = fixed_momentum(&torques, start).map(|momentum| momentum.0);
-        let turns = Turns::new([(body, damping, fixed)]);
-        let exact_drift = exact && !turns.kind().is_symmetric();
+        let turns = Turns::new([(body, damping_rate(&torques), fixed)]);
+        let exact_drift = sequence.is_nystrom() && !turns.kind().is_symmetric();
         Splitting { body, torques, stages: sequence.stages(), exact_drift, turns }
     }
 
-    /// One step of length `h`, which may be negative.
-    pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
-        self.carry(state, &mut Bivector::default(), h)
-    }
-
-    /// The same step with the accumulated rounding of the kicks.
-    pub(crate) fn carry(&self, state: &mut Phase, lost: &mut Bivector, h: f64) -> Result<(), SimulateError> {
+    /// One step of length `h`, which may be negative, with the accumulated rounding of the kicks.
+    pub fn step(&self, state: &mut Phase, lost: &mut Bivector, h: f64) -> Result<(), SimulateError> {
         let mut acting = BodyForcing::new(&self.body, &self.torques, None);
-        let mut spin = Spin {
-            rotor: One::each(state.rotor.components()),
-            momentum: One::each(state.momentum.0),
-            lost: One::each(lost.0),
-        };
+        let mut spin = Spin::alone(state, *lost);
+        let (stages, last) = &self.stages;
         if self.exact_drift {
-            let (stages, last) = &self.stages;
             let mut time = state.time;
             for &(kick, drift) in stages {
                 self.turns.kick(&mut acting, &mut spin, time, kick * h);
@@ -104,12 +74,11 @@ impl Splitting {
             self.turns.kick(&mut acting, &mut spin, time, last * h);
             self.turns.finish(&mut spin);
         } else {
-            self.turns.step((&self.stages.0, self.stages.1), &mut acting, &mut spin, state.time, h);
+            self.turns.step((stages, *last), &mut acting, &mut spin, state.time, h);
         }
         acting.finish()?;
         state.time += h;
-        state.rotor = Rotor::from_unit_components(One::alone(spin.rotor));
-        state.momentum = Bivector(One::alone(spin.momentum));
+        (state.rotor, state.momentum) = (spin.one_rotor(), spin.one_momentum());
         *lost = Bivector(One::alone(spin.lost));
         Ok(())
     }
@@ -127,9 +96,9 @@ impl Splitting {
 
     /// The exact free motion.
     fn drift(&self, spin: &mut Spin<1, false>, h: f64) {
-        let omega = self.body.omega(Bivector(One::alone(spin.momentum)));
-        let rotor = Rotor::from_unit_components(One::alone(spin.rotor));
-        let (rotor, omega) = FreeMotion::in_principal_axes(self.body.moments, rotor, omega).at(h);
+        let omega = self.body.omega(spin.one_momentum());
+        let motion = FreeMotion::in_principal_axes(self.body.moments, spin.one_rotor(), omega);
+        let (rotor, omega) = motion.at(h);
         spin.rotor = One::each(rotor.components());
         spin.momentum = One::each(self.body.momentum(omega).0);
     }

@@ -1,62 +1,56 @@
 //! Coefficients of symmetric splittings.
 
-/// A symmetric composition `S(γ_1 h) … S(γ_s h)` of the second-order step.
+/// The sequence of kicks and free motions of a symmetric splitting.
 #[derive(Debug, PartialEq)]
-pub struct Composition {
+pub struct Sequence {
     /// Its name.
     pub name: &'static str,
     /// Its order of convergence.
     pub order: i32,
-    /// γ_1 … up to the middle one; the others mirror them.
-    half: &'static [f64],
+    coefficients: Coefficients,
 }
 
-/// Kicks `b_i` and exact free drifts `a_i` in turn, kicks first and last, both symmetric: of its order because the
-/// kinetic energy is quadratic in the momentum, so that the commutator `[V, [V, [V, T]]]` is zero (Runge, Kutta, Nyström).
 #[derive(Debug, PartialEq)]
-pub struct Nystrom {
-    /// Its name.
-    pub name: &'static str,
-    /// Its order of convergence.
-    pub order: i32,
-    /// b_1 … up to the last before the middle is passed.
-    kicks: &'static [f64],
-    /// a_1 … likewise.
-    drifts: &'static [f64],
+enum Coefficients {
+    /// A composition `S(γ_1 h) … S(γ_s h)` of the second-order step: γ_1 … up to the middle one; the others mirror them.
+    Composition(&'static [f64]),
+    /// Kicks `b_i` and exact free drifts `a_i` in turn, kicks first and last: b_1 … and a_1 … up to the last before the
+    /// middle is passed. Of its order because the kinetic energy is quadratic in the momentum, so that the commutator
+    /// `[V, [V, [V, T]]]` is zero (Runge, Kutta, Nyström).
+    Nystrom { kicks: &'static [f64], drifts: &'static [f64] },
+}
+
+const fn composition(name: &'static str, order: i32, half: &'static [f64]) -> Sequence {
+    Sequence { name, order, coefficients: Coefficients::Composition(half) }
 }
 
 /// Every composition, in ascending order.
 ///
 /// Coefficients: H. Yoshida, Phys. Lett. A 150 (1990) 262 (of order 6 his solution A); W. Kahan & R.-C. Li, Math.
 /// Comp. 66 (1997) 1089, as printed in Hairer, Lubich & Wanner, *Geometric Numerical Integration*, V.3.
-pub static COMPOSITIONS: [Composition; 5] = [
-    Composition { name: "strang", order: 2, half: &[1.0] },
-    Composition { name: "yoshida4", order: 4, half: &[1.351_207_191_959_657_6, -1.702_414_383_919_315_3] },
-    Composition {
-        name: "yoshida6",
-        order: 6,
-        half: &[
-            0.784_513_610_477_557_3,
-            0.235_573_213_359_358_13,
-            -1.177_679_984_178_871,
-            1.315_186_320_683_911_2,
-        ],
-    },
-    Composition {
-        name: "kahan_li6",
-        order: 6,
-        half: &[
+pub static COMPOSITIONS: [Sequence; 5] = [
+    composition("strang", 2, &[1.0]),
+    composition("yoshida4", 4, &[1.351_207_191_959_657_6, -1.702_414_383_919_315_3]),
+    composition(
+        "yoshida6",
+        6,
+        &[0.784_513_610_477_557_3, 0.235_573_213_359_358_13, -1.177_679_984_178_871, 1.315_186_320_683_911_2],
+    ),
+    composition(
+        "kahan_li6",
+        6,
+        &[
             0.392_161_444_007_314_1,
             0.332_599_136_789_359_44,
             -0.706_246_172_557_639_4,
             0.082_213_596_293_550_8,
             0.798_543_990_934_829_9,
         ],
-    },
-    Composition {
-        name: "kahan_li8",
-        order: 8,
-        half: &[
+    ),
+    composition(
+        "kahan_li8",
+        8,
+        &[
             0.130_202_483_088_890_08,
             0.561_162_981_775_108_4,
             -0.389_474_962_644_847_3,
@@ -67,89 +61,61 @@ pub static COMPOSITIONS: [Composition; 5] = [
             0.295_011_723_609_310_3,
             -0.605_508_533_830_034_5,
         ],
-    },
+    ),
 ];
 
 /// S. Blanes & P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, SRKN with 11 stages: their 15 digits, moved by less than
 /// 1e-15 to the nearest solution of the order conditions.
-pub static RKN6: Nystrom = Nystrom {
+pub static RKN6: Sequence = Sequence {
     name: "rkn6",
     order: 6,
-    kicks: &[
-        0.041_464_998_518_262_84,
-        0.198_128_671_918_066_55,
-        -0.040_006_192_104_152_69,
-        0.075_253_984_301_580_34,
-        -0.011_511_387_420_687_77,
-    ],
-    drifts: &[
-        0.123_229_775_946_271_14,
-        0.290_553_797_799_558_26,
-        -0.127_049_212_625_416_9,
-        -0.246_331_761_062_075_4,
-        0.357_208_872_795_927_7,
-    ],
+    coefficients: Coefficients::Nystrom {
+        kicks: &[
+            0.041_464_998_518_262_84,
+            0.198_128_671_918_066_55,
+            -0.040_006_192_104_152_69,
+            0.075_253_984_301_580_34,
+            -0.011_511_387_420_687_77,
+        ],
+        drifts: &[
+            0.123_229_775_946_271_14,
+            0.290_553_797_799_558_26,
+            -0.127_049_212_625_416_9,
+            -0.246_331_761_062_075_4,
+            0.357_208_872_795_927_7,
+        ],
+    },
 };
 
-impl Composition {
-    /// γ_1 … γ_s.
-    pub fn stages(&self) -> impl Iterator<Item = f64> + '_ {
-        let mirrored = self.half.iter().rev().skip(1);
-        self.half.iter().chain(mirrored).copied()
+impl Sequence {
+    /// Whether its free motions are exact.
+    pub(crate) fn is_nystrom(&self) -> bool {
+        matches!(self.coefficients, Coefficients::Nystrom { .. })
     }
 
-    /// Kicks and drifts in turn, with adjacent half kicks merged, and the last kick.
-    pub fn kicks_and_drifts(&self) -> (Vec<(f64, f64)>, f64) {
-        let mut half = 0.0;
-        let stage = |gamma: f64| (std::mem::replace(&mut half, 0.5 * gamma) + 0.5 * gamma, gamma);
-        let stages = self.stages().map(stage).collect();
-        (stages, half)
-    }
-}
-
-impl Nystrom {
-    /// b_1, a_1, b_2, a_2 … a_s, followed by a kick by b_1. The middle coefficients complete the sums to 1.
-    pub fn stages(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let n = self.kicks.len();
-        let (kick, drift) =
-            (0.5 - self.kicks.iter().sum::<f64>(), 1.0 - 2.0 * self.drifts.iter().sum::<f64>());
-        let kick = move |i: usize| if i == n { kick } else { self.kicks[i] };
-        let drift = move |i: usize| if i == n { drift } else { self.drifts[i] };
-        (0..2 * n + 1).map(move |i| (kick(i.min(2 * n + 1 - i)), drift(i.min(2 * n - i))))
-    }
-
-    /// b_1.
-    pub fn last(&self) -> f64 {
-        self.kicks[0]
+    /// Kicks and drifts in turn, as fractions of a step, and the kick after the last.
+    pub(crate) fn stages(&self) -> (Vec<(f64, f64)>, f64) {
+        match self.coefficients {
+            Coefficients::Composition(half) => {
+                // Adjacent half kicks are merged.
+                let mut kick = 0.0;
+                let stage = |gamma: &f64| (std::mem::replace(&mut kick, 0.5 * gamma) + 0.5 * gamma, *gamma);
+                (half.iter().chain(half.iter().rev().skip(1)).map(stage).collect(), kick)
+            }
+            Coefficients::Nystrom { kicks, drifts } => {
+                // The middle coefficients complete the sums to 1.
+                let kick = 0.5 - kicks.iter().sum::<f64>();
+                let drift = 1.0 - 2.0 * drifts.iter().sum::<f64>();
+                let last = 2 * kicks.len();
+                let stage = |i: usize| {
+                    let kick = kicks.get(i.min(last + 1 - i)).unwrap_or(&kick);
+                    (*kick, *drifts.get(i.min(last - i)).unwrap_or(&drift))
+                };
+                ((0..=last).map(stage).collect(), kicks[0])
+            }
+        }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn compositions_are_consistent() {
-        for method in &COMPOSITIONS {
-            let sum: f64 = method.stages().sum();
-            assert!((sum - 1.0).abs() < 4e-16, "{} {sum}", method.name);
-            // Order > 2 needs Σγ³ = 0, order > 4 Σγ⁵ = 0.
-            let power = |k: i32| method.stages().map(|g| g.powi(k)).sum::<f64>();
-            assert!(method.order == 2 || power(3).abs() < 4e-15, "{} {}", method.name, power(3));
-            assert!(method.order < 6 || power(5).abs() < 4e-14, "{} {}", method.name, power(5));
-        }
-    }
-
-    #[test]
-    fn kicks_and_drifts_sum_to_one() {
-        let stages: Vec<(f64, f64)> = RKN6.stages().collect();
-        assert_eq!(stages.len(), 11);
-        let kicks: f64 = stages.iter().map(|s| s.0).sum::<f64>() + RKN6.last();
-        let drifts: f64 = stages.iter().map(|s| s.1).sum();
-        assert!((kicks - 1.0).abs() < 1e-15 && (drifts - 1.0).abs() < 1e-15, "{kicks} {drifts}");
-        for i in 0..11 {
-            assert_eq!(stages[i].1, stages[10 - i].1);
-            assert_eq!(if i == 0 { RKN6.last() } else { stages[11 - i].0 }, stages[i].0);
-        }
-    }
-}
+mod tests;

@@ -1,10 +1,11 @@
 //! Rotations and kicks of a splitting, for bodies in lanes; a single body is one lane.
 
 use crate::laws::forcing::{Forcing, Place};
-use crate::methods::classical::renormalize;
+use crate::methods::classical::{Bodies, renormalize};
 use crate::numerics::sinc::cosine_and_sinc;
-use crate::state::phase::Gyrostat;
-use polhode_ga::simd::lanes::{Lanes, composed, cross, dot, mapped, mapped_back, matrix};
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::simd::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
+use polhode_ga::{Bivector, Rotor};
 
 /// Rotors and momenta in principal axes.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,22 @@ pub(crate) struct Spin<const W: usize, const F: bool> {
     /// Accumulated rounding of the kicks, added to the next one (Kahan 1965). Otherwise a steady torque would be rounded
     /// alike in every step, and the error would grow as the number of steps instead of its root.
     pub lost: [Lanes<W, F>; 3],
+}
+
+impl Spin<1, false> {
+    /// Of a single body.
+    pub fn alone(state: &Phase, lost: Bivector) -> Spin<1, false> {
+        let rotor = One::each(state.rotor.components());
+        Spin { rotor, momentum: One::each(state.momentum.0), lost: One::each(lost.0) }
+    }
+
+    pub fn one_rotor(&self) -> Rotor {
+        Rotor::from_unit_components(One::alone(self.rotor))
+    }
+
+    pub fn one_momentum(&self) -> Bivector {
+        Bivector(One::alone(self.momentum))
+    }
 }
 
 /// A turn of a splitting: about the axis a or b, or about that of a wheel.
@@ -75,10 +92,8 @@ pub(crate) struct Turns<const W: usize, const F: bool> {
     kappa: [Lanes<W, F>; 2],
     middle: Lanes<W, F>,
     against_wheel: [Lanes<W, F>; 3],
-    /// 1/i_k, h and g, for kicks.
-    inverse: [Lanes<W, F>; 3],
-    wheel: [Lanes<W, F>; 3],
-    damping: Lanes<W, F>,
+    /// For kicks.
+    bodies: Bodies<W, F>,
     damped: bool,
     /// L, if it is constant.
     fixed: Option<Fixed<W, F>>,
@@ -103,20 +118,15 @@ impl<const W: usize, const F: bool> Turns<W, F> {
             kappa: [zero; 2],
             middle: zero,
             against_wheel: [zero; 3],
-            inverse: [zero; 3],
-            wheel: [zero; 3],
-            damping: zero,
+            bodies: Bodies::new(bodies.map(|(body, damping, _)| (body, damping))),
             damped: bodies.iter().any(|(_, damping, _)| *damping != 0.0),
             fixed: None,
         };
-        for (l, (body, damping, fixed)) in bodies.iter().enumerate() {
+        for (l, (body, _, fixed)) in bodies.iter().enumerate() {
             turns.kappa[0].0[l] = kappa(body, a, p);
             turns.kappa[1].0[l] = kappa(body, b, p);
             turns.middle.0[l] = 1.0 / body.moments[p];
-            turns.damping.0[l] = *damping;
             for k in 0..3 {
-                turns.inverse[k].0[l] = 1.0 / body.moments[k];
-                turns.wheel[k].0[l] = body.wheel.0[k];
                 turns.against_wheel[k].0[l] = -body.wheel.0[k] / body.moments[k];
             }
             if let Some(momentum) = fixed {
@@ -192,19 +202,15 @@ impl<const W: usize, const F: bool> Turns<W, F> {
     #[inline(always)]
     pub fn kick<E: Forcing<W, F>>(&self, forcing: &mut E, spin: &mut Spin<W, F>, time: f64, h: f64) {
         let m = &mut spin.momentum;
-        let (wheel, inverse) = (&self.wheel, &self.inverse);
-        let mut omega = *m;
-        for k in 0..3 {
-            omega[k] = (m[k] - wheel[k]) * inverse[k];
-        }
+        let omega = self.bodies.omega(m);
         let torque = forcing.torque(&Place { rotor: spin.rotor, omega, time: Lanes::all(time) });
         let mut impulse = Lanes::all(h);
         if self.damped {
             let lost;
-            (lost, impulse) = decayed(&self.damping, h);
+            (lost, impulse) = decayed(&self.bodies.damping, h);
             for k in 0..3 {
                 // Multiplying m by e^(−gt) would round alike at every step.
-                m[k] = (m[k] - wheel[k]).times_plus(lost, m[k]);
+                m[k] = (m[k] - self.bodies.wheel[k]).times_plus(lost, m[k]);
             }
         }
         for k in 0..3 {

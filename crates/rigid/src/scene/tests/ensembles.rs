@@ -1,6 +1,7 @@
 //! Tests of `[ensemble]`: reading, errors, and distributions.
 
 use super::*;
+use crate::body::inertia::Inertia;
 use crate::laws::registry::{Argument, Shape, torque};
 use crate::laws::torque::Torque;
 use crate::scene::parameters::PARAMETERS;
@@ -15,11 +16,27 @@ fn ensemble(scene: &Scene) -> &Ensemble {
     scene.ensemble.as_ref().unwrap()
 }
 
+/// Bodies, one per row; position and velocity in a row of `centers`.
+struct Drawn {
+    rotors: Vec<[f64; 4]>,
+    omegas: Vec<[f64; 3]>,
+    centers: Vec<Vec<f64>>,
+    inertias: Vec<Inertia>,
+    laws: Vec<Vec<Torque>>,
+}
+
 /// Some bodies of a scene.
 fn drawn(text: &str, bodies: Range<usize>) -> Drawn {
     let scene = scene(text);
     let (body, laws) = scene.build().unwrap();
-    ensemble(&scene).draw(&scene, (&body, &laws), bodies).unwrap()
+    let all = scene.bodies(ensemble(&scene), (&body, &laws), bodies).unwrap();
+    Drawn {
+        rotors: all.starts.iter().map(|start| start.rotor.components()).collect(),
+        omegas: all.starts.iter().map(|start| start.omega.0).collect(),
+        centers: all.starts.iter().map(|s| [s.center.position.0, s.center.velocity.0].concat()).collect(),
+        inertias: all.inertias.all().to_vec(),
+        laws: all.laws.iter().map(|law| law.all().to_vec()).collect(),
+    }
 }
 
 /// Kolmogorov's distance of a sample from a distribution, times the root of its size: 2.6 is exceeded for 3 seeds in a
@@ -456,6 +473,6 @@ fn overflow_is_reported_with_the_body_number() {
     let text = with("number = 9\nmoments = { relative = 10 }").replace("[3, 2, 1]", "[3e307, 2e307, 2e307]");
     let scene = scene(&text);
     let (body, laws) = scene.build().unwrap();
-    let error = ensemble(&scene).draw(&scene, (&body, &laws), 2..9).unwrap_err();
+    let error = scene.bodies(ensemble(&scene), (&body, &laws), 2..9).unwrap_err();
     assert!(error.body >= 2 && error.to_string().starts_with(&format!("body {}: ", error.body)), "{error}");
 }

@@ -1,0 +1,50 @@
+use super::*;
+use crate::rows::product::turn;
+use crate::simd::threads::Threads;
+use crate::table::G3;
+
+fn numbers(seed: usize, count: usize) -> Vec<f64> {
+    (0..count).map(|i| ((seed * 31 + i) as f64 * 0.7).sin()).collect()
+}
+
+/// Every product of every pair of sets of grades equals the batch kernels bit for bit.
+#[test]
+fn single_values_equal_the_batches() {
+    for (ga, gb) in (1..16).flat_map(|a| (1..16).map(move |b| (Grades(a), Grades(b)))) {
+        let (a, b) = (numbers(1, size(ga)), numbers(2, size(gb)));
+        let (left, right) = (Graded::new(&a, ga).unwrap(), Graded::new(&b, gb).unwrap());
+        for product in Product::ALL {
+            let plan = Plan::g3(product, ga, gb);
+            let mut expected = vec![0.0; plan.sizes.2];
+            plan.run(Threads::ONE, &a, &b, &mut expected);
+            let got = left.product(product, &right);
+            assert_eq!(got.components(), expected, "{product:?} {ga:?} {gb:?}");
+            assert_eq!(got.grades(), plan.grades);
+        }
+        let rotor = Rotor::from_components([0.3, -0.2, 0.9, 0.4]).unwrap();
+        let mut expected = vec![0.0; b.len()];
+        turn(Threads::ONE, &rotor.components(), &b, gb, &mut expected);
+        assert_eq!(right.turned(rotor).components(), expected);
+    }
+}
+
+#[test]
+fn parts_and_sums_follow_the_basis() {
+    for grades in (1..16).map(Grades) {
+        let value = Graded::new(&numbers(3, size(grades)), grades).unwrap();
+        let full = value.full();
+        for (x, i) in value.components().iter().zip(grades.indices(&G3)) {
+            assert_eq!(*x, full[i]);
+        }
+        let all = value.with_grades(Grades::ALL);
+        assert_eq!(all.components(), full);
+        assert_eq!(all.with_grades(grades), value);
+        let sum = value.zip(&Graded::new(&[1.0], Grades::SCALAR).unwrap(), |x, y| x + y);
+        assert_eq!(sum.full()[0], full[0] + 1.0);
+        for (i, x) in value.reverse().full().iter().enumerate() {
+            assert_eq!(*x, if G3.blades()[i].grade() >= 2 { -full[i] } else { full[i] });
+        }
+    }
+    assert_eq!(Graded::new(&[1.0, 2.0], Grades::SCALAR), None);
+    assert_eq!(Graded::new(&[1.0], Grades(16)), None);
+}

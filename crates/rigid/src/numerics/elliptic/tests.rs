@@ -1,0 +1,59 @@
+use super::*;
+use std::f64::consts::FRAC_PI_2;
+
+fn complete_k(kc: f64) -> f64 {
+    FRAC_PI_2 / mean_and_sum(kc.into(), DoubleDouble::ONE).0.value()
+}
+
+/// Π(n) − K, for n <= 0.
+fn excess(n: f64, kc: f64) -> f64 {
+    let sum = mean_and_sum(kc.into(), DoubleDouble::ONE - n.into()).1.value();
+    0.5 * complete_k(kc) * (n / (1.0 - n)) * sum
+}
+
+fn close(a: f64, b: f64) {
+    assert!((a / b - 1.0).abs() < 1e-15 * 8.0, "{a} {b}");
+}
+
+/// Carlson's published check values (1995, section 4).
+#[test]
+fn published_values() {
+    close(r_f(1.0, 2.0, 0.0), 1.311_028_777_146_06);
+    close(r_f(2.0, 3.0, 4.0), 0.584_082_841_677_153_5);
+    close(r_j(0.0, 1.0, 2.0, 3.0), 0.776_886_237_785_823_3);
+    close(r_j(2.0, 3.0, 4.0, 5.0), 0.142_975_796_671_567_5);
+    close(r_d(0.0, 2.0, 1.0), 1.797_210_352_103_388);
+    close(r_d(2.0, 3.0, 4.0), 0.165_105_272_942_611_5);
+}
+
+#[test]
+fn circular_limits() {
+    close(complete_k(1.0), FRAC_PI_2);
+    // Π(n|0) = π / (2√(1 − n)).
+    for n in [-3.0, -1.0, -0.25] {
+        close(excess(n, 1.0), FRAC_PI_2 * (1.0 / (1.0f64 - n).sqrt() - 1.0));
+    }
+    close(excess(-1e-20, 1.0), -0.5e-20 * FRAC_PI_2);
+}
+
+/// `K → ln(4/k')` as k' → 0 (DLMF 19.9.1).
+#[test]
+fn near_the_separatrix() {
+    for kc in [1e-9, 1e-100, 1e-150] {
+        close(complete_k(kc), (4.0f64 / kc).ln());
+        close(mean(kc), FRAC_PI_2 / (4.0f64 / kc).ln());
+    }
+}
+
+/// `Π(n) − K = (n/3) R_J(0, k'², 1, 1 − n)`.
+#[test]
+fn means_agree_with_symmetric_forms() {
+    for kc in [1.0, 0.9, 0.5, 1e-2, 1e-6] {
+        close(complete_k(kc), r_f(0.0, kc * kc, 1.0));
+        close(complete_k(kc), FRAC_PI_2 / mean(kc));
+        for n in [-1e-9, -0.3, -1.0, -7.0] {
+            close(excess(n, kc), n / 3.0 * r_j(0.0, kc * kc, 1.0, 1.0 - n));
+        }
+    }
+    assert_eq!(mean(0.0), 0.0);
+}

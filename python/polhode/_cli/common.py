@@ -1,0 +1,72 @@
+"""Exit codes, types of arguments, and the progress bar of the commands."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from polhode._support.files import form_of
+
+OK, FAILED, BAD_INPUT, DRIFTED, INTERRUPTED = 0, 1, 3, 4, 130
+
+Report = Callable[[int, float], object]
+
+
+def add_command(
+    commands: Any, name: str, run: Callable[[argparse.Namespace], int], **words: str
+) -> argparse.ArgumentParser:
+    """Add a command to those of `polhode`; `run` finds its parser in the options."""
+    parser: argparse.ArgumentParser = commands.add_parser(name, **words)
+    parser.set_defaults(command=run, parser=parser)
+    return parser
+
+
+def add_folder(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add the option of a folder to write to."""
+    words = f"folder for the {what}, default the current one"
+    parser.add_argument("-o", "--output", metavar="FOLDER", default=".", help=words)
+
+
+def file_name(what: str) -> Callable[[str], str]:
+    """Return an argparse type that checks the suffix of a file to be written."""
+
+    def checked(name: str) -> str:
+        try:
+            form_of(name, what)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
+        return name
+
+    return checked
+
+
+def whole_number(what: str, least: int, most: float) -> Callable[[str], int]:
+    """Return an argparse type for integers in a range."""
+
+    def checked(text: str) -> int:
+        if not (text.isascii() and text.isdigit() and least <= int(text) <= most):
+            bounds = f"of at least {least}" if most == math.inf else f"from {least} to {most}"
+            raise argparse.ArgumentTypeError(f"{what} must be an integer {bounds}, got {text!r}")
+        return int(text)
+
+    return checked
+
+
+@contextmanager
+def progress(name: str) -> Iterator[Report | None]:
+    """Show a progress bar of a name on standard error, if that is a terminal; a pass of 0 is not shown."""
+    from polhode._support.extras import progress_bar
+
+    if (shown := progress_bar("{task.percentage:>3.0f} %")) is None:
+        yield None
+        return
+    with shown as bar:
+        task = bar.add_task(name, total=1.0)
+
+        def report(number: int, fraction: float) -> None:
+            bar.update(task, description=f"{name}, pass {number}" if number else name, completed=fraction)
+
+        yield report

@@ -27,7 +27,8 @@ def chained(body, state, rows, dt, method, law=None, held=ph.torque.constant_bod
             [state.time + dt],
             acting if law is None else law + acting,
             method=method,
-            step=step or dt,
+            # A little longer, since the difference of two times may be a rounding more than dt.
+            step=(step or dt) * (1 + 1e-9),
         ).final
         states.append(state)
     return states

@@ -135,8 +135,13 @@ class Stepper:
         frame
             Axes of its components, with which it turns: ``"body"`` or ``"space"``.
         """
-        self._core.step(_seconds(dt), _NO_TORQUE if torque is None else self._rows(torque), _in_space(frame))
-        return self.state
+        core, seconds, in_space = self._core, _seconds(dt), _in_space(frame)
+        spin = core.step_once(seconds, torque, in_space)
+        if spin is None or self._still is None:
+            if spin is None:
+                core.step(seconds, _NO_TORQUE if torque is None else self._rows(torque), in_space)
+            return self.state
+        return State._of(*spin, *self._still, core.time)
 
     def reset(self, state: State) -> None:
         """Set the state of all bodies, and with it the time."""

@@ -48,7 +48,7 @@ fn motion(inertia: &inertia::Inertia, &(rotor, omega): &Start) -> Result<free::F
 }
 
 /// The components of a single value, if it has just these grades.
-fn components<const N: usize>(value: &Bound<'_, PyAny>, grades: Grades) -> Option<[f64; N]> {
+pub(crate) fn components<const N: usize>(value: &Bound<'_, PyAny>, grades: Grades) -> Option<[f64; N]> {
     let value = value.cast::<Multivector>().ok()?.get().single()?;
     (value.grades() == grades).then(|| value.components().try_into().ok())?
 }

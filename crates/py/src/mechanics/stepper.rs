@@ -3,12 +3,16 @@
 use super::bodies::Inertia;
 use super::ensemble::{callbacks, ensemble_of, starts};
 use super::forces_and_events::Force;
+use super::free::components;
 use super::law_value::{LawValue, failed, interrupted};
 use super::simulation::method_of;
 use super::torque::Law;
+use crate::algebra::value::{one, one_rotor};
 use crate::support::arrays::{Array, Rows, bad, numbers, place};
 use crate::support::pool;
-use numpy::PyArrayMethods;
+use numpy::{PyArrayMethods, PyReadonlyArray1};
+use polhode_ga::product::Grades;
+use polhode_ga::{Graded, Rotor};
 use polhode_rigid::SimulateError;
 use polhode_rigid::laws::torque::Axes;
 use polhode_rigid::stepper::{self, Failed, Held};
@@ -43,7 +47,8 @@ impl Stepper {
         let (Some(method), _) = method_of(method)? else {
             return Err(bad(format!("a stepper needs a stepping method, got {method}")));
         };
-        let ensemble = ensemble_of(&shape, inertias, &[begins, rotors, omegas, centers, masses], &laws, &forces)?;
+        let ensemble =
+            ensemble_of(&shape, inertias, &[begins, rotors, omegas, centers, masses], &laws, &forces)?;
         let callbacks = callbacks(&laws, &forces);
         let stepper = stepper::Stepper::new(&ensemble, method, longest)
             .map_err(|(body, error)| bad(format!("{}{error}", place(body, &shape))))?;
@@ -51,27 +56,47 @@ impl Stepper {
     }
 
     /// Sets the states, rows of the batch shape.
-    fn reset(&mut self, begins: Rows<'_>, rotors: Rows<'_>, omegas: Rows<'_>, centers: Rows<'_>) -> PyResult<()> {
+    fn reset(
+        &mut self,
+        begins: Rows<'_>,
+        rotors: Rows<'_>,
+        omegas: Rows<'_>,
+        centers: Rows<'_>,
+    ) -> PyResult<()> {
         self.stepper.reset(&starts(&self.shape, &begins, &rotors, &omegas, &centers)?);
         Ok(())
     }
 
+    /// A step of a single body under a single torque; rotor and angular velocity. None, and no step, for anything else.
+    fn step_once<'py>(
+        &mut self,
+        dt: f64,
+        torque: &Bound<'py, PyAny>,
+        in_space: bool,
+    ) -> PyResult<Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>> {
+        if !self.shape.is_empty() {
+            return Ok(None);
+        }
+        let py = torque.py();
+        let held = match torque.extract::<PyReadonlyArray1<'_, f64>>() {
+            Ok(array) => array.as_array().iter().copied().collect::<Vec<_>>().try_into().ok(),
+            Err(_) => components(torque, Grades::BIVECTOR),
+        };
+        let rows: &[[f64; 3]] = match &held {
+            Some(row) => std::slice::from_ref(row),
+            None if torque.is_none() => &[],
+            None => return Ok(None),
+        };
+        self.advance(py, dt, rows, in_space)?;
+        let (mut rotor, mut omega) = ([[0.0; 4]], [[0.0; 3]]);
+        self.stepper.write(&mut rotor, &mut omega);
+        let Some(omega) = Graded::new(&omega[0], Grades::BIVECTOR) else { return Ok(None) };
+        Ok(Some((one_rotor(py, Rotor::from_unit_components(rotor[0]))?, one(py, omega)?)))
+    }
+
     /// A step of length `dt`, with the torques (n, 3) of one body or of each; no rows for none.
     fn step(&mut self, py: Python<'_>, dt: f64, torques: Rows<'_>, in_space: bool) -> PyResult<()> {
-        let torques = numbers(&torques)?.as_chunks().0;
-        let held = Held { torques, axes: if in_space { Axes::Space } else { Axes::Body } };
-        let stepper = &mut self.stepper;
-        let done = if self.callbacks.is_empty() && stepper.count() < LARGE {
-            stepper.step(dt, held)
-        } else {
-            py.detach(|| stepper.step(dt, held))
-        };
-        let bound = || self.callbacks.iter().map(|one| one.bind(py));
-        done.map_err(|(body, error): Failed| match error {
-            SimulateError::Torque { .. } => failed(bound(), format!("{}{error}", place(body, &self.shape))),
-            _ => bad(format!("{}{error}", place(body, &self.shape))),
-        })?;
-        if self.callbacks.is_empty() { Ok(()) } else { interrupted(bound()) }
+        self.advance(py, dt, numbers(&torques)?.as_chunks().0, in_space)
     }
 
     #[getter]
@@ -108,6 +133,22 @@ impl Stepper {
 }
 
 impl Stepper {
+    fn advance(&mut self, py: Python<'_>, dt: f64, torques: &[[f64; 3]], in_space: bool) -> PyResult<()> {
+        let held = Held { torques, axes: if in_space { Axes::Space } else { Axes::Body } };
+        let stepper = &mut self.stepper;
+        let done = if self.callbacks.is_empty() && stepper.count() < LARGE {
+            stepper.step(dt, held)
+        } else {
+            py.detach(|| stepper.step(dt, held))
+        };
+        let bound = || self.callbacks.iter().map(|one| one.bind(py));
+        done.map_err(|(body, error): Failed| match error {
+            SimulateError::Torque { .. } => failed(bound(), format!("{}{error}", place(body, &self.shape))),
+            _ => bad(format!("{}{error}", place(body, &self.shape))),
+        })?;
+        if self.callbacks.is_empty() { Ok(()) } else { interrupted(bound()) }
+    }
+
     fn rows<'py>(&self, py: Python<'py>, size: usize) -> PyResult<Array<'py>> {
         let shape: Vec<usize> = self.shape.iter().copied().chain([size]).collect();
         pool::array(py, &shape)

@@ -15,7 +15,7 @@ use std::array;
 use std::sync::Arc;
 
 /// Free bodies without wheels.
-pub(super) struct NoForcing;
+pub(crate) struct NoForcing;
 
 impl<const W: usize, const F: bool> Forcing<W, F> for NoForcing {
     const ACTS: bool = false;
@@ -207,6 +207,22 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
         vec![law]
     }
 
+    /// The same, unless it borrows.
+    fn kept(self) -> Option<Law<'static, W, F>> {
+        Some(match self {
+            Law::Heavy(c) => Law::Heavy(c),
+            Law::GravityGradient(orbits) => Law::GravityGradient(orbits),
+            Law::ConstantBody(torque) => Law::ConstantBody(torque),
+            Law::ConstantSpace(torque) => Law::ConstantSpace(torque),
+            Law::QuadraticDamping(k) => Law::QuadraticDamping(k),
+            Law::ViscousDamping(d) => Law::ViscousDamping(d),
+            Law::Magnetic { dipole, field } => Law::Magnetic { dipole, field },
+            Law::Spring { stiffness, rest } => Law::Spring { stiffness, rest },
+            Law::Larmor(b) => Law::Larmor(b),
+            Law::Tabulated(_) | Law::Formula(_) | Law::Other(_) => return None,
+        })
+    }
+
     /// Adds the parameters of a law of the same kind; false where they do not add up.
     fn join(&mut self, other: &Law<'t, W, F>) -> bool {
         match (self, other) {
@@ -314,9 +330,11 @@ impl<'t, const W: usize, const F: bool> Laws<'t, W, F> {
         Laws { gyrostats, moments, wheel, laws }
     }
 
-    /// Whether there is no law.
-    pub fn is_empty(&self) -> bool {
-        self.laws.is_empty()
+    /// The same without borrowed laws; none if a law borrows a table, formula or function.
+    pub fn kept(self) -> Option<Laws<'static, W, F>> {
+        let Laws { gyrostats, moments, wheel, laws } = self;
+        let laws = laws.into_iter().map(Law::kept).collect::<Option<_>>()?;
+        Some(Laws { gyrostats, moments, wheel, laws })
     }
 }
 

@@ -8,7 +8,7 @@ use crate::run::engine::Engine;
 use crate::run::sweep::is_finite;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
-use crate::state::phase::{Gyrostat, Phase};
+use crate::state::phase::Phase;
 use polhode_ga::{Bivector, Rotor};
 
 /// Its state.
@@ -31,9 +31,13 @@ impl Alone {
         self.at.center
     }
 
-    /// Rotor and angular velocity in principal axes.
-    pub fn spin(&self, body: &Gyrostat) -> (Rotor, Bivector) {
-        (self.at.phase.rotor, body.omega(self.at.phase.momentum))
+    /// Rotor (body axes to space) and angular velocity in body axes.
+    pub fn spin(&self, member: &Member) -> (Rotor, Bivector) {
+        let (rotor, omega) = (self.at.phase.rotor, member.gyrostat.omega(self.at.phase.momentum));
+        if member.frame == Rotor::IDENTITY {
+            return (rotor, omega);
+        }
+        (rotor * member.frame.reverse(), member.frame.apply_bivector(omega))
     }
 
     /// The state after equal steps under a held torque.

@@ -1,26 +1,25 @@
 //! Bodies stepped side by side in SIMD lanes by the classical method.
 
 use super::{Held, Member, Steps};
-use crate::ensemble::laws::Laws;
+use crate::ensemble::laws::{Laws, NoForcing};
 use crate::laws::forcing::{Forcing, Place};
 use crate::laws::torque::lanes::{Three, seen};
 use crate::laws::torque::{Axes, Torque};
 use crate::methods::classical::{self, Bodies, State};
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::simd::lanes::{Lanes, Work, dot, fastest};
+use polhode_ga::simd::lanes::{Lanes, Work, fastest};
 use polhode_ga::{Bivector, Rotor};
 use std::array;
-use std::fmt::Debug;
 
 /// Bodies of a group: a cache line of each number.
 const W: usize = 8;
 
 /// Groups of bodies, with the arithmetic of the machine's best instructions.
-pub(super) trait Groups: Debug + Send + Sync {
+pub(super) trait Groups: Send + Sync {
     fn reset(&mut self, body: usize, phase: &Phase);
     fn step(&mut self, members: &[Member], held: Held<'_>, steps: &Steps);
-    /// Rotor and angular velocity of a body in principal axes.
-    fn spin(&self, body: usize) -> (Rotor, Bivector);
+    /// Writes rotors (body axes to space) and angular velocities in body axes.
+    fn write(&self, rotors: &mut [[f64; 4]], omegas: &mut [[f64; 3]]);
     /// The first body that turns faster than a rate, and its rate, in rad/s.
     fn faster_than(&self, rate: f64) -> Option<(usize, f64)>;
 }
@@ -43,14 +42,17 @@ impl Work for Make<'_> {
     }
 }
 
-#[derive(Debug)]
 struct All<const F: bool>(Vec<Group<F>>);
 
 /// At most W bodies; lanes without a body repeat the first one.
-#[derive(Debug)]
 struct Group<const F: bool> {
     bodies: Bodies<W, F>,
     gyrostats: [Gyrostat; W],
+    /// From principal axes to those of the bodies, unless they are the same for all.
+    frames: Option<[Rotor; W]>,
+    free: bool,
+    /// Its laws, unless they borrow from the members.
+    laws: Option<Laws<'static, W, F>>,
     state: State<7, W, F>,
     count: usize,
 }
@@ -60,29 +62,58 @@ impl<const F: bool> Group<F> {
         let member = |l: usize| members.get(l).unwrap_or(&members[0]);
         let damping = |l: usize| member(l).torques.iter().map(Torque::damping_rate).sum();
         let gyrostats = array::from_fn(|l| member(l).gyrostat);
+        let free = members.iter().all(|member| member.torques.is_empty());
+        let laws = || Laws::new(gyrostats, array::from_fn(|l| &member(l).torques[..]));
         Group {
             bodies: Bodies::new(array::from_fn(|l| (gyrostats[l], damping(l)))),
             gyrostats,
+            frames: members
+                .iter()
+                .any(|member| member.frame != Rotor::IDENTITY)
+                .then(|| array::from_fn(|l| member(l).frame)),
+            free,
+            laws: if free { None } else { laws().kept() },
             state: [Lanes::ZERO; 7],
             count: members.len(),
         }
     }
 }
 
+impl<const F: bool> Group<F> {
+    /// The held torques in principal axes, or in space.
+    fn held(&self, first: usize, held: Held<'_>) -> Three<W, F> {
+        let mut torque = [Lanes::ZERO; 3];
+        if held.torques.is_empty() {
+            return torque;
+        }
+        for l in 0..self.count {
+            let mut own = held.of(first + l);
+            if let (Axes::Body, Some(frames)) = (held.axes, &self.frames) {
+                own = frames[l].reverse().apply_bivector(own);
+            }
+            for k in 0..3 {
+                torque[k].0[l] = own.0[k];
+            }
+        }
+        torque
+    }
+}
+
 /// The laws of a group, and the torques that are held over the step.
-struct Holding<'a, 't, const F: bool> {
-    laws: &'a mut Laws<'t, W, F>,
+struct Holding<'a, E, const F: bool> {
+    laws: &'a mut E,
     held: Three<W, F>,
     in_space: bool,
 }
 
-impl<const F: bool> Forcing<W, F> for Holding<'_, '_, F> {
+impl<E: Forcing<W, F>, const F: bool> Forcing<W, F> for Holding<'_, E, F> {
     const ACTS: bool = true;
+    const WHEELS: bool = E::ACTS;
 
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> Three<W, F> {
         let mut sum = if self.in_space { seen(&at.rotor, &self.held) } else { self.held };
-        if !self.laws.is_empty() {
+        if E::ACTS {
             let torque = self.laws.torque(at);
             for k in 0..3 {
                 sum[k] += torque[k];
@@ -109,40 +140,46 @@ impl<const F: bool> Work for Go<'_, F> {
             let Go { groups, members, held, steps } = self;
             for (number, group) in groups.iter_mut().enumerate() {
                 let first = number * W;
-                let members = &members[first..first + group.count];
-                let member = |l: usize| if l < members.len() { &members[l] } else { &members[0] };
-                let mut laws = Laws::new(group.gyrostats, array::from_fn(|l| &member(l).torques[..]));
-                let mut torque = [Lanes::ZERO; 3];
-                if !held.torques.is_empty() {
-                    for (l, member) in members.iter().enumerate() {
-                        let mut own = held.of(first + l);
-                        if held.axes == Axes::Body && member.frame != Rotor::IDENTITY {
-                            own = member.frame.reverse().apply_bivector(own);
-                        }
-                        for k in 0..3 {
-                            torque[k].0[l] = own.0[k];
-                        }
-                    }
+                let held = (group.held(first, held), held.axes == Axes::Space);
+                let (bodies, state) = (&group.bodies, &mut group.state);
+                if group.free {
+                    march(bodies, state, &mut NoForcing, held, steps);
+                } else if let Some(laws) = &mut group.laws {
+                    march(bodies, state, laws, held, steps);
+                } else {
+                    let member = |l: usize| &members[first + if l < group.count { l } else { 0 }];
+                    let torques = array::from_fn(|l| &member(l).torques[..]);
+                    march(bodies, state, &mut Laws::new(group.gyrostats, torques), held, steps);
                 }
-                let in_space = held.axes == Axes::Space;
-                let mut forcing = Holding { laws: &mut laws, held: torque, in_space };
-                // Copies, which the compiler may keep in registers.
-                let (bodies, mut now) = (group.bodies, group.state);
-                for k in 0..steps.count {
-                    let (time, h) = steps.nth(k);
-                    classical::step(&bodies, &mut forcing, &mut now, time, h);
-                }
-                group.state = now;
             }
         }
     }
+}
+
+/// The steps of a group; a held torque is in principal axes, or in space.
+#[inline(always)]
+fn march<E: Forcing<W, F>, const F: bool>(
+    bodies: &Bodies<W, F>,
+    state: &mut State<7, W, F>,
+    laws: &mut E,
+    (held, in_space): (Three<W, F>, bool),
+    steps: &Steps,
+) {
+    let mut forcing = Holding { laws, held, in_space };
+    // Copies, which the compiler may keep in registers.
+    let (bodies, mut now) = (*bodies, *state);
+    for k in 0..steps.count {
+        let (time, h) = steps.nth(k);
+        classical::step(&bodies, &mut forcing, &mut now, time, h);
+    }
+    *state = now;
 }
 
 impl<const F: bool> Groups for All<F> {
     fn reset(&mut self, body: usize, phase: &Phase) {
         let group = &mut self.0[body / W];
         let (rotor, omega) = (phase.rotor.components(), group.gyrostats[body % W].omega(phase.momentum).0);
-        let idle = if body % W == 0 { group.count..W } else { 0..0 };
+        let idle = if body.is_multiple_of(W) { group.count..W } else { 0..0 };
         for l in idle.chain([body % W]) {
             for k in 0..7 {
                 group.state[k].0[l] = if k < 4 { rotor[k] } else { omega[k - 4] };
@@ -154,17 +191,25 @@ impl<const F: bool> Groups for All<F> {
         fastest(Go { groups: &mut self.0, members, held, steps });
     }
 
-    fn spin(&self, body: usize) -> (Rotor, Bivector) {
-        let number = |k: usize| self.0[body / W].state[k].0[body % W];
-        (Rotor::from_unit_components(array::from_fn(number)), Bivector(array::from_fn(|k| number(4 + k))))
+    fn write(&self, rotors: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        for (group, (rotors, omegas)) in self.0.iter().zip(rotors.chunks_mut(W).zip(omegas.chunks_mut(W))) {
+            for (l, (rotor, omega)) in rotors.iter_mut().zip(omegas).enumerate() {
+                *rotor = array::from_fn(|k| group.state[k].0[l]);
+                *omega = array::from_fn(|k| group.state[4 + k].0[l]);
+                if let Some(frames) = &group.frames {
+                    *rotor = (Rotor::from_unit_components(*rotor) * frames[l].reverse()).components();
+                    *omega = frames[l].apply_bivector(Bivector(*omega)).0;
+                }
+            }
+        }
     }
 
     fn faster_than(&self, rate: f64) -> Option<(usize, f64)> {
         self.0.iter().enumerate().find_map(|(number, group)| {
-            let omega = [group.state[4], group.state[5], group.state[6]];
-            let square = dot(&omega, &omega).0;
-            let lane = (0..group.count).find(|&l| square[l] > rate * rate)?;
-            Some((number * W + lane, square[lane].sqrt()))
+            let [x, y, z] = [4, 5, 6].map(|k| group.state[k].0);
+            let square = |l: usize| x[l] * x[l] + y[l] * y[l] + z[l] * z[l];
+            let lane = (0..group.count).find(|&l| square(l) > rate * rate)?;
+            Some((number * W + lane, square(lane).sqrt()))
         })
     }
 }

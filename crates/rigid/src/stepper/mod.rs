@@ -55,20 +55,19 @@ struct Member {
     translation: Option<Translation>,
 }
 
-#[derive(Debug)]
 enum Bodies {
     Alone(Vec<Alone>),
     Lanes(Box<dyn Groups>),
 }
 
 /// Bodies with their states at a common time.
-#[derive(Debug)]
 pub struct Stepper {
     members: Vec<Member>,
     bodies: Bodies,
     method: Method,
     longest: f64,
     time: f64,
+    moves: bool,
 }
 
 /// A body, by its number, and its error.
@@ -94,7 +93,7 @@ impl Stepper {
         } else {
             Bodies::Alone(members.iter().map(Alone::new).collect())
         };
-        let mut stepper = Stepper { members, bodies, method, longest, time: 0.0 };
+        let mut stepper = Stepper { members, bodies, method, longest, time: 0.0, moves: false };
         stepper.reset(&ensemble.starts);
         Ok(stepper)
     }
@@ -109,6 +108,7 @@ impl Stepper {
                 Bodies::Lanes(groups) => groups.reset(body, &member.phase(start)),
             }
         }
+        self.moves = self.members.iter().any(Member::moves);
     }
 
     /// The number of bodies.
@@ -123,15 +123,13 @@ impl Stepper {
 
     /// Whether the centres of mass move.
     pub fn moves(&self) -> bool {
-        let zero = Vector::default();
-        self.members
-            .iter()
-            .any(|m| m.translation.is_some() || m.acceleration != zero || m.center.velocity != zero)
+        self.moves
     }
 
     /// One step of length `dt` in s, which may be negative. On an error no state has changed.
     pub fn step(&mut self, dt: f64, held: Held<'_>) -> Result<(), Failed> {
-        let count = (dt.abs() / self.longest).ceil().max(1.0) as u64;
+        // A dt of k longest steps, up to rounding, has k steps.
+        let count = (dt.abs() / self.longest * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0) as u64;
         let h = dt / count as f64;
         self.check_turns(h)?;
         let steps = Steps { from: self.time, dt, count };
@@ -147,7 +145,8 @@ impl Stepper {
             }
             Bodies::Lanes(groups) => groups.step(&self.members, held, &steps),
         }
-        for (number, member) in self.members.iter_mut().enumerate() {
+        let moving = if self.moves { &mut self.members[..] } else { &mut [] };
+        for (number, member) in moving.iter_mut().enumerate() {
             member.center = match (&self.bodies, &member.translation) {
                 (Bodies::Alone(bodies), Some(_)) => bodies[number].center(),
                 _ => member.fallen(dt),
@@ -159,14 +158,14 @@ impl Stepper {
 
     /// Writes rotors (body axes to space) and angular velocities in body axes.
     pub fn write(&self, rotors: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-        for (number, member) in self.members.iter().enumerate() {
-            let (rotor, omega) = match &self.bodies {
-                Bodies::Alone(bodies) => bodies[number].spin(&member.gyrostat),
-                Bodies::Lanes(groups) => groups.spin(number),
-            };
-            let own = member.frame == Rotor::IDENTITY;
-            rotors[number] = if own { rotor } else { rotor * member.frame.reverse() }.components();
-            omegas[number] = if own { omega } else { member.frame.apply_bivector(omega) }.0;
+        match &self.bodies {
+            Bodies::Alone(bodies) => {
+                for (number, (body, member)) in bodies.iter().zip(&self.members).enumerate() {
+                    let (rotor, omega) = body.spin(member);
+                    (rotors[number], omegas[number]) = (rotor.components(), omega.0);
+                }
+            }
+            Bodies::Lanes(groups) => groups.write(rotors, omegas),
         }
     }
 
@@ -182,7 +181,7 @@ impl Stepper {
             Bodies::Alone(bodies) => bodies
                 .iter()
                 .zip(&self.members)
-                .map(|(body, member)| body.spin(&member.gyrostat).1.norm())
+                .map(|(body, member)| body.spin(member).1.norm())
                 .enumerate()
                 .find(|(_, rate)| *rate > fastest),
             Bodies::Lanes(groups) => groups.faster_than(fastest),
@@ -252,6 +251,12 @@ impl Member {
     fn phase(&self, start: &Start) -> Phase {
         let omega = self.frame.reverse().apply_bivector(start.omega);
         Phase { rotor: start.rotor * self.frame, momentum: self.gyrostat.momentum(omega), time: start.time }
+    }
+
+    /// Whether its centre of mass moves.
+    fn moves(&self) -> bool {
+        let zero = Vector::default();
+        self.translation.is_some() || self.acceleration != zero || self.center.velocity != zero
     }
 
     /// The held torque of a body, in principal axes or in space.

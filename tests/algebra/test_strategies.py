@@ -88,6 +88,7 @@ def test_rotors_near_singular_angles_occur(angle, distance):
     least(ga.rotors(), near)
 
 
+@pytest.mark.slow
 def test_empty_batches_occur():
     assert least(ga.vectors(shape=ga.batch_shapes()), lambda a: 0 in a.shape).shape == (0,)
     with pytest.raises(NoSuchExample):
@@ -97,6 +98,7 @@ def test_empty_batches_occur():
 # --- simple counterexamples
 
 
+@pytest.mark.slow
 def test_shrinking():
     assert least(ga.vectors(), lambda a: True) == 0 * e1
     assert least(ga.vectors(), lambda a: a.dot(e2) != 0) == e2

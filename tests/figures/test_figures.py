@@ -508,6 +508,7 @@ def test_figure_3_hides_lines_behind_or_inside_the_box():
 # --- files and the command
 
 
+@pytest.mark.slow
 def test_files_have_their_format_and_are_reproducible():
     figures = [lambda: free().plot("scene"), lambda: handout_figure(2), lambda: free().plot("phase")]
     for pixels, make in zip((1, 0, 0), figures, strict=True):

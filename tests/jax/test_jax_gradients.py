@@ -102,6 +102,7 @@ def test_a_function_may_close_over_traced_values():
     assert abs(found - (loss(0.3 + 1e-5) - loss(0.3 - 1e-5)) / 2e-5) < 1e-8
 
 
+@pytest.mark.slow
 def test_tables_and_formulas_have_derivatives():
     times, rows = [0.0, 0.2, 0.5, 0.9, 1.0], np.random.default_rng(0).normal(size=(5, 3))
 

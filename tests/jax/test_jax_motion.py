@@ -99,6 +99,7 @@ def test_times_on_both_sides_of_the_start():
     assert apart(found, expected) < COUNT
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("method", "name"),
     [
@@ -134,6 +135,7 @@ def test_a_motion_starts_at_the_time_of_the_state(method, name):
         assert np.abs(a - b).max() < 4 * COUNT * EPS
 
 
+@pytest.mark.slow
 def test_a_motion_can_be_continued():
     law = ATTITUDE["formula"]
     whole = ph.jax.simulate(INERTIA, R0, OMEGA, [1.0, 2.0], law, step=STEP)

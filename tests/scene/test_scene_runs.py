@@ -216,6 +216,7 @@ def test_constant_velocity_is_written_once(write, tmp_path):
     np.testing.assert_array_equal(data.velocity.values, np.broadcast_to([0.0, 1, 0], (20, 3)))
 
 
+@pytest.mark.slow
 def test_results_do_not_depend_on_threads_which_are_checked(write, tmp_path):
     path = write(TORQUED)
     results = [
@@ -435,6 +436,7 @@ def test_first_above_lies_between_the_samples():
     assert first_above(times, np.array([0.0, 1, 2, 2]), 2.0) is None
 
 
+@pytest.mark.slow
 def test_densities_have_the_mean_1():
     pytest.importorskip("matplotlib")
     from polhode._figures.ensemble import _density, _unit_vectors

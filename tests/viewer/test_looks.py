@@ -159,6 +159,7 @@ def test_stroboscopic_picture_has_a_warning(opened):
             assert "up to 0.1×" in note.inner_text()
 
 
+@pytest.mark.slow
 def test_time_per_frame_of_a_long_trace(opened, record_property):
     """The time per frame with ten thousand points of a path is reported, not asserted."""
     scene = TUMBLING + '[run]\nduration = "10 min"\nsamples = 10001\n'

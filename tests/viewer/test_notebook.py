@@ -71,6 +71,7 @@ def notebook(tmp_path):
         reader.join()
 
 
+@pytest.mark.slow
 def test_python_and_the_page_are_synchronised(notebook, pages):
     page = pages()
     lab, viewer = page.page, page.viewer

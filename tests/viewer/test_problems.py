@@ -143,6 +143,7 @@ def test_text_that_is_not_a_document(new_page, opened, tmp_path):
     assert "not JSON" in message_of(page)
 
 
+@pytest.mark.slow
 def test_motion_that_takes_too_long_is_an_error(opened):
     slow = (
         TUMBLING

@@ -70,6 +70,7 @@ def test_pages_written_by_run(name, new_page, follow, tmp_path):
     written_page(followed, new_page(), tmp_path).compare(followed)
 
 
+@pytest.mark.slow
 def test_long_run_is_thinned(new_page, follow, tmp_path):
     """Rows are at most 0.2 rad apart, and interpolation between them is off by at most 0.2²/8."""
     followed = follow("detumbling")

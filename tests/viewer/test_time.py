@@ -93,6 +93,7 @@ def test_space_plays_and_arrows_step(opened):
     assert page.data("time") == 0
 
 
+@pytest.mark.slow
 def test_playback_has_the_shown_speed(opened, new_page, tmp_path):
     opened("t-handle")
     page = new_page()

@@ -54,9 +54,9 @@ def quadratic_drag(k: float) -> Force:
     return _force("quadratic_drag", k)
 
 
-def spring(k: float, anchor: Any = 0) -> Force:
-    """Return ``−k (x − anchor)``, k in N/m, the anchor a point in space in m."""
-    return _force("spring", k, anchor)
+def spring(stiffness: float, anchor: Any = 0) -> Force:
+    """Return ``−k (x − anchor)``, the stiffness k in N/m, the anchor a point in space in m."""
+    return _force("spring", stiffness, anchor)
 
 
 def central(mu: float) -> Force:

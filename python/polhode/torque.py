@@ -168,7 +168,7 @@ def heavy(c: Any) -> Torque:
     return _law("heavy", c)
 
 
-def gravity_gradient(n: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -> Torque:
+def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -> Torque:
     """Return the gradient of a planet's field on a Kepler orbit in the plane e1e2 of space.
 
     With u the direction from planet to body, ``u = cos f e1 + sin f e2``, the axial vector of the torque is
@@ -178,14 +178,14 @@ def gravity_gradient(n: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -
 
     Parameters
     ----------
-    n
-        The mean motion in rad/s.
+    rate
+        The mean motion n in rad/s.
     eccentricity
         e, at least 0 and below 1.
     mean_anomaly
         M0 in rad, that at time 0; the periapsis lies on e1.
     """
-    return _law("gravity_gradient", n, eccentricity, mean_anomaly)
+    return _law("gravity_gradient", rate, eccentricity, mean_anomaly)
 
 
 def magnetic(dipole: Any, field: Any) -> Torque:
@@ -251,7 +251,7 @@ def quadratic_damping(k: Any) -> Torque:
     return _law("quadratic_damping", k)
 
 
-def torsion_spring(k: Any, rest: Rotor | None = None) -> Torque:
+def torsion_spring(stiffness: Any, rest: Rotor | None = None) -> Torque:
     """Return the torque ``−k Θ`` of ``V = ½ k |Θ|²``, with Θ the rotation from the rest attitude.
 
     ``R = rest exp(−½Θ)``, ``|Θ| <= π``: R and −R are the same attitude, and the shorter rotation counts. At
@@ -259,12 +259,12 @@ def torsion_spring(k: Any, rest: Rotor | None = None) -> Torque:
 
     Parameters
     ----------
-    k
-        Stiffness in N m per rad.
+    stiffness
+        k in N m per rad.
     rest
         The attitude without torque, a rotor from body axes to space, or a batch; None for the identity.
     """
-    return _law("torsion_spring", k, rest)
+    return _law("torsion_spring", stiffness, rest)
 
 
 def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:

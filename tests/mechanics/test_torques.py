@@ -1,5 +1,6 @@
 """Torque laws against their formulas in 40 digits and their potentials, and laws as values."""
 
+import inspect
 import math
 import pickle
 
@@ -9,6 +10,7 @@ import pytest
 
 import polhode as ph
 from motions import EPS, R0, START, moments
+from polhode._mechanics.registry import FORCES, TORQUES
 
 BODY = moments(1, 2, 2.5)
 I = np.array([1, 2, 2.5])  # noqa: E741
@@ -389,3 +391,13 @@ def test_invalid_arguments_raise_value_errors(make, parts):
 def test_wrong_types_raise_type_errors(make):
     with pytest.raises(TypeError):
         make(ph.torque)
+
+
+@pytest.mark.parametrize("kind", ["torque", "force"])
+def test_arguments_have_the_words_of_scenes(kind):
+    registry = {"torque": TORQUES, "force": FORCES}[kind]
+    module = getattr(ph, kind)
+    for name, entry in registry.items():
+        names = set(inspect.signature(getattr(module, name)).parameters)
+        # An empty field: in scenes the law is this value alone.
+        assert {argument.field for argument in entry.arguments if argument.field} <= names, name

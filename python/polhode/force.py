@@ -35,13 +35,13 @@ def constant(F: Any) -> Force:
     return _force("constant", F)
 
 
-def thrust(F: Any, at: Any = None) -> Force:
-    """Return a force constant in body axes, a vector or (3,) in N, such as a thruster's.
+def thrust(force: Any, at: Any = None) -> Force:
+    """Return a force F constant in body axes, a vector or (3,) in N, such as a thruster's.
 
     It acts at the point `at` of the body (in body axes, m) and so exerts the torque ``(at − c)∧F`` about the
     centre of mass c; by default it acts at the centre of mass.
     """
-    return _force("thrust", F) if at is None else _force("thrust", F, at)
+    return _force("thrust", force) if at is None else _force("thrust", force, at)
 
 
 def drag(k: float) -> Force:

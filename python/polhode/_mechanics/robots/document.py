@@ -12,6 +12,9 @@ from xml.parsers import expat
 
 _LARGEST, _DEEPEST = 50_000_000, 200
 
+# Products of three numbers below this do not overflow.
+_GREATEST = 1e100
+
 
 class DocumentError(ValueError):
     """A mistake in an XML file, with its place."""
@@ -25,12 +28,12 @@ class Source:
     lines: list[str]
 
     def error(self, line: int, column: int, words: str, kind: str = "error") -> str:
-        """Return a message with the place, and the source line with carets under the element."""
+        """Return a message with the place, and the source line with carets under the element or word."""
         message = f"{self.name}:{line}:{column + 1}: {kind}: {words}"
         text = self.lines[line - 1].replace("\t", " ").rstrip() if line <= len(self.lines) else ""
         if not text.strip() or not text.isprintable():
             return message
-        found = re.match(r"<[^\s>]*>?", text[column:])
+        found = re.match(r"<[^\s>]*>?|\w+", text[column:])
         bar = " " * len(str(line))
         carets = "^" * (len(found[0]) if found else 1)
         return f"{message}\n{bar} |\n{line} | {text}\n{bar} | {' ' * column}{carets}"
@@ -105,8 +108,8 @@ class Node:
             value = float(word) if word.isascii() and "_" not in word else math.nan
         except ValueError:
             value = math.nan
-        if not math.isfinite(value):
-            raise self.error(f"{what} must have finite numbers, got {word!r}")
+        if not abs(value) < _GREATEST:
+            raise self.error(f"{what} must have numbers below {_GREATEST:g}, got {word!r}")
         return value
 
 

@@ -52,7 +52,10 @@ class Inertial:
             inertia = Inertia.from_matrix(self.matrix)
         except ValueError:
             raise self.node.error(slips.explain(self.case())) from None
-        return Body(self.mass, inertia).moved(self.rotor, self.center)
+        try:
+            return Body(self.mass, inertia).moved(self.rotor, self.center)
+        except ValueError as error:
+            raise self.node.error(str(error)) from None
 
     def case(self) -> slips.Case:
         """Return what the search for slips needs."""

@@ -1,13 +1,14 @@
 """`polhode check` of robot files and meshes: a line for each link, places, doubts about units, exit codes."""
 
 import json
+import re
 import shutil
 from types import SimpleNamespace
 
 import pytest
 
 import polhode as ph
-from command_line import EXAMPLES, polhode
+from command_line import EXAMPLES, ROOT, polhode
 from meshes import cube, write_binary_stl
 from polhode._cli.main import main
 
@@ -90,6 +91,15 @@ def test_the_format_follows_from_the_root_element(tmp_path, check):
     assert bad["errors"].startswith(
         "d.xml:1:1: error: the root element must be <robot> (URDF) or <mujoco> (MJCF) or <sdf> (SDF)"
     )
+
+
+def test_the_guide_shows_what_is_printed(tmp_path, check):
+    guide = (ROOT / "docs/motion.md").read_text()
+    (text,) = re.findall(r"<robot .*?</robot>\n", guide, flags=re.DOTALL)
+    (shown,) = re.findall(r"\$ polhode check arm.urdf\n(.*?)```", guide, flags=re.DOTALL)
+    (tmp_path / "arm.urdf").write_text(text.replace('izz="0.04"', 'izz="0.4"'))
+    done = check("arm.urdf")
+    assert done.stdout + done.stderr == shown
 
 
 @pytest.mark.parametrize("name", ["absent.urdf", "absent.stl"])

@@ -256,7 +256,7 @@ def test_links_that_are_frames_are_left_out(tmp_path):
 @pytest.mark.parametrize(
     ("inertial", "parts"),
     [
-        (tensor(1, 1, 3), ["1, 1, 3 kg m²", "by 1 kg m² (33 %)", "∫x² dm"]),
+        (tensor(1, 1, 3), ["1, 1, 3 kg m²", "by 1 kg m² (33.3 %)", "∫x² dm"]),
         (tensor(1, 1, 1, 1, 1, 1), ["all six entries are 1, a placeholder"]),
         (tensor(1, -2, 3), ["not positive definite", "-2", "sign of iyy"]),
         # A plate, 1/12, 1/12 and 1/6, with three digits.

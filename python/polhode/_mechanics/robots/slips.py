@@ -63,22 +63,22 @@ def explain(case: Case) -> str:
     """Return by how much an impossible inertia is wrong, and the probable slip."""
     a, b, c = case.moments.tolist()
     moments = f"principal moments {a:.6g}, {b:.6g}, {c:.6g} kg m²"
-    if a < 0 and not is_possible(case.matrix, tolerance=0) and a < -_ROUNDING * abs(c):
+    if a < -_ROUNDING * abs(c):
         words = f"inertia is not positive definite: {moments}; none may be negative"
     else:
         excess = c - a - b
         words = (
             f"no body has this inertia: {moments}; the largest exceeds the sum of the others "
-            f"by {excess:.3g} kg m² ({100 * excess / c:.2g} %)"
+            f"by {excess:.3g} kg m² ({100 * excess / c:.3g} %)"
         )
     slip = next(filter(None, (find(case) for find in _SLIPS)), None)
     return f"{words}. Probable slip: {slip}" if slip else words
 
 
-def is_possible(matrix: Array, tolerance: float = _ROUNDING) -> bool:
+def is_possible(matrix: Array) -> bool:
     """Whether a body has this inertia: no moment negative, none above the sum of the others."""
     a, b, c = np.linalg.eigvalsh(matrix).tolist()
-    return bool(a >= -tolerance * abs(c) and c - a - b <= tolerance * abs(c))
+    return bool(a >= -_ROUNDING * abs(c) and c - a - b <= _ROUNDING * abs(c))
 
 
 # --- slips, the most certain first: each function returns its words, or None
@@ -176,7 +176,8 @@ def _power_of_ten(case: Case) -> str | None:
                 corrected[k, k] = own * 10.0 ** (sign * power)
                 if is_possible(corrected):
                     size = "large" if sign < 0 else "small"
-                    words = f"{_NAMES[k]} = {own:g} is too {size} by a factor of about 10^{power}"
+                    factor = "10" if power == 1 else f"10^{power}"
+                    words = f"{_NAMES[k]} = {own:g} is too {size} by a factor of about {factor}"
                     return words + _FACTORS.get(power, "") + "; check exponent and unit"
     return None
 

@@ -171,6 +171,7 @@ BODIES = """
         "",
         'eulerseq="ZyX" inertiafromgeom="true"',
         'inertiagrouprange="0 4" angle="radian"',
+        'settotalmass="5"',
     ],
 )
 def test_bodies_agree_with_mujoco(settings, tmp_path):
@@ -391,7 +392,7 @@ def test_mistakes_in_urdf_have_a_place(inertial, message, tmp_path):
         ('<geom type="box" size="1 1 -1"/>', "", "lengths[2]"),
         ('<geom type="capsule" size="1" fromto="0 0 0 0 0 0"/>', "", "two different points"),
         ('<replicate count="2"/>', "", "<replicate> is not supported"),
-        ('<geom size="1"/>', '<compiler settotalmass="5"/>', "'settotalmass' of <compiler> is not supported"),
+        ('<geom size="1"/>', '<compiler boundmass="5"/>', "'boundmass' of <compiler> is not supported"),
         ('<geom size="1"/>', '<compiler coordinate="global"/>', "global"),
         ('<geom size="1"/>', '<compiler angle="turn"/>', "angle must be one of degree, radian, got 'turn'"),
         ('<geom size="1"/>', '<compiler eulerseq="xy"/>', "eulerseq"),

@@ -11,15 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-from polhode._mechanics.bodies import Body
+from polhode._mechanics.bodies import Body, Inertia
 from polhode._mechanics.robots.document import Node, read
 from polhode._mechanics.robots.geoms import Defaults, geom_body
 from polhode._mechanics.robots.link import Inertial, Link, link_of
 from polhode._mechanics.robots.orientation import Compiler, Place, place_of
 from polhode._mechanics.robots.urdf import required_number
 
-# Attributes of <compiler> with which MuJoCo changes masses.
-_CHANGED_MASSES = ("settotalmass", "boundmass", "boundinertia")
+# Attributes of <compiler> with which MuJoCo changes the masses and inertias of some bodies.
+_CHANGED_MASSES = ("boundmass", "boundinertia")
 
 # Elements that MuJoCo expands to bodies or geoms.
 _EXPANDED = ("attach", "composite", "flexcomp", "replicate")
@@ -38,7 +38,19 @@ def links(root: Node) -> list[Link]:
             if node.tag in _EXPANDED
         ]
         found += model.bodies(world, world.attributes.get("childclass", "main"), numbers)
+    _set_total_mass(found, model.compiler.total_mass)
     return found
+
+
+def _set_total_mass(links: list[Link], total: float) -> None:
+    """Scale the bodies to a total mass, if this is positive."""
+    bodies = [link.body for link in links if link.body is not None]
+    if total > 0 and bodies:
+        factor = total / sum(body.mass for body in bodies)
+        for link in links:
+            if (body := link.body) is not None:
+                scaled = Inertia.from_matrix(factor * body.inertia.matrix)
+                link.body = Body(factor * body.mass, scaled, body.center_of_mass)
 
 
 def _include(node: Node, folder: Path, known: set[str]) -> None:
@@ -80,12 +92,14 @@ def _compiler(root: Node) -> Compiler:
         if len(sequence) != 3 or not set(sequence) <= set("xyzXYZ"):
             raise node.error(f"eulerseq must be three of x, y, z, X, Y, Z, got {sequence!r}")
         node.numbers("inertiagrouprange", 2)
+        node.numbers("settotalmass", 1)
     first, last = (int(float(x)) for x in settings.get("inertiagrouprange", "0 5").split())
     return Compiler(
         settings.get("angle", "degree") == "degree",
         settings.get("eulerseq", "xyz"),
         settings.get("inertiafromgeom", "auto"),
         range(first, last + 1),
+        float(settings.get("settotalmass", "0")),
     )
 
 

@@ -23,6 +23,7 @@ class Compiler:
     euler_sequence: str
     inertia_from_geom: str
     groups: range
+    total_mass: float
 
 
 def place_of(node: Node, compiler: Compiler, attributes: dict[str, str] | None = None) -> Place:

@@ -50,14 +50,15 @@ def read_mjcf(path: str | os.PathLike[str]) -> dict[str, Body]:
     The element `inertial` may have any orientation (``quat``, ``axisangle``, ``euler``, ``xyaxes`` or
     ``zaxis``). Without it the inertia is the sum over the geoms that are spheres, capsules, cylinders,
     ellipsoids or boxes, with their mass or density, default classes and frames. The settings `angle`,
-    `eulerseq`, `inertiafromgeom` and `inertiagrouprange` of `compiler` apply, and included files are read.
+    `eulerseq`, `inertiafromgeom`, `inertiagrouprange` and `settotalmass` of `compiler` apply, and included
+    files are read.
 
     An unnamed body is called ``"body N"``, with its number in MuJoCo. Bodies with neither an inertial element
     nor a geom with mass are left out.
 
     Not supported, and an error where it determines an inertia: geoms that are meshes, ``shellinertia``,
-    ``attach``, ``replicate``, ``composite`` and ``flexcomp``; ``settotalmass``, ``boundmass``,
-    ``boundinertia`` and global coordinates. `balanceinertia` is ignored: an impossible inertia is an error.
+    ``attach``, ``replicate``, ``composite`` and ``flexcomp``; ``boundmass``, ``boundinertia`` and global
+    coordinates. `balanceinertia` is ignored: an impossible inertia is an error.
 
     Returns and errors are those of `read_urdf`.
     """

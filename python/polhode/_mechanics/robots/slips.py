@@ -144,7 +144,8 @@ def _products_in_another_unit(case: Case) -> str | None:
 def _other_point(case: Case) -> str | None:
     d = case.center
     steiner = case.mass * (d @ d * np.eye(3) - np.outer(d, d))
-    if is_possible(case.matrix + steiner):
+    # Any impossible inertia is possible with a large term: this one must be needed by more than half.
+    if is_possible(case.matrix + steiner) and not is_possible(case.matrix + 0.5 * steiner):
         return (
             "inertia about another point than the centre of mass: it is possible with the term m d² of the "
             f"origin ({np.max(np.diag(steiner)):.3g} kg m²), which was subtracted once too often"

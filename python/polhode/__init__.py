@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere
     from polhode._mechanics.free_motion import FlowDerivatives, FreeMotion, SymmetricTop, describe_free
     from polhode._mechanics.result import Certificate, Crossings, Failure
+    from polhode._mechanics.robots.read import read_mjcf, read_sdf, read_urdf
     from polhode._mechanics.simulate import simulate, simulate_blocks
     from polhode._mechanics.state import State
     from polhode._mechanics.statistics import Moments
@@ -57,8 +58,9 @@ __all__ = [
     "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline", "Scene", "SceneError", "State",
     "Stepper", "SymmetricTop", "Trajectory", "algebra", "axial", "bivector", "concatenate", "cross",
     "describe_free", "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict",
-    "from_pauli", "mean", "multivector", "scalar", "simulate", "simulate_blocks", "slerp", "split",
-    "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
+    "from_pauli", "mean", "multivector", "read_mjcf", "read_sdf", "read_urdf", "scalar", "simulate",
+    "simulate_blocks", "slerp", "split", "stack", "to_dict", "to_pauli", "torque", "trivector", "vector",
+    "view",
 ]
 # fmt: on
 
@@ -76,6 +78,7 @@ _LATER = {
         "_mechanics.bodies": "Body Inertia",
         "_mechanics.free_motion": "FlowDerivatives describe_free",
         "_mechanics.result": "Certificate Crossings Failure",
+        "_mechanics.robots.read": "read_mjcf read_sdf read_urdf",
         "_mechanics.state": "State",
         "_mechanics.statistics": "Moments",
         "_mechanics.stepper": "Stepper",

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli import common
+from polhode._cli import check, common
 from polhode._cli.common import add_command, file_name, progress, whole_number
 from polhode._native import SceneError, __version__
 from polhode._support.files import UnreadableError
@@ -129,10 +129,7 @@ def _add_scenes(commands: Any) -> None:
         help="number of threads for ensembles, default all cores; results do not depend on it",
     )
 
-    check = add_command(commands, "check", _check, help="check scenes and their meshes without running them")
-    check.add_argument("scenes", metavar="SCENE.toml", nargs="+", help="scene files")
-    check.add_argument("--json", action="store_true", help="print the findings as JSON")
-
+    check.add(commands)
     view = add_command(
         commands,
         "view",
@@ -281,31 +278,6 @@ def _run_many(
     if not options.json:
         print(as_text(result))
     return result
-
-
-def _check(options: argparse.Namespace) -> int:
-    from polhode._scene.scene import Scene
-    from polhode._support.memory import size
-
-    findings: list[dict[str, Any]] = []
-    for path in options.scenes:
-        try:
-            scene = Scene.read(path)
-        except SceneError as error:
-            findings.append({"scene": path, "ok": False, "errors": str(error)})
-            if not options.json:
-                _complain(str(error), common.BAD_INPUT)
-            continue
-        findings.append({"scene": path, "ok": True, "body": repr(scene.body)})
-        words = f"{path}: ok, {scene.body!r}, {len(scene.times)} output times"
-        if scene.ensemble is not None:
-            findings[-1] |= {"bodies": scene.ensemble.number, "bytes": scene.result_bytes}
-            words += f", {scene.ensemble.number} bodies, {size(scene.result_bytes)} of results"
-        if not options.json:
-            print(words)
-    if options.json:
-        print(json.dumps(findings, indent=2))
-    return common.OK if all(finding["ok"] for finding in findings) else common.BAD_INPUT
 
 
 def _checked_targets(name: str | None, scene: Scene) -> list[Path]:

@@ -1,0 +1,1 @@
+"""Bodies of the links in robot files: URDF, MJCF and SDF."""

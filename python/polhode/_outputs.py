@@ -67,7 +67,14 @@ def save(self: Trajectory, path: str | os.PathLike[str]) -> None:
     write_atomically({Path(path): netcdf(self)})
 
 
-def plot(self: Trajectory, kind: str = "motion", *, view: Any = None, time: float | None = None) -> Figure:
+def plot(
+    self: Trajectory,
+    kind: str = "motion",
+    *,
+    view: Any = None,
+    time: float | None = None,
+    ax: Axes | None = None,
+) -> Figure:
     """Return a matplotlib figure of the motion of one body.
 
     Parameters
@@ -81,11 +88,15 @@ def plot(self: Trajectory, kind: str = "motion", *, view: Any = None, time: floa
         Azimuth and elevation of the camera in degrees, for figures in 3-d; None for the default.
     time
         Time of the figure ``"scene"`` in s; None for the last output time.
+    ax
+        Plane axes of matplotlib to draw on, without title and caption; their figure is returned. None for a
+        new figure. For all kinds but ``"motion"``, ``"drift"``, and ``"phase"`` of bodies whose Ω stays on an
+        ellipsoid, which have several panels.
 
     Raises
     ------
     ValueError
-        For a batch, a kind that does not fit the motion, or too few output times.
+        For a batch, a kind that does not fit the motion or `ax`, or too few output times.
     ImportError
         Without matplotlib, and for ``"scene"`` without Playwright: ``pip install 'polhode[film]'``.
     OSError
@@ -94,7 +105,7 @@ def plot(self: Trajectory, kind: str = "motion", *, view: Any = None, time: floa
     self._require_one("plot")
     from polhode._figures.registry import figure
 
-    return figure(self, kind, view, time)
+    return figure(self, kind, view, time, ax)
 
 
 def film(

@@ -19,7 +19,9 @@ from polhode._scene.scene import Scene
 from polhode._viewer.notebook import view as view
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from polhode._viewer.widget import Viewer
@@ -33,6 +35,38 @@ def to_xarray(self: Trajectory) -> xarray.Dataset:
     from polhode._report.netcdf import to_xarray
 
     return to_xarray(self)
+
+
+def to_dataframe(self: Trajectory) -> pandas.DataFrame:
+    """Return a `pandas.DataFrame` with a row for each output time, in SI units.
+
+    The index is ``time`` in s; for a batch, it is a `MultiIndex` of ``body``, the number of the body in C
+    order, and ``time``. The columns are named as the variables of `to_xarray`, with the component:
+
+    - ``attitude_w``, ``_x``, ``_y``, ``_z``: Hamilton quaternion from body axes to space axes;
+    - ``omega_body_x``, ``_y``, ``_z`` in rad/s, in body axes;
+    - ``momentum_space_x``, ``_y``, ``_z`` in kg m²/s, in space axes;
+    - ``position_x``, ``_y``, ``_z`` in m and ``velocity_x``, ``_y``, ``_z`` in m/s, in space axes;
+    - ``energy`` in J.
+
+    x, y, z of a bivector are its components ``(e2e3, e3e1, e1e2)``. ``frame.attrs["units"]`` has the unit of
+    each column; the other attributes are those of `to_xarray`.
+
+    Raises
+    ------
+    ImportError
+        Without pandas: ``pip install 'polhode[pandas]'``.
+    """
+    from polhode._report.table import to_dataframe
+
+    return to_dataframe(self)
+
+
+def _repr_html_(self: Trajectory) -> str:
+    """Return a table for notebooks: what `repr` gives, the regime and the certificate."""
+    from polhode._report.notebook import as_html
+
+    return as_html(self)
 
 
 def read(path: str | os.PathLike[str]) -> Trajectory:
@@ -169,7 +203,7 @@ def view_of(self: Any, duration: float | None = None) -> Viewer:
     return view(self, duration=duration)
 
 
-for _method in (to_xarray, save, plot, film):
+for _method in (to_xarray, to_dataframe, save, plot, film, _repr_html_):
     setattr(Trajectory, _method.__name__, _method)
 setattr(Trajectory, "read", staticmethod(read))  # noqa: B010, declared for type checkers only
 for _kind in (Trajectory, Scene, FreeMotion, ClosedForm):

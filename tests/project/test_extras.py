@@ -23,6 +23,7 @@ def trajectory():
     [
         ("xarray", "io", lambda t, path: t.to_xarray()),
         ("h5netcdf", "io", lambda t, path: t.save(path / "a.nc")),
+        ("pandas", "pandas", lambda t, path: t.to_dataframe()),
         ("matplotlib.figure", "plot", lambda t, path: t.plot()),
         ("scipy.spatial.transform", "scipy", lambda t, path: t.rotor.to_scipy()),
     ],

@@ -87,18 +87,30 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
 
 
 def save(self: Trajectory, path: str | os.PathLike[str]) -> None:
-    """Write a netCDF file atomically: an older file is replaced only when the new one is complete.
+    """Write a file atomically: an older file is replaced only when the new one is complete.
+
+    The suffix selects the form:
+
+    - ``.nc``: netCDF, with units, conventions, events, certificate and attributes; `read` reads it;
+    - ``.csv``: a table with the columns of `to_dataframe` after ``time``, of a batch after ``body`` and
+      ``time``; the first line has their names, and every number reads back to the same bits;
+    - ``.parquet``: the data frame of `to_dataframe`, with its attributes.
 
     Raises
     ------
     ValueError
-        If the suffix of the path is not ``.nc``.
+        If the path has another suffix.
+    ImportError
+        Without the libraries of the form: ``pip install 'polhode[io]'`` for ``.nc``, ``'polhode[parquet]'``
+        for ``.parquet``.
+    OSError
+        If the file cannot be written.
     """
-    from polhode._report.netcdf import netcdf
+    from polhode._report.output import encoded
     from polhode._support.files import form_of, write_atomically
 
-    form_of(path, "a motion")
-    write_atomically({Path(path): netcdf(self)})
+    form = form_of(path, "a motion")
+    write_atomically({Path(path): encoded(self, form)})
 
 
 def plot(

@@ -171,11 +171,11 @@ def test_outputs_that_cannot_be_written(output, parts, scene, tmp_path):
 
 
 @pytest.mark.parametrize("output", ["out.txt", "/dev/full", "small.toml", ".nc", ""])
-def test_an_output_without_suffix_nc_is_a_usage_error(output, scene, tmp_path):
+def test_an_output_with_another_suffix_is_a_usage_error(output, scene, tmp_path):
     before = sorted(tmp_path.iterdir())
     done = polhode("run", scene, "-o", output, cwd=tmp_path)
     assert done.returncode == 2
-    assert f"a motion is saved as FILE.nc, not '{output}'" in done.stderr
+    assert f"a motion is saved as FILE.nc, FILE.csv or FILE.parquet, not '{output}'" in done.stderr
     assert sorted(tmp_path.iterdir()) == before
 
 

@@ -23,6 +23,8 @@ def trajectory():
     [
         ("xarray", "io", lambda t, path: t.to_xarray()),
         ("h5netcdf", "io", lambda t, path: t.save(path / "a.nc")),
+        ("pyarrow.parquet", "parquet", lambda t, path: t.save(path / "a.parquet")),
+        ("pandas", "parquet", lambda t, path: t.save(path / "a.parquet")),
         ("pandas", "pandas", lambda t, path: t.to_dataframe()),
         ("matplotlib.figure", "plot", lambda t, path: t.plot()),
         ("scipy.spatial.transform", "scipy", lambda t, path: t.rotor.to_scipy()),

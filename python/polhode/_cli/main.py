@@ -110,10 +110,10 @@ def _add_scenes(commands: Any) -> None:
     run.add_argument(
         "-o",
         "--output",
-        metavar="FILE.nc",
+        metavar="FILE",
         type=file_name("a motion"),
-        help="write the motion, or all motions of an ensemble, to this netCDF file, and figures next to it "
-        "(FILE-motion.png …)",
+        help="write the motion to FILE.nc (netCDF), FILE.csv or FILE.parquet, all motions of an ensemble to "
+        "FILE.nc, and figures next to it (FILE-motion.png …)",
     )
     run.add_argument(
         "--html",
@@ -256,9 +256,11 @@ def _run_one(
     contents: dict[Path, bytes] = {}
     if targets:
         from polhode._figures.registry import pictures
-        from polhode._report.netcdf import netcdf
+        from polhode._report.output import encoded
+        from polhode._support.files import form_of
 
-        written = (netcdf(trajectory), *pictures(scene, trajectory))
+        data = encoded(trajectory, form_of(targets[0], "a motion"))
+        written = (data, *pictures(scene, trajectory))
         contents |= dict(zip(targets, written, strict=True))
     if pages:
         from polhode._viewer.server import motion_page
@@ -313,11 +315,17 @@ def _checked_targets(name: str | None, scene: Scene) -> list[Path]:
     if name is None:
         return []
     from polhode._figures.registry import ON_ELLIPSOID
-    from polhode._report.netcdf import require_libraries
+    from polhode._report.output import require_libraries
     from polhode._support.extras import optional
-    from polhode._support.files import check_target
+    from polhode._support.files import check_target, form_of
 
-    require_libraries()
+    form = form_of(name, "a motion")
+    if scene.ensemble is not None and form != "nc":
+        raise ValueError(
+            f"{name}: this scene has an ensemble of {scene.ensemble.number} bodies, which is written as "
+            f"netCDF; use -o {Path(name).with_suffix('.nc')}"
+        )
+    require_libraries(form)
     optional("matplotlib", "plot", "a figure")
     figures = ("motion", "polhode" if scene.kind in ON_ELLIPSOID else "axis")
     if scene.ensemble is not None:

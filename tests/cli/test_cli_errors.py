@@ -228,7 +228,8 @@ def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
         (tmp_path / file).write_bytes(f"older {file}".encode())
         older[file] = (tmp_path / file).read_bytes()
     done = polhode(
-        *("run", scene, "-o", tmp_path / "out.nc"), through=[sys.executable, "-c", LIMITED, str(size)]
+        *("run", scene, "--force", "-o", tmp_path / "out.nc"),
+        through=[sys.executable, "-c", LIMITED, str(size)],
     )
     assert done.returncode == 1
     assert f"cannot write {tmp_path / name}" in done.stderr
@@ -264,7 +265,7 @@ def test_an_interrupted_run_leaves_no_file(tmp_path):
     (tmp_path / "long.toml").write_text(ENDLESS)
     (tmp_path / "out.nc").write_bytes(b"older")
     program = "from polhode._cli.main import main; print('go', flush=True); raise SystemExit(main())"
-    command = [sys.executable, "-c", program, "run", "long.toml", "-o", "out.nc"]
+    command = [sys.executable, "-c", program, "run", "long.toml", "--force", "-o", "out.nc"]
     with processes.start(command, cwd=tmp_path) as process:
         assert process.stdout.readline() == "go\n"
         time.sleep(1.0)

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode._cli import common
-from polhode._cli.common import add_command, file_name, progress, whole_number
+from polhode._cli.common import add_command, file_name, progress, read_scene, whole_number
 from polhode._native import SceneError, __version__
 from polhode._support.files import UnreadableError
 
@@ -106,7 +106,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _add_scenes(commands: Any) -> None:
     run = add_command(commands, "run", _run, help="run a scene: summary, netCDF file, figures")
-    run.add_argument("scene", metavar="SCENE.toml", help="the scene file")
+    run.add_argument("scene", metavar="SCENE.toml", help="the scene file; - is standard input")
     run.add_argument(
         "-o",
         "--output",
@@ -121,7 +121,11 @@ def _add_scenes(commands: Any) -> None:
         type=file_name("a page"),
         help="write a self-contained page that shows the motion in a browser",
     )
-    run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
+    words = "overwrite existing files even if polhode did not write them"
+    run.add_argument("--force", action="store_true", help=words)
+    words = "write the data alone; then matplotlib is not needed"
+    run.add_argument("--no-figures", dest="figures", action="store_false", help=words)
+    _add_amount(run, "the summary as JSON, in SI units")
     run.add_argument(
         "--threads",
         metavar="N",
@@ -130,8 +134,8 @@ def _add_scenes(commands: Any) -> None:
     )
 
     check = add_command(commands, "check", _check, help="check scenes and their meshes without running them")
-    check.add_argument("scenes", metavar="SCENE.toml", nargs="+", help="scene files")
-    check.add_argument("--json", action="store_true", help="print the findings as JSON")
+    check.add_argument("scenes", metavar="SCENE.toml", nargs="+", help="scene files; - is standard input")
+    _add_amount(check, "the findings as JSON")
 
     view = add_command(
         commands,
@@ -148,6 +152,13 @@ def _add_scenes(commands: Any) -> None:
     )
     words = "print the address of the page without opening it"
     view.add_argument("--no-browser", dest="browser", action="store_false", help=words)
+
+
+def _add_amount(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add the options of what is printed."""
+    amount = parser.add_mutually_exclusive_group()
+    amount.add_argument("--json", action="store_true", help=f"print {what}")
+    amount.add_argument("--quiet", action="store_true", help="print errors and warnings only")
 
 
 def _add_formulas(commands: Any) -> None:
@@ -218,20 +229,25 @@ def _repl(_: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from polhode._scene.scene import Scene
-
-    scene = Scene.read(options.scene)
-    targets = _checked_targets(options.output, scene)
+    scene = read_scene(options.scene)
+    targets = _checked_targets(options, scene)
     pages = [] if options.html is None else [Path(options.html)]
     if pages:
         from polhode._viewer.server import check_page
 
         check_page(pages[0])
+    if not options.force:
+        from polhode._report.output import require_own
+
+        for path in (*targets, *pages):
+            require_own(path)
     run = _run_one if scene.ensemble is None else _run_many
     result = run(scene, targets, pages, options)
     written = result["files"] = [str(path) for path in (*targets, *pages)]
     if options.json:
         print(json.dumps(result, indent=2, allow_nan=False))
+    elif options.quiet:
+        pass
     elif written:
         print("Written", *(f"  {path}" for path in written), sep="\n")
     else:
@@ -246,22 +262,22 @@ def _run_one(
 ) -> dict[str, Any]:
     """Run one body, print its summary and write its files, all or none; return the summary."""
     from polhode._report.summary import as_text, summary
-    from polhode._support.files import write_atomically
+    from polhode._support.files import form_of, write_atomically
 
-    with progress(scene.path.name) as report:
+    with progress(scene.path.name, options.quiet) as report:
         trajectory = scene.run(report, options.threads)
     result = summary(scene, trajectory)
-    if not options.json:
+    if not (options.json or options.quiet):
         print(as_text(result))
     contents: dict[Path, bytes] = {}
     if targets:
-        from polhode._figures.registry import pictures
         from polhode._report.output import encoded
-        from polhode._support.files import form_of
 
-        data = encoded(trajectory, form_of(targets[0], "a motion"))
-        written = (data, *pictures(scene, trajectory))
-        contents |= dict(zip(targets, written, strict=True))
+        contents[targets[0]] = encoded(trajectory, form_of(targets[0], "a motion"))
+    if targets[1:]:
+        from polhode._figures.registry import pictures
+
+        contents |= dict(zip(targets[1:], pictures(scene, trajectory), strict=True))
     if pages:
         from polhode._viewer.server import motion_page
 
@@ -279,20 +295,19 @@ def _run_many(
     from polhode._viewer.server import scene_page
 
     contents = {path: scene_page(scene) for path in pages}
-    result = summary(ensemble.run(scene, targets, options.threads, contents))
-    if not options.json:
+    result = summary(ensemble.run(scene, targets, options.threads, contents, options.quiet))
+    if not (options.json or options.quiet):
         print(as_text(result))
     return result
 
 
 def _check(options: argparse.Namespace) -> int:
-    from polhode._scene.scene import Scene
     from polhode._support.memory import size
 
     findings: list[dict[str, Any]] = []
     for path in options.scenes:
         try:
-            scene = Scene.read(path)
+            scene = read_scene(path)
         except SceneError as error:
             findings.append({"scene": path, "ok": False, "errors": str(error)})
             if not options.json:
@@ -303,34 +318,35 @@ def _check(options: argparse.Namespace) -> int:
         if scene.ensemble is not None:
             findings[-1] |= {"bodies": scene.ensemble.number, "bytes": scene.result_bytes}
             words += f", {scene.ensemble.number} bodies, {size(scene.result_bytes)} of results"
-        if not options.json:
+        if not (options.json or options.quiet):
             print(words)
     if options.json:
         print(json.dumps(findings, indent=2))
     return common.OK if all(finding["ok"] for finding in findings) else common.BAD_INPUT
 
 
-def _checked_targets(name: str | None, scene: Scene) -> list[Path]:
-    """Return the paths of the data and two figures, checked before the run."""
-    if name is None:
+def _checked_targets(options: argparse.Namespace, scene: Scene) -> list[Path]:
+    """Return the paths of the data and of two figures if they are wanted, checked before the run."""
+    if options.output is None:
         return []
     from polhode._figures.registry import ON_ELLIPSOID
     from polhode._report.output import require_libraries
     from polhode._support.extras import optional
     from polhode._support.files import check_target, form_of
 
-    form = form_of(name, "a motion")
+    output, form = Path(options.output), form_of(options.output, "a motion")
     if scene.ensemble is not None and form != "nc":
         raise ValueError(
-            f"{name}: this scene has an ensemble of {scene.ensemble.number} bodies, which is written as "
-            f"netCDF; use -o {Path(name).with_suffix('.nc')}"
+            f"{output}: this scene has an ensemble of {scene.ensemble.number} bodies, which is written as "
+            f"netCDF; use -o {output.with_suffix('.nc')}"
         )
     require_libraries(form)
-    optional("matplotlib", "plot", "a figure")
-    figures = ("motion", "polhode" if scene.kind in ON_ELLIPSOID else "axis")
-    if scene.ensemble is not None:
-        figures = ("ensemble", "directions")
-    output = Path(name)
+    figures: tuple[str, ...] = ()
+    if options.figures:
+        optional("matplotlib", "plot", "a figure")
+        figures = ("motion", "polhode" if scene.kind in ON_ELLIPSOID else "axis")
+        if scene.ensemble is not None:
+            figures = ("ensemble", "directions")
     targets = [output, *(output.with_name(f"{output.stem}-{figure}.png") for figure in figures)]
     for path in targets:
         check_target(path)

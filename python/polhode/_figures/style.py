@@ -45,7 +45,7 @@ _AS_FILES = {"svg.fonttype": "path", "svg.hashsalt": "polhode", "pdf.fonttype": 
 _UNDATED: dict[str, dict[str, Any]] = {
     "svg": {"Date": None},
     "pdf": {"CreationDate": None},
-    "png": {"Software": None},
+    "png": {"Software": "Polhode"},
 }
 
 # (longest duration to show in a unit, seconds in the unit, its name)

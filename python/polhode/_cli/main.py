@@ -30,8 +30,8 @@ def main(arguments: list[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
     _restore_ctrl_c()
-    options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
     try:
+        options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
         with _printed_warnings():
             code = int(options.command(options))
         print(end="", flush=True)
@@ -93,10 +93,10 @@ def _parser() -> argparse.ArgumentParser:
         ),
     )
     parser.add_argument("--version", action="version", version=f"polhode {__version__}")
+    from polhode._cli import completion, examples, figure
+
+    completion.add(parser)
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
-
-    from polhode._cli import examples, figure
-
     _add_scenes(commands)
     _add_formulas(commands)
     figure.add(commands)

@@ -68,6 +68,20 @@ def test_parquet_keeps_values_index_and_units(motion, tmp_path):
     assert found.attrs["units"]["energy"] == "J"
 
 
+def test_attributes_of_the_user_are_kept_in_parquet(tmp_path):
+    pd = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    motion = ph.simulate(ASYMMETRIC, START, TIMES)
+    motion.attributes.update(run=np.int64(3), gains=np.ones(2), units="mine")
+    motion.save(tmp_path / "a.parquet")
+    found = pd.read_parquet(tmp_path / "a.parquet").attrs
+    assert (found["run"], found["gains"], found["units"]["energy"]) == (3, [1.0, 1.0], "J")
+    motion.attributes["body"] = ASYMMETRIC
+    with pytest.raises(TypeError, match=r"attributes\['body'\] of the motion is Inertia; .* convert it"):
+        motion.save(tmp_path / "b.parquet")
+    assert not (tmp_path / "b.parquet").exists()
+
+
 def test_failed_bodies_are_nan_in_csv(tmp_path):
     FAILED.save(tmp_path / "a.csv")
     header, rows = rows_of(tmp_path / "a.csv")

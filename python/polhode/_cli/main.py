@@ -105,7 +105,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_scenes(commands: Any) -> None:
-    run = add_command(commands, "run", _run, help="run a scene: summary, netCDF file, figures")
+    run = add_command(commands, "run", _run, help="run a scene: summary, data, figures")
     run.add_argument("scene", metavar="SCENE.toml", help="the scene file; - is standard input")
     run.add_argument(
         "-o",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -55,8 +56,14 @@ def to_dataframe(trajectory: Trajectory) -> pandas.DataFrame:
     else:
         index = pd.Index(trajectory.time, name="time")
     frame: pandas.DataFrame = pd.DataFrame(values_of(trajectory), index, list(UNITS))
-    frame.attrs |= {"units": {"time": "s", **UNITS}, **attributes_of(trajectory)}
+    attributes = {name: _plain(x) for name, x in attributes_of(trajectory).items()}
+    frame.attrs |= {**attributes, "units": {"time": "s", **UNITS}}
     return frame
+
+
+def _plain(x: Any) -> Any:
+    """Return numbers and arrays of NumPy as numbers and lists, which JSON can hold."""
+    return x.tolist() if isinstance(x, np.ndarray | np.generic) else x
 
 
 def header(many: bool) -> str:
@@ -81,7 +88,16 @@ def csv(trajectory: Trajectory) -> bytes:
 def parquet(trajectory: Trajectory) -> bytes:
     """Return the content of a Parquet file: the data frame with its units and attributes."""
     require_parquet()
-    content: Any = to_dataframe(trajectory).to_parquet(engine="pyarrow")
+    frame = to_dataframe(trajectory)
+    for name, x in frame.attrs.items():
+        try:
+            json.dumps(x)
+        except TypeError:
+            raise TypeError(
+                f"attributes[{name!r}] of the motion is {type(x).__name__}; a Parquet file takes text, "
+                "numbers and lists of them: convert it, or remove it"
+            ) from None
+    content: Any = frame.to_parquet(engine="pyarrow")
     return bytes(content)
 
 

@@ -19,7 +19,9 @@ from polhode._scene.scene import Scene
 from polhode._viewer.notebook import view as view
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from polhode._viewer.widget import Viewer
@@ -33,6 +35,38 @@ def to_xarray(self: Trajectory) -> xarray.Dataset:
     from polhode._report.netcdf import to_xarray
 
     return to_xarray(self)
+
+
+def to_dataframe(self: Trajectory) -> pandas.DataFrame:
+    """Return a `pandas.DataFrame` with a row for each output time, in SI units.
+
+    The index is ``time`` in s; for a batch, it is a `MultiIndex` of ``body``, the number of the body in C
+    order, and ``time``. The columns are named as the variables of `to_xarray`, with the component:
+
+    - ``attitude_w``, ``_x``, ``_y``, ``_z``: Hamilton quaternion from body axes to space axes;
+    - ``omega_body_x``, ``_y``, ``_z`` in rad/s, in body axes;
+    - ``momentum_space_x``, ``_y``, ``_z`` in kg m²/s, in space axes;
+    - ``position_x``, ``_y``, ``_z`` in m and ``velocity_x``, ``_y``, ``_z`` in m/s, in space axes;
+    - ``energy`` in J.
+
+    x, y, z of a bivector are its components ``(e2e3, e3e1, e1e2)``. ``frame.attrs["units"]`` has the unit of
+    each column; the other attributes are those of `to_xarray`.
+
+    Raises
+    ------
+    ImportError
+        Without pandas: ``pip install 'polhode[pandas]'``.
+    """
+    from polhode._report.table import to_dataframe
+
+    return to_dataframe(self)
+
+
+def _repr_html_(self: Trajectory) -> str:
+    """Return a table for notebooks: what `repr` gives, the regime and the certificate."""
+    from polhode._report.notebook import as_html
+
+    return as_html(self)
 
 
 def read(path: str | os.PathLike[str]) -> Trajectory:
@@ -53,21 +87,40 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
 
 
 def save(self: Trajectory, path: str | os.PathLike[str]) -> None:
-    """Write a netCDF file atomically: an older file is replaced only when the new one is complete.
+    """Write a file atomically: an older file is replaced only when the new one is complete.
+
+    The suffix selects the form:
+
+    - ``.nc``: netCDF, with units, conventions, events, certificate and attributes; `read` reads it;
+    - ``.csv``: a table with the columns of `to_dataframe` after ``time``, of a batch after ``body`` and
+      ``time``; the first line has their names, and every number reads back to the same bits;
+    - ``.parquet``: the data frame of `to_dataframe`, with its attributes.
 
     Raises
     ------
     ValueError
-        If the suffix of the path is not ``.nc``.
+        If the path has another suffix.
+    ImportError
+        Without the libraries of the form: ``pip install 'polhode[io]'`` for ``.nc``, ``'polhode[parquet]'``
+        for ``.parquet``.
+    OSError
+        If the file cannot be written.
     """
-    from polhode._report.netcdf import netcdf
+    from polhode._report.output import encoded
     from polhode._support.files import form_of, write_atomically
 
-    form_of(path, "a motion")
-    write_atomically({Path(path): netcdf(self)})
+    form = form_of(path, "a motion")
+    write_atomically({Path(path): encoded(self, form)})
 
 
-def plot(self: Trajectory, kind: str = "motion", *, view: Any = None, time: float | None = None) -> Figure:
+def plot(
+    self: Trajectory,
+    kind: str = "motion",
+    *,
+    view: Any = None,
+    time: float | None = None,
+    ax: Axes | None = None,
+) -> Figure:
     """Return a matplotlib figure of the motion of one body.
 
     Parameters
@@ -81,11 +134,15 @@ def plot(self: Trajectory, kind: str = "motion", *, view: Any = None, time: floa
         Azimuth and elevation of the camera in degrees, for figures in 3-d; None for the default.
     time
         Time of the figure ``"scene"`` in s; None for the last output time.
+    ax
+        Plane axes of matplotlib to draw on, without title and caption; their figure is returned. None for a
+        new figure. For all kinds but ``"motion"``, ``"drift"``, and ``"phase"`` of bodies whose Ω stays on an
+        ellipsoid, which have several panels.
 
     Raises
     ------
     ValueError
-        For a batch, a kind that does not fit the motion, or too few output times.
+        For a batch, a kind that does not fit the motion or `ax`, or too few output times.
     ImportError
         Without matplotlib, and for ``"scene"`` without Playwright: ``pip install 'polhode[film]'``.
     OSError
@@ -94,7 +151,7 @@ def plot(self: Trajectory, kind: str = "motion", *, view: Any = None, time: floa
     self._require_one("plot")
     from polhode._figures.registry import figure
 
-    return figure(self, kind, view, time)
+    return figure(self, kind, view, time, ax)
 
 
 def film(
@@ -158,7 +215,7 @@ def view_of(self: Any, duration: float | None = None) -> Viewer:
     return view(self, duration=duration)
 
 
-for _method in (to_xarray, save, plot, film):
+for _method in (to_xarray, to_dataframe, save, plot, film, _repr_html_):
     setattr(Trajectory, _method.__name__, _method)
 setattr(Trajectory, "read", staticmethod(read))  # noqa: B010, declared for type checkers only
 for _kind in (Trajectory, Scene, FreeMotion, ClosedForm):

@@ -154,7 +154,7 @@ def test_an_older_file_is_replaced_and_keeps_its_mode(scene, tmp_path):
     output = tmp_path / "out.nc"
     output.write_bytes(b"old")
     output.chmod(0o640)
-    assert polhode("run", scene, "-o", output).returncode == 0
+    assert polhode("run", scene, "-o", output, "--force").returncode == 0
     assert output.read_bytes().startswith(b"\x89HDF")
     assert output.stat().st_mode & 0o777 == 0o640
 

@@ -171,11 +171,11 @@ def test_outputs_that_cannot_be_written(output, parts, scene, tmp_path):
 
 
 @pytest.mark.parametrize("output", ["out.txt", "/dev/full", "small.toml", ".nc", ""])
-def test_an_output_without_suffix_nc_is_a_usage_error(output, scene, tmp_path):
+def test_an_output_with_another_suffix_is_a_usage_error(output, scene, tmp_path):
     before = sorted(tmp_path.iterdir())
     done = polhode("run", scene, "-o", output, cwd=tmp_path)
     assert done.returncode == 2
-    assert f"a motion is saved as FILE.nc, not '{output}'" in done.stderr
+    assert f"a motion is saved as FILE.nc, FILE.csv or FILE.parquet, not '{output}'" in done.stderr
     assert sorted(tmp_path.iterdir()) == before
 
 
@@ -228,7 +228,8 @@ def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
         (tmp_path / file).write_bytes(f"older {file}".encode())
         older[file] = (tmp_path / file).read_bytes()
     done = polhode(
-        *("run", scene, "-o", tmp_path / "out.nc"), through=[sys.executable, "-c", LIMITED, str(size)]
+        *("run", scene, "--force", "-o", tmp_path / "out.nc"),
+        through=[sys.executable, "-c", LIMITED, str(size)],
     )
     assert done.returncode == 1
     assert f"cannot write {tmp_path / name}" in done.stderr
@@ -264,7 +265,7 @@ def test_an_interrupted_run_leaves_no_file(tmp_path):
     (tmp_path / "long.toml").write_text(ENDLESS)
     (tmp_path / "out.nc").write_bytes(b"older")
     program = "from polhode._cli.main import main; print('go', flush=True); raise SystemExit(main())"
-    command = [sys.executable, "-c", program, "run", "long.toml", "-o", "out.nc"]
+    command = [sys.executable, "-c", program, "run", "long.toml", "--force", "-o", "out.nc"]
     with processes.start(command, cwd=tmp_path) as process:
         assert process.stdout.readline() == "go\n"
         time.sleep(1.0)

@@ -11,13 +11,13 @@ from motions import ASYMMETRIC, START
 MOTION = ph.simulate(ASYMMETRIC, START, [0.0, 1.0])
 
 WRITERS = {
-    "motion": (MOTION.save, r"a motion is saved as FILE\.nc"),
+    "motion": (MOTION.save, r"a motion is saved as FILE\.nc, FILE\.csv or FILE\.parquet"),
     "page": (lambda path: MOTION.view().save(path), r"a page is saved as FILE\.html or FILE\.htm"),
     "film": (MOTION.film, r"a film is saved as FILE\.mp4 or FILE\.gif"),
 }
 
 
-@pytest.mark.parametrize("name", ["a.csv", "t.json", "noext", "a.h5", "a.nc4", "a.nc.gz", ".nc"])
+@pytest.mark.parametrize("name", ["a.txt", "t.json", "noext", "a.h5", "a.nc4", "a.csv.gz", "a.xlsx", ".csv"])
 @pytest.mark.parametrize("kind", WRITERS)
 def test_an_unknown_suffix_is_refused(kind, name, bundle, tmp_path):
     if kind == "page":
@@ -31,16 +31,16 @@ def test_an_unknown_suffix_is_refused(kind, name, bundle, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["run", "small.toml", "-o"], "a motion is saved as FILE.nc"),
+        (["run", "small.toml", "-o"], "a motion is saved as FILE.nc, FILE.csv or FILE.parquet"),
         (["run", "small.toml", "--html"], "a page is saved as FILE.html or FILE.htm"),
         (["figure", "motion", "small.toml", "-o"], "a figure is saved as FILE.svg, FILE.pdf or FILE.png"),
         (["film", "small.toml", "-o"], "a film is saved as FILE.mp4 or FILE.gif"),
     ],
 )
 def test_the_command_reports_a_usage_error(arguments, message, scene):
-    done = polhode(*arguments, "a.csv", cwd=scene.parent)
+    done = polhode(*arguments, "a.txt", cwd=scene.parent)
     assert done.returncode == 2
-    assert f"{message}, not 'a.csv'" in done.stderr
+    assert f"{message}, not 'a.txt'" in done.stderr
     assert list(scene.parent.iterdir()) == [scene]
 
 

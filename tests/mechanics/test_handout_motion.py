@@ -383,6 +383,32 @@ def test_eq_4_33_the_two_rates_are_constant(i1, i3):
 
 
 @SYMMETRIC
+def test_eq_4_33_the_top_exposes_both_rates(i1, i3):
+    """`omega_l` and `omega_r`, the same from any state of the motion."""
+    top, J = top_of(i1, i3), ph.Inertia.from_principal_moments(i1, i1, i3)
+    assert top.omega_l.grades == top.omega_r.grades == (2,)
+    assert_equal(top.omega_l, START.rotor(J(START.omega_body)) / i1)
+    assert_equal(top.omega_r, (i1 - i3) / i1 * START.omega_body.components[2] * I * e3)
+    for t in (-20.0, 0.3, 20.0):
+        state = top.at(t)
+        again = ph.SymmetricTop(J, state.rotor, state.omega_body)
+        # Angles up to 40 carry their relative rounding.
+        assert_equal(again.omega_l, top.omega_l, 40 * EPS)
+        assert_equal(again.omega_r, top.omega_r, 40 * EPS)
+
+
+@SYMMETRIC
+def test_eq_4_34_and_4_35_by_the_rates_of_the_top(i1, i3):
+    """R' = −½ Ω_l R − ½ R Ω_r, Ω_S = Ω_l + R Ω_r ~R (4.31), and R(t) from the two exponentials."""
+    top, (_, R, body, R_rate, _) = top_of(i1, i3), moment_of_top(i1, i3)
+    assert_equal(R_rate, -0.5 * top.omega_l * R - 0.5 * R * top.omega_r, DERIVATIVE)
+    assert_equal(R(body), top.omega_l + R(top.omega_r), 20 * EPS)
+    t = np.linspace(-10, 10, 21)
+    expected = (-0.5 * top.omega_l * t).exp() * START.rotor * (-0.5 * top.omega_r * t).exp()
+    assert_equal(top.at(t).rotor, expected, 20 * EPS)
+
+
+@SYMMETRIC
 def test_eq_4_34_rate_of_the_rotor_of_the_top(i1, i3):
     """R' = −½ Ω_l R − ½ R Ω_r."""
     J, R, body, R_rate, _ = moment_of_top(i1, i3)

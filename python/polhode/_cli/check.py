@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._cli import common
-from polhode._cli.common import add_command
+from polhode._cli.common import add_amount, add_command, read_scene
 from polhode._native import SceneError
 
 if TYPE_CHECKING:
@@ -52,11 +52,13 @@ def add(commands: Any) -> None:
         description="Check scenes and their meshes, meshes (STL, OBJ, PLY), and the inertias of robot files "
         "(URDF, SDF, MJCF). Warnings question what is possible but improbable.",
     )
-    check.add_argument("files", metavar="FILE", nargs="+", help="a scene, a mesh or a robot file")
+    check.add_argument(
+        "files", metavar="FILE", nargs="+", help="a scene (- is standard input), a mesh or a robot file"
+    )
     check.add_argument(
         "--mass", metavar="KG", type=_mass, help="mass in kg of each of the meshes, to check their density"
     )
-    check.add_argument("--json", action="store_true", help="print the findings as JSON")
+    add_amount(check, "the findings as JSON")
 
 
 def _mass(text: str) -> float:
@@ -82,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
             finding.facts["warnings"] = finding.warnings
         facts.append(finding.facts)
         if not options.json:
-            for line in finding.lines:
+            for line in () if options.quiet else finding.lines:
                 print(line)
             for message in (*finding.errors, *finding.warnings):
                 print(message, file=sys.stderr)
@@ -95,11 +97,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _scene(path: str) -> Finding:
-    from polhode._scene.scene import Scene
     from polhode._support.memory import size
 
     try:
-        scene = Scene.read(path)
+        scene = read_scene(path)
     except SceneError as error:
         return Finding({"scene": path, "ok": False, "errors": str(error)}, errors=[str(error)])
     facts: dict[str, Any] = {"scene": path, "ok": True, "body": repr(scene.body)}

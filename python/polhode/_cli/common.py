@@ -4,15 +4,24 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from polhode._native import SceneError
 from polhode._support.files import form_of
+
+if TYPE_CHECKING:
+    from polhode._scene.scene import Scene
 
 OK, FAILED, BAD_INPUT, DRIFTED, INTERRUPTED = 0, 1, 3, 4, 130
 
 Report = Callable[[int, float], object]
+
+# Name of standard input in messages; bytes that are read from it, more than a scene may have.
+_STDIN, _LARGEST = "<stdin>", 10_000_001
 
 
 def add_command(
@@ -55,12 +64,42 @@ def whole_number(what: str, least: int, most: float) -> Callable[[str], int]:
     return checked
 
 
+def read_scene(name: str) -> Scene:
+    """Read a scene file; ``-`` is standard input, whose mesh is relative to the current folder.
+
+    Raises
+    ------
+    SceneError
+        As `Scene.read`; places in standard input have the file name ``<stdin>``.
+    """
+    from polhode._scene.scene import Scene
+
+    if name != "-":
+        return Scene.read(name)
+    from polhode._viewer.document import of_text, scene_of
+
+    if sys.stdin is None:
+        raise OSError("standard input is closed; give the path of a scene file")
+    try:
+        text = sys.stdin.buffer.read(_LARGEST).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SceneError(f"{_STDIN}: error: not UTF-8 text from byte {error.start} on") from None
+    return scene_of(of_text(text, Path(_STDIN)))
+
+
+def add_amount(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add the options of what is printed."""
+    amount = parser.add_mutually_exclusive_group()
+    amount.add_argument("--json", action="store_true", help=f"print {what}")
+    amount.add_argument("--quiet", action="store_true", help="print errors and warnings only")
+
+
 @contextmanager
-def progress(name: str) -> Iterator[Report | None]:
+def progress(name: str, quiet: bool = False) -> Iterator[Report | None]:
     """Show a progress bar of a name on standard error, if that is a terminal; a pass of 0 is not shown."""
     from polhode._support.extras import progress_bar
 
-    if (shown := progress_bar("{task.percentage:>3.0f} %")) is None:
+    if quiet or (shown := progress_bar("{task.percentage:>3.0f} %")) is None:
         yield None
         return
     with shown as bar:

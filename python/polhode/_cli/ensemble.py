@@ -25,9 +25,11 @@ class InterruptedRunError(KeyboardInterrupt):
 
 
 def run(
-    scene: Scene, targets: list[Path], threads: int | None, pages: Mapping[Path, bytes]
+    scene: Scene, targets: list[Path], threads: int | None, pages: Mapping[Path, bytes], quiet: bool = False
 ) -> EnsembleRecords:
     """Run all bodies and write them and the figures to the targets, if any, and the pages.
+
+    A quiet run shows no progress bar.
 
     Raises
     ------
@@ -39,17 +41,17 @@ def run(
     require_room(scene, targets)
     records = EnsembleRecords(scene, _nominal(scene))
     if not targets:
-        _run_bodies(records, None, threads)
+        _run_bodies(records, None, threads, quiet)
         write_atomically(pages)
         return records
     with unfinished(targets[0]) as part:
-        stopped = _stopped(part, records, threads)
+        stopped = _stopped(part, records, threads, quiet)
         with _uninterrupted():
             _write(targets, part, records, stopped, pages)
     return records
 
 
-def _stopped(part: Path, records: EnsembleRecords, threads: int | None) -> bool:
+def _stopped(part: Path, records: EnsembleRecords, threads: int | None, quiet: bool) -> bool:
     """Run all bodies into a file; return whether Ctrl-C stopped the run after some bodies."""
     with contextlib.ExitStack() as opened:
         # HDF5 may swallow an interrupt while it creates a file.
@@ -57,7 +59,7 @@ def _stopped(part: Path, records: EnsembleRecords, threads: int | None) -> bool:
             file = opened.enter_context(contextlib.closing(EnsembleFile(part, records.scene)))
         stopped = False
         try:
-            _run_bodies(records, file, threads)
+            _run_bodies(records, file, threads, quiet)
         except KeyboardInterrupt:
             if not records.complete:
                 raise
@@ -75,8 +77,10 @@ def _nominal(scene: Scene) -> Trajectory:
         raise ValueError(f"the nominal body failed: {error}") from error
 
 
-def _run_bodies(records: EnsembleRecords, file: EnsembleFile | None, threads: int | None) -> None:
-    with _progress(records) as report:
+def _run_bodies(
+    records: EnsembleRecords, file: EnsembleFile | None, threads: int | None, quiet: bool
+) -> None:
+    with _progress(records, quiet) as report:
         for rows, trajectory in records.scene.run_blocks(progress=report, threads=threads):
             # A block is recorded as a whole.
             with _uninterrupted():
@@ -96,11 +100,14 @@ def _write(
             f"interrupted; {targets[0]} has the bodies that were complete, "
             f"{records.complete} of {records.scene.ensemble.number}"
         )
-    from polhode._figures.ensemble import directions_figure, fan_figure
-    from polhode._figures.style import as_png
+    contents: dict[Path, bytes | Path] = {targets[0]: part, **pages}
+    if targets[1:]:
+        from polhode._figures.ensemble import directions_figure, fan_figure
+        from polhode._figures.style import as_png
 
-    figures = (as_png(fan_figure(records)), as_png(directions_figure(records)))
-    write_atomically({**dict(zip(targets, (part, *figures), strict=True)), **pages})
+        figures = (as_png(fan_figure(records)), as_png(directions_figure(records)))
+        contents |= zip(targets[1:], figures, strict=True)
+    write_atomically(contents)
 
 
 def require_room(scene: Scene, targets: list[Path]) -> None:
@@ -134,10 +141,10 @@ def _uninterrupted() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _progress(records: EnsembleRecords) -> Iterator[Callable[[int, float], Any] | None]:
+def _progress(records: EnsembleRecords, quiet: bool) -> Iterator[Callable[[int, float], Any] | None]:
     """Show a progress bar with the rate on standard error, if that is a terminal."""
     shown = progress_bar("{task.completed:.0f} of {task.total:.0f} bodies, {task.fields[rate]}")
-    if shown is None:
+    if shown is None or quiet:
         yield None
         return
     assert records.scene.ensemble is not None

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode._cli import check, common
-from polhode._cli.common import add_command, file_name, progress, whole_number
+from polhode._cli.common import add_amount, add_command, file_name, progress, read_scene, whole_number
 from polhode._native import SceneError, __version__
 from polhode._support.files import UnreadableError
 
@@ -30,8 +30,8 @@ def main(arguments: list[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
     _restore_ctrl_c()
-    options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
     try:
+        options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
         with _printed_warnings():
             code = int(options.command(options))
         print(end="", flush=True)
@@ -93,10 +93,10 @@ def _parser() -> argparse.ArgumentParser:
         ),
     )
     parser.add_argument("--version", action="version", version=f"polhode {__version__}")
+    from polhode._cli import completion, examples, figure
+
+    completion.add(parser)
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
-
-    from polhode._cli import examples, figure
-
     _add_scenes(commands)
     _add_formulas(commands)
     figure.add(commands)
@@ -105,15 +105,15 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_scenes(commands: Any) -> None:
-    run = add_command(commands, "run", _run, help="run a scene: summary, netCDF file, figures")
-    run.add_argument("scene", metavar="SCENE.toml", help="the scene file")
+    run = add_command(commands, "run", _run, help="run a scene: summary, data, figures")
+    run.add_argument("scene", metavar="SCENE.toml", help="the scene file; - is standard input")
     run.add_argument(
         "-o",
         "--output",
-        metavar="FILE.nc",
+        metavar="FILE",
         type=file_name("a motion"),
-        help="write the motion, or all motions of an ensemble, to this netCDF file, and figures next to it "
-        "(FILE-motion.png …)",
+        help="write the motion to FILE.nc (netCDF), FILE.csv or FILE.parquet, all motions of an ensemble to "
+        "FILE.nc, and figures next to it (FILE-motion.png …)",
     )
     run.add_argument(
         "--html",
@@ -121,7 +121,11 @@ def _add_scenes(commands: Any) -> None:
         type=file_name("a page"),
         help="write a self-contained page that shows the motion in a browser",
     )
-    run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
+    words = "overwrite existing files even if polhode did not write them"
+    run.add_argument("--force", action="store_true", help=words)
+    words = "write the data alone; then matplotlib is not needed"
+    run.add_argument("--no-figures", dest="figures", action="store_false", help=words)
+    add_amount(run, "the summary as JSON, in SI units")
     run.add_argument(
         "--threads",
         metavar="N",
@@ -130,6 +134,7 @@ def _add_scenes(commands: Any) -> None:
     )
 
     check.add(commands)
+
     view = add_command(
         commands,
         "view",
@@ -215,20 +220,25 @@ def _repl(_: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from polhode._scene.scene import Scene
-
-    scene = Scene.read(options.scene)
-    targets = _checked_targets(options.output, scene)
+    scene = read_scene(options.scene)
+    targets = _checked_targets(options, scene)
     pages = [] if options.html is None else [Path(options.html)]
     if pages:
         from polhode._viewer.server import check_page
 
         check_page(pages[0])
+    if not options.force:
+        from polhode._report.output import require_own
+
+        for path in (*targets, *pages):
+            require_own(path)
     run = _run_one if scene.ensemble is None else _run_many
     result = run(scene, targets, pages, options)
     written = result["files"] = [str(path) for path in (*targets, *pages)]
     if options.json:
         print(json.dumps(result, indent=2, allow_nan=False))
+    elif options.quiet:
+        pass
     elif written:
         print("Written", *(f"  {path}" for path in written), sep="\n")
     else:
@@ -243,20 +253,22 @@ def _run_one(
 ) -> dict[str, Any]:
     """Run one body, print its summary and write its files, all or none; return the summary."""
     from polhode._report.summary import as_text, summary
-    from polhode._support.files import write_atomically
+    from polhode._support.files import form_of, write_atomically
 
-    with progress(scene.path.name) as report:
+    with progress(scene.path.name, options.quiet) as report:
         trajectory = scene.run(report, options.threads)
     result = summary(scene, trajectory)
-    if not options.json:
+    if not (options.json or options.quiet):
         print(as_text(result))
     contents: dict[Path, bytes] = {}
     if targets:
-        from polhode._figures.registry import pictures
-        from polhode._report.netcdf import netcdf
+        from polhode._report.output import encoded
 
-        written = (netcdf(trajectory), *pictures(scene, trajectory))
-        contents |= dict(zip(targets, written, strict=True))
+        contents[targets[0]] = encoded(trajectory, form_of(targets[0], "a motion"))
+    if targets[1:]:
+        from polhode._figures.registry import pictures
+
+        contents |= dict(zip(targets[1:], pictures(scene, trajectory), strict=True))
     if pages:
         from polhode._viewer.server import motion_page
 
@@ -274,27 +286,34 @@ def _run_many(
     from polhode._viewer.server import scene_page
 
     contents = {path: scene_page(scene) for path in pages}
-    result = summary(ensemble.run(scene, targets, options.threads, contents))
-    if not options.json:
+    result = summary(ensemble.run(scene, targets, options.threads, contents, options.quiet))
+    if not (options.json or options.quiet):
         print(as_text(result))
     return result
 
 
-def _checked_targets(name: str | None, scene: Scene) -> list[Path]:
-    """Return the paths of the data and two figures, checked before the run."""
-    if name is None:
+def _checked_targets(options: argparse.Namespace, scene: Scene) -> list[Path]:
+    """Return the paths of the data and of two figures if they are wanted, checked before the run."""
+    if options.output is None:
         return []
     from polhode._figures.registry import ON_ELLIPSOID
-    from polhode._report.netcdf import require_libraries
+    from polhode._report.output import require_libraries
     from polhode._support.extras import optional
-    from polhode._support.files import check_target
+    from polhode._support.files import check_target, form_of
 
-    require_libraries()
-    optional("matplotlib", "plot", "a figure")
-    figures = ("motion", "polhode" if scene.kind in ON_ELLIPSOID else "axis")
-    if scene.ensemble is not None:
-        figures = ("ensemble", "directions")
-    output = Path(name)
+    output, form = Path(options.output), form_of(options.output, "a motion")
+    if scene.ensemble is not None and form != "nc":
+        raise ValueError(
+            f"{output}: this scene has an ensemble of {scene.ensemble.number} bodies, which is written as "
+            f"netCDF; use -o {output.with_suffix('.nc')}"
+        )
+    require_libraries(form)
+    figures: tuple[str, ...] = ()
+    if options.figures:
+        optional("matplotlib", "plot", "a figure")
+        figures = ("motion", "polhode" if scene.kind in ON_ELLIPSOID else "axis")
+        if scene.ensemble is not None:
+            figures = ("ensemble", "directions")
     targets = [output, *(output.with_name(f"{output.stem}-{figure}.png") for figure in figures)]
     for path in targets:
         check_target(path)

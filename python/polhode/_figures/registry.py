@@ -13,7 +13,7 @@ from polhode._figures.herpolhode import herpolhode_figure
 from polhode._figures.over_time import drift_figure, motion_figure
 from polhode._figures.phase_portrait import phase_figure
 from polhode._figures.spheres import axis_figure, path_figure, polhode_figure
-from polhode._figures.style import Figure, as_png, encoded, require_times
+from polhode._figures.style import Axes, Figure, as_png, encoded, require_times
 from polhode._figures.tilt import angle_figure, locus_figure, satellite_figure, top_figure
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import long_axis, main_axis, weight, wheel
@@ -30,25 +30,48 @@ ON_ELLIPSOID = ("free", "damped", "gyrostat")
 _WITH_VIEW = ("polhode", "locus", "phase", "scene")
 
 
-def figure(trajectory: Trajectory, kind: str, view: Any = None, time: float | None = None) -> Figure:
+def figure(
+    trajectory: Trajectory, kind: str, view: Any = None, time: float | None = None, ax: Axes | None = None
+) -> Figure:
     """Return a figure of one body; see `Trajectory.plot`."""
     check(kind, view, time)
+    _check_axes(ax)
     require_times(trajectory)
     match kind:
         case "motion":
+            _require_no_axes(ax, kind)
             return motion_figure(trajectory)
         case "polhode":
-            return _polhode(trajectory, view)
+            return _polhode(trajectory, view, ax)
         case "herpolhode":
-            return _herpolhode(trajectory)
+            return _herpolhode(trajectory, ax)
         case "locus":
-            return locus_figure(trajectory, _weight(trajectory, kind), view)
+            return locus_figure(trajectory, _weight(trajectory, kind), view, ax)
         case "drift":
+            _require_no_axes(ax, kind)
             return drift_figure(trajectory)
         case "phase":
-            return _phase(trajectory, view)
+            return _phase(trajectory, view, ax)
         case _:
-            return scene_figure(trajectory, view, time)
+            return scene_figure.on(ax, trajectory, view, time)
+
+
+def _check_axes(ax: Any) -> None:
+    """Raise an error unless this is None or plane axes of matplotlib."""
+    if ax is None:
+        return
+    if not isinstance(ax, optional("matplotlib.axes", "plot", "a figure").Axes):
+        raise TypeError(f"ax must be axes of matplotlib, got {type(ax).__name__}; see matplotlib's subplots")
+    if ax.name != "rectilinear":
+        raise ValueError(f"ax has the projection {ax.name!r}; figures are drawn on plane axes")
+
+
+def _require_no_axes(ax: Axes | None, kind: str) -> None:
+    if ax is not None:
+        raise ValueError(
+            f"kind {kind!r} of this motion has several panels and cannot be drawn on one axes: call plot "
+            "without ax; polhode, herpolhode, locus, scene, and phase of a body under torque have one panel"
+        )
 
 
 def check(kind: str, view: Any, time: float | None) -> None:
@@ -91,36 +114,37 @@ def write(figure: Figure, path: Path) -> None:
     write_atomically({path: encoded(figure, form_of(path, "a figure"))})
 
 
-def _polhode(trajectory: Trajectory, view: Any) -> Figure:
+def _polhode(trajectory: Trajectory, view: Any, ax: Axes | None) -> Figure:
     kind = _kind(trajectory)
     if kind not in ON_ELLIPSOID:
         raise ValueError(
             "kind 'polhode' is for bodies whose Ω stays on an ellipsoid: free, damped in proportion to L, "
             f"or with a wheel; {_acting(trajectory)}"
         )
-    return polhode_figure(trajectory, _wheel(trajectory) if kind == "gyrostat" else None, view)
+    return polhode_figure.on(ax, trajectory, _wheel(trajectory) if kind == "gyrostat" else None, view)
 
 
-def _herpolhode(trajectory: Trajectory) -> Figure:
+def _herpolhode(trajectory: Trajectory, ax: Axes | None) -> Figure:
     if _kind(trajectory) != "free":
         raise ValueError(
             "kind 'herpolhode' is for free bodies, whose Ω stays in an invariable plane; "
             + _acting(trajectory)
         )
     _require_path(trajectory, "herpolhode")
-    return herpolhode_figure(trajectory)
+    return herpolhode_figure.on(ax, trajectory)
 
 
-def _phase(trajectory: Trajectory, view: Any) -> Figure:
+def _phase(trajectory: Trajectory, view: Any, ax: Axes | None) -> Figure:
     _require_path(trajectory, "phase")
     kind = _kind(trajectory)
     if kind in ON_ELLIPSOID:
+        _require_no_axes(ax, "phase")
         return phase_figure(trajectory, _wheel(trajectory), view)
     if view is not None:
         raise ValueError("view is for the phase portraits of bodies without torque, not for this one")
     if kind == "heavy":
-        return top_figure(trajectory, _weight(trajectory, "phase"))
-    return satellite_figure(trajectory) if kind == "satellite" else angle_figure(trajectory)
+        return top_figure.on(ax, trajectory, _weight(trajectory, "phase"))
+    return (satellite_figure if kind == "satellite" else angle_figure).on(ax, trajectory)
 
 
 # --- what acts on the body

@@ -6,7 +6,7 @@ import functools
 import io
 import textwrap
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, cast
 
 import numpy as np
 
@@ -45,7 +45,7 @@ _AS_FILES = {"svg.fonttype": "path", "svg.hashsalt": "polhode", "pdf.fonttype": 
 _UNDATED: dict[str, dict[str, Any]] = {
     "svg": {"Date": None},
     "pdf": {"CreationDate": None},
-    "png": {"Software": None},
+    "png": {"Software": "Polhode"},
 }
 
 # (longest duration to show in a unit, seconds in the unit, its name)
@@ -55,33 +55,58 @@ _TIME_UNITS = ((300.0, 1.0, "s"), (18e3, 60.0, "min"), (432e3, 3600.0, "h"), (1.
 plotting = functools.partial(optional, extra="plot", what="a figure")
 
 
-def drawing(
-    width: float, height: float, title: str
-) -> Callable[[Callable[Concatenate[Figure, P], str]], Callable[P, Figure]]:
-    """Decorate a function that draws on an empty figure, in inches, and returns its caption.
+class Drawing(Generic[P]):
+    """A function that draws on an empty figure and returns its caption, made to return the figure.
 
-    The decorated function returns the figure, in the style of this package whatever the user's settings are.
-    Its title is that of the motion in the first argument, if it has one.
+    The figure has the style of this package whatever the user's settings are. Its title is that of the motion
+    in the first argument, if it has one.
     """
 
-    def decorate(draw: Callable[Concatenate[Figure, P], str]) -> Callable[P, Figure]:
-        @functools.wraps(draw)
-        def drawn(*arguments: P.args, **named: P.kwargs) -> Figure:
-            subject = arguments[0]
-            if isinstance(subject, Trajectory):
-                require_times(subject)
-            with plotting("matplotlib").rc_context(_LOOK):
-                figure = new_figure(width, height)
-                caption = draw(figure, *arguments, **named)
-                lines = int(_TITLE_LETTERS * width), int(_CAPTION_LETTERS * width)
-                figure.suptitle(textwrap.fill(title_of(subject, title), lines[0]), parse_math=False)
-                if caption:
-                    figure.supxlabel(textwrap.fill(caption, lines[1]), fontsize=8)
-                return figure
+    def __init__(
+        self, draw: Callable[Concatenate[Figure, P], str], size: tuple[float, float], title: str
+    ) -> None:
+        self._draw, self._size, self._title = draw, size, title
+        functools.update_wrapper(self, draw)
 
-        return drawn
+    def __call__(self, *arguments: P.args, **named: P.kwargs) -> Figure:
+        return self.on(None, *arguments, **named)
 
-    return decorate
+    def on(self, axes: Axes | None, /, *arguments: P.args, **named: P.kwargs) -> Figure:
+        """Draw on axes of the caller's, without title and caption; None for a new figure."""
+        subject = arguments[0]
+        if isinstance(subject, Trajectory):
+            require_times(subject)
+        with plotting("matplotlib").rc_context(_LOOK):
+            if axes is not None:
+                panel: Any = _FigureOf(axes)
+                self._draw(panel, *arguments, **named)
+                return cast("Figure", axes.figure)
+            width = self._size[0]
+            figure = new_figure(*self._size)
+            caption = self._draw(figure, *arguments, **named)
+            lines = int(_TITLE_LETTERS * width), int(_CAPTION_LETTERS * width)
+            figure.suptitle(textwrap.fill(title_of(subject, self._title), lines[0]), parse_math=False)
+            if caption:
+                figure.supxlabel(textwrap.fill(caption, lines[1]), fontsize=8)
+            return figure
+
+
+def drawing(
+    width: float, height: float, title: str
+) -> Callable[[Callable[Concatenate[Figure, P], str]], Drawing[P]]:
+    """Decorate a function that draws on an empty figure, in inches, and returns its caption."""
+    return lambda draw: Drawing(draw, (width, height), title)
+
+
+class _FigureOf:
+    """The caller's axes in place of a figure with one panel."""
+
+    def __init__(self, axes: Axes) -> None:
+        self._axes = axes
+
+    def add_subplot(self, **labels: str) -> Axes:
+        self._axes.set(**labels)
+        return self._axes
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -24,7 +24,7 @@ _BEYOND, _LEAST = 0.35, 1e-5
 _STILL = 1e-9
 
 
-def locus_figure(trajectory: Trajectory, c: Array, view: Any = None) -> Figure:
+def locus_figure(trajectory: Trajectory, c: Array, view: Any = None, ax: Axes | None = None) -> Figure:
     """Draw the path of the axis from the fixed point to the centre of mass, and the bounds of its tilt."""
     axis = c / np.linalg.norm(c)
     path = samples(trajectory).rotor(vector(axis)).components
@@ -42,7 +42,7 @@ def locus_figure(trajectory: Trajectory, c: Array, view: Any = None) -> Figure:
         bounds = (about["tilt_min"], about["tilt_max"])
         low, high = (float(x) for x in np.degrees(bounds))
         caption += f"Black: the bounds of its tilt, {low:.5g}° and {high:.5g}°. "
-    return path_figure(trajectory, path, caption + "Dashed: behind.", SPACE_AXES, bounds, view)
+    return path_figure.on(ax, trajectory, path, caption + "Dashed: behind.", SPACE_AXES, bounds, view)
 
 
 @drawing(5.2, 4.6, "Phase portrait")

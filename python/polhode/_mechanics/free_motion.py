@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 _STATE = 7 * 8  # bytes
 _DERIVATIVES = 2 * 64 * 8  # bytes, of the core's arrays and their copies
 _BODY = 800  # upper bound of the bytes of a motion in a batch
+_EQUAL = 8 * float(np.finfo(float).eps)  # relative difference of moments that count as equal
 _MANY = 64  # number of bodies that fills the SIMD lanes
 
 
@@ -270,7 +271,7 @@ class SymmetricTop(FreeMotion):
     ``R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)``, ``Ω_l = L/i1``, ``Ω_r = ((i1 − i3)/i1) ω3 I e3`` for
     the symmetry axis e3, or another. A ValueError if all three moments differ. The rates are rounded, so
     the error grows with the angle turned. Moments with a relative difference d <= 1.8e-15 count as equal,
-    with an error of ``d |ω| t``. `FreeMotion` has neither error.
+    with an error of ``d |ω| t``. `FreeMotion` has neither error. `omega_l` and `omega_r` are the two rates.
     """
 
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any) -> None:
@@ -278,6 +279,36 @@ class SymmetricTop(FreeMotion):
         if self.shape:
             raise ValueError(f"SymmetricTop takes one body, got batch shape {self.shape}; use FreeMotion")
         self.at(0.0)
+
+    @property
+    def omega_l(self) -> Multivector:
+        """The constant ``Ω_l = L/i1`` of handout eq. (4.33), a bivector in rad/s, in space axes.
+
+        The left rate of the rotor, ``R' = −½Ω_l R − ½R Ω_r`` (4.34): the precession about L.
+        """
+        rotors, omegas = self._core.starts()
+        momentum: Multivector = Rotor._from_rows(rotors[0])(self._inertia(bivector(omegas[0])))
+        return momentum / self._moments[1]
+
+    @property
+    def omega_r(self) -> Multivector:
+        """The constant ``Ω_r = ((i1 − i3)/i1) ω3 I e3`` of eq. (4.33), a bivector in rad/s, in body axes.
+
+        The right rate of the rotor: the body's rotation about its symmetry axis, e3 or another, relative to
+        the precession, ``Ω_S = Ω_l + R Ω_r ~R`` (4.31). It is 0 if all moments are equal.
+        """
+        k, i1, i3 = self._moments
+        axis = self._inertia.principal_frame.to_matrix()[:, k]
+        spin = self._core.starts()[1][0] @ axis
+        return bivector((i1 - i3) / i1 * spin * axis)
+
+    @property
+    def _moments(self) -> tuple[int, float, float]:
+        """The number (from 0) of the symmetry axis, i1 and i3, chosen as in the core."""
+        i = self._inertia.principal_moments.tolist()
+        pairs = {k: (i[k - 2], i[k - 1]) for k in range(3)}
+        k = next(k for k, (a, b) in pairs.items() if abs(a - b) <= _EQUAL * max(a, b))
+        return k, i[k - 2], i[k]
 
     def at(self, t: Any) -> State:
         """Return the state at time t in s; an array of times gives a state of that batch shape."""

@@ -119,6 +119,19 @@ class Trajectory:
             ok[failure.index] = False
         return ok if self.shape else bool(ok)
 
+    @property
+    def omega_space(self) -> Multivector:
+        """Angular velocities in space axes, ``Ω_S = R Ω_B ~R`` (eq. 4.12), bivectors in rad/s, batch (n,)."""
+        return self.rotor(self.omega_body)
+
+    @property
+    def momentum_body(self) -> Multivector:
+        """Angular momenta in body axes, ``~R L R``, bivectors in kg m²/s, batch (n,).
+
+        Those of wheels are included, as in `momentum_space`: ``I(Ω_B)`` is the part of the body.
+        """
+        return (~self.rotor)(self.momentum_space)
+
     def __len__(self) -> int:
         if not self.shape:
             raise TypeError("the trajectory of one body has no length; use len(trajectory.time)")
@@ -210,7 +223,8 @@ class Trajectory:
         return self.__dict__ | {"_motion": None, "_origin": None}
 
     if TYPE_CHECKING:
-        to_xarray, save, plot, film = _outputs.to_xarray, _outputs.save, _outputs.plot, _outputs.film
+        to_xarray, to_dataframe, save = _outputs.to_xarray, _outputs.to_dataframe, _outputs.save
+        plot, film, _repr_html_ = _outputs.plot, _outputs.film, _outputs._repr_html_
         view, read = _outputs.view_of, staticmethod(_outputs.read)
 
     def __repr__(self) -> str:

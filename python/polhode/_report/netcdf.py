@@ -80,7 +80,7 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
     if shape:
         coordinates["body"] = np.arange(count)
         variables |= _bodies(trajectory)
-    dataset: xarray.Dataset = xr.Dataset(variables, coordinates, _attributes(trajectory))
+    dataset: xarray.Dataset = xr.Dataset(variables, coordinates, attributes_of(trajectory))
     return dataset
 
 
@@ -154,7 +154,7 @@ def netcdf(trajectory: Trajectory) -> bytes:
     return buffer.getvalue()
 
 
-def _attributes(trajectory: Trajectory) -> dict[str, Any]:
+def attributes_of(trajectory: Trajectory) -> dict[str, Any]:
     """Return attributes: flat text and numbers, which every netCDF reader shows."""
     proof = trajectory.certificate
     attributes: dict[str, Any] = {"conventions": CONVENTIONS, "source": f"polhode {_native.__version__}"}

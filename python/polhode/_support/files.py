@@ -45,7 +45,7 @@ def unfinished(target: Path) -> Iterator[Path]:
 
 # Suffixes of output files.
 _FORMS = {
-    "a motion": ("nc",),
+    "a motion": ("nc", "csv", "parquet"),
     "a page": ("html", "htm"),
     "a figure": ("svg", "pdf", "png"),
     "a film": ("mp4", "gif"),

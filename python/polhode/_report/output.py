@@ -1,0 +1,81 @@
+"""Files of motions by suffix; whether a file was written by polhode."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from polhode._mechanics.trajectory import Trajectory
+from polhode._report import netcdf, table
+from polhode._support.extras import optional
+
+# Bytes at the start of a file that name the program.
+_HEAD = 4096
+
+
+def encoded(trajectory: Trajectory, form: str) -> bytes:
+    """Return the content of a file with this suffix, a form of "a motion"."""
+    match form:
+        case "csv":
+            return table.csv(trajectory)
+        case "parquet":
+            return table.parquet(trajectory)
+        case _:
+            return netcdf.netcdf(trajectory)
+
+
+def require_libraries(form: str) -> None:
+    """Raise an ImportError if libraries for files with this suffix are missing."""
+    if form == "parquet":
+        table.require_parquet()
+    elif form == "nc":
+        netcdf.require_libraries()
+
+
+def require_own(path: Path) -> None:
+    """Raise a FileExistsError if there is a file that polhode did not write."""
+    if path.exists() and not is_own(path):
+        raise FileExistsError(
+            f"{path} exists and was not written by polhode: choose another name, or overwrite it with --force"
+        )
+
+
+def is_own(path: Path) -> bool:
+    """Whether polhode wrote a file, by its content; an empty file counts as such.
+
+    NetCDF and Parquet files have the attribute `source`, CSV files the header, PNGs and pages the program's
+    name. Libraries of the form must be installed.
+    """
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if not head:
+        return True
+    match path.suffix.lower():
+        case ".nc":
+            return _source_of_netcdf(path).startswith("polhode ")
+        case ".parquet":
+            return _source_of_parquet(path).startswith("polhode ")
+        case ".csv":
+            return head.splitlines()[0].decode(errors="replace") in (table.header(False), table.header(True))
+        case ".png":
+            return head.startswith(b"\x89PNG") and b"tEXtSoftware\0Polhode" in head
+        case ".html" | ".htm":
+            return b'<meta name="generator" content="Polhode">' in head
+        case _:
+            return False
+
+
+def _source_of_netcdf(path: Path) -> str:
+    try:
+        with optional("h5py", "io", "a netCDF file").File(path, "r") as file:
+            return str(file.attrs.get("source", ""))
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError):
+        return ""  # The library raises any of these for other files.
+
+
+def _source_of_parquet(path: Path) -> str:
+    try:
+        schema = optional("pyarrow.parquet", "parquet", "a Parquet file").read_schema(path)
+        return str(json.loads(schema.metadata[b"PANDAS_ATTRS"])["source"])
+    except (OSError, KeyError, TypeError, ValueError):
+        return ""

@@ -1,0 +1,107 @@
+"""Motions as tables: columns of numbers, pandas data frames, CSV and Parquet files."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._mechanics.trajectory import Trajectory
+from polhode._report.netcdf import MOTION, attributes_of, components
+from polhode._support.arrays import Array
+from polhode._support.extras import optional
+
+if TYPE_CHECKING:
+    import pandas
+
+# Names of the components along each dimension.
+_LABELS = {"quaternion": "wxyz", "axis": "xyz"}
+# Rows of a CSV file that are converted to text at once.
+_BLOCK = 4096
+
+
+def _units() -> dict[str, str]:
+    units: dict[str, str] = {}
+    for name, (dims, unit, _) in MOTION.items():
+        if name != "inertia":
+            labels = [f"_{label}" for label in _LABELS[dims[0]]] if dims else [""]
+            units |= {name + label: unit for label in labels}
+    return units
+
+
+# Unit of each column; the index is `time` in s, of a batch `body` and `time`.
+UNITS = _units()
+
+
+def values_of(trajectory: Trajectory) -> Array:
+    """Return the columns of a motion (rows, columns); of a batch body after body, in C order."""
+    shape = (*trajectory.shape, len(trajectory.time))
+    parts = [
+        components(trajectory, name).reshape(*shape, len(_LABELS[dims[0]]) if dims else 1)
+        for name, (dims, _, _) in MOTION.items()
+        if name != "inertia"
+    ]
+    return np.concatenate(parts, axis=-1).reshape(math.prod(shape), len(UNITS))
+
+
+def to_dataframe(trajectory: Trajectory) -> pandas.DataFrame:
+    """Return a data frame, as `Trajectory.to_dataframe`."""
+    pd = optional("pandas", "pandas", "a data frame")
+    if trajectory.shape:
+        bodies = range(math.prod(trajectory.shape))
+        index = pd.MultiIndex.from_product([bodies, trajectory.time], names=["body", "time"])
+    else:
+        index = pd.Index(trajectory.time, name="time")
+    frame: pandas.DataFrame = pd.DataFrame(values_of(trajectory), index, list(UNITS))
+    attributes = {name: _plain(x) for name, x in attributes_of(trajectory).items()}
+    frame.attrs |= {**attributes, "units": {"time": "s", **UNITS}}
+    return frame
+
+
+def _plain(x: Any) -> Any:
+    """Return numbers and arrays of NumPy as numbers and lists, which JSON can hold."""
+    return x.tolist() if isinstance(x, np.ndarray | np.generic) else x
+
+
+def header(many: bool) -> str:
+    """Return the first line of a CSV file, of one body or of a batch."""
+    return ",".join([*(["body"] if many else []), "time", *UNITS])
+
+
+def csv(trajectory: Trajectory) -> bytes:
+    """Return the content of a CSV file: each number as the shortest text that reads back to its bits."""
+    values, n = values_of(trajectory), len(trajectory.time)
+    times = [repr(t) for t in trajectory.time.tolist()]
+    many = bool(trajectory.shape)
+    text = io.StringIO()
+    text.write(header(many) + "\n")
+    for start in range(0, len(values), _BLOCK):
+        for k, row in enumerate(values[start : start + _BLOCK].tolist(), start):
+            labels = f"{k // n},{times[k % n]}" if many else times[k]
+            text.write(f"{labels},{','.join(map(repr, row))}\n")
+    return text.getvalue().encode()
+
+
+def parquet(trajectory: Trajectory) -> bytes:
+    """Return the content of a Parquet file: the data frame with its units and attributes."""
+    require_parquet()
+    frame = to_dataframe(trajectory)
+    for name, x in frame.attrs.items():
+        try:
+            json.dumps(x)
+        except TypeError:
+            raise TypeError(
+                f"attributes[{name!r}] of the motion is {type(x).__name__}; a Parquet file takes text, "
+                "numbers and lists of them: convert it, or remove it"
+            ) from None
+    content: Any = frame.to_parquet(engine="pyarrow")
+    return bytes(content)
+
+
+def require_parquet() -> None:
+    """Raise an ImportError if libraries for Parquet files are missing."""
+    optional("pandas", "parquet", "a Parquet file")
+    optional("pyarrow.parquet", "parquet", "a Parquet file")

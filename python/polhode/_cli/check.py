@@ -115,7 +115,8 @@ def _doubts_of_scene(scene: Scene) -> Iterator[str]:
     """Yield what is improbable about the mesh of a scene, at the key `mesh`."""
     from polhode._mechanics.robots.document import Source
 
-    surface = scene.surface()
+    # A scene on standard input has no file from which its surface could be read again.
+    surface = scene.surface() if scene.path.exists() else None
     if surface is None:
         return
     vertices, triangles = surface

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _generic, _native
+from polhode._algebra import groups as _groups
+from polhode._algebra import parameters as _parameters
+from polhode._algebra import signs as _signs
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, reshaped, taken
 from polhode._algebra.constructors import one_grade
 from polhode._algebra.multivector import Multivector
@@ -28,6 +31,13 @@ def _components(values: Any, size: int, what: str) -> Any:
     if not data.shape or data.shape[-1] != size:
         raise ValueError(f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}")
     return data
+
+
+def _of_grade(value: Any, grade: int, what: str) -> Any:
+    """Return the components (..., 3) of vectors or bivectors, given as values or as an array."""
+    if isinstance(value, Multivector):
+        return one_grade(value, grade, what)._data
+    return _components(value, 3, what)
 
 
 def _computed(name: str, *operands: Any) -> Any:
@@ -73,23 +83,26 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor._from_rows(_computed("from_components", _components(c4, 4, "rotor")))
 
     @staticmethod
-    def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
-        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored."""
-        plane = one_grade(B, 2, "the plane")._data
+    def from_plane_angle(B: Any, theta: Any) -> Rotor:
+        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored.
+
+        B is a bivector, or an array (..., 3) over ``(e2e3, e3e1, e1e2)``.
+        """
+        plane = _of_grade(B, 2, "the plane")
         angle = number_like(theta, "angle", plane)
         if is_float(plane) and is_float(angle):
             angle = angle[..., np.newaxis]  # a column, beside the plane
         return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
 
     @staticmethod
-    def from_vectors(a: Multivector, b: Multivector) -> Rotor:
+    def from_vectors(a: Any, b: Any) -> Rotor:
         """Turn the direction of a into that of b, the short way; lengths are ignored.
 
-        For opposite directions the plane is not unique; it is taken through a and the basis vector farthest
-        from a.
+        Vectors, or arrays (..., 3); `ph.align` finds the best rotation for many pairs. For opposite
+        directions the plane is not unique; it is taken through a and the basis vector farthest from a.
         """
-        first, second = one_grade(a, 1, "the first direction"), one_grade(b, 1, "the second direction")
-        return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
+        first, second = _of_grade(a, 1, "the first direction"), _of_grade(b, 1, "the second direction")
+        return Rotor._from_rows(_computed("from_vectors", first, second))
 
     @staticmethod
     def from_matrix(m: Any) -> Rotor:
@@ -113,8 +126,7 @@ class Rotor(_native.Rotor, Multivector):
     @staticmethod
     def from_rotation_vector(v: Any) -> Rotor:
         """From vectors (..., 3) along the axis, of length the angle in radians; an array or a Multivector."""
-        array = one_grade(v, 1, "a rotation vector")._data if isinstance(v, Multivector) else v
-        return Rotor._from_rows(_computed("from_rotation_vector", _components(array, 3, "rotation vector")))
+        return Rotor._from_rows(_computed("from_rotation_vector", _of_grade(v, 1, "rotation vector")))
 
     @staticmethod
     def from_scipy(rot: Rotation) -> Rotor:
@@ -169,7 +181,18 @@ class Rotor(_native.Rotor, Multivector):
         """Return rotors distributed uniformly over all attitudes; `rng` is a NumPy generator or a seed."""
         return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch_shape(shape), 4)))
 
+    from_axis_angle = staticmethod(_parameters.from_axis_angle)
+    from_mrp = staticmethod(_parameters.from_mrp)
+    from_davenport = staticmethod(_parameters.from_davenport)
+    from_multivector = staticmethod(_parameters.from_multivector)
+    group = staticmethod(_groups.group)
+
     # --- converters
+
+    angle = property(_parameters.angle)
+    magnitude = _parameters.magnitude
+    to_mrp = _parameters.to_mrp
+    to_davenport = _parameters.to_davenport
 
     def to_matrix(self) -> Any:
         """Return rotation matrices (..., 3, 3) acting on columns."""
@@ -239,6 +262,12 @@ class Rotor(_native.Rotor, Multivector):
     def astype(self, dtype: Any) -> Rotor:
         """Return the rotor with components of another type, of norm 1 in its precision."""
         return Rotor.from_components(Multivector.astype(self, dtype)._data)
+
+    # --- signs and symmetries
+
+    canonical = _signs.canonical
+    continuous = _signs.continuous
+    reduce = _groups.reduce
 
     # --- action and algebra
 

@@ -30,7 +30,8 @@ from polhode._native import __version__ as __version__
 if TYPE_CHECKING:
     from polhode import event, force, torque
     from polhode import jax as jax
-    from polhode._algebra.interpolation import RotorSpline, mean, slerp
+    from polhode._algebra.estimation import Alignment, align, mean
+    from polhode._algebra.interpolation import RotorSpline, slerp
     from polhode._algebra.linear_map import LinearMap
     from polhode._algebra.serialize import from_dict, to_dict
     from polhode._algebra.transform import RigidTransform
@@ -52,13 +53,13 @@ if TYPE_CHECKING:
 # Without `jax`, which needs JAX to be installed.
 # fmt: off
 __all__ = [
-    "Agreement", "Algebra", "Body", "Certificate", "Crossings", "DampedTop", "Failure", "FlowDerivatives",
-    "Formula", "FormulaError", "FreeMotion", "I", "Inertia", "LagrangeTop", "LarmorSphere", "LinearMap",
-    "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline", "Scene", "SceneError", "State",
-    "Stepper", "SymmetricTop", "Trajectory", "algebra", "axial", "bivector", "concatenate", "cross",
-    "describe_free", "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict",
-    "from_pauli", "mean", "multivector", "scalar", "simulate", "simulate_blocks", "slerp", "split",
-    "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
+    "Agreement", "Algebra", "Alignment", "Body", "Certificate", "Crossings", "DampedTop", "Failure",
+    "FlowDerivatives", "Formula", "FormulaError", "FreeMotion", "I", "Inertia", "LagrangeTop", "LarmorSphere",
+    "LinearMap", "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline", "Scene", "SceneError",
+    "State", "Stepper", "SymmetricTop", "Trajectory", "algebra", "align", "axial", "bivector", "concatenate",
+    "cross", "describe_free", "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial",
+    "from_dict", "from_pauli", "mean", "multivector", "scalar", "simulate", "simulate_blocks", "slerp",
+    "split", "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
 ]
 # fmt: on
 
@@ -66,7 +67,8 @@ __all__ = [
 _LATER = {
     name: module
     for module, names in {
-        "_algebra.interpolation": "RotorSpline mean slerp",
+        "_algebra.estimation": "Alignment align mean",
+        "_algebra.interpolation": "RotorSpline slerp",
         "_algebra.linear_map": "LinearMap",
         "_algebra.serialize": "from_dict to_dict",
         "_algebra.transform": "RigidTransform",

@@ -1,4 +1,4 @@
-"""Interpolation of rotors: slerp, the mean attitude, and splines."""
+"""Interpolation of rotors: slerp and splines."""
 
 from __future__ import annotations
 
@@ -6,17 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from polhode._algebra.coefficients import as_coefficients, foreign_kind, kind_of, namespace
+from polhode._algebra.coefficients import foreign_kind, namespace
 from polhode._algebra.constructors import bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._algebra.signs import half_turn
 from polhode._support.arrays import Array, as_floats, at_index, first_index, frozen, is_float
-
-# Rounding errors in a sum of four products of rounded numbers.
-_HALF_TURN = 4
-
-_NO_MEAN = "the rotors have no mean: two attitudes are equally close to all of them"
-_WEIGHTS = "weights must be {} finite numbers >= 0, not all 0, got {}"
 
 
 def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
@@ -30,92 +25,10 @@ def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
         if not isinstance(value, Rotor):
             raise TypeError(f"slerp needs rotors, got {type(value).__name__}")
     step = (~R * S)._data
-    longer = step[..., :1] < -_half_turn(step)
+    longer = step[..., :1] < -half_turn(step)
     shorter = Rotor.from_components(namespace(step).where(longer, -step, step))
     path: Rotor = R * shorter**t
     return path
-
-
-def _half_turn(components: Any) -> float:
-    """Return the rounding error of the scalar part of ``~R S`` for attitudes half a turn apart.
-
-    It is a sum of four products of rounded components, whose magnitudes add up to at most 1.
-    """
-    return _HALF_TURN * (
-        float(np.finfo(components.dtype).eps) if is_float(components) else kind_of(components).eps
-    )
-
-
-def mean(R: Rotor, weights: Any = None) -> Rotor:
-    """Return the mean attitude of a batch (n,), for any signs: the Q that minimises ``Σ w |R − Q|²``.
-
-    The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
-    Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are >= 0. A ValueError
-    if the mean is not unique, as for half turns about three axes; while JAX traces, the result is then
-    arbitrary. Arrays of other libraries keep their type; derivatives are right up to the third.
-    """
-    if not isinstance(R, Rotor) or len(R.shape) != 1 or not R.shape[0]:
-        raise ValueError(f"mean needs a batch of rotors of shape (n,), n > 0, got {R!r}")
-    kind = kind_of(R._data)
-    if kind.exact:
-        raise TypeError(
-            f"mean needs floats, got rotors of {R.dtype}; convert exact numbers with .astype(float)"
-        )
-    others = None if weights is None else foreign_kind(weights)
-    if not is_float(R._data) or (others is not None and not others.exact):
-        return _foreign_mean(R, weights)
-    w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")
-    if w.shape != R.shape or not (np.isfinite(w).all() and (w >= 0).all() and w.any()):
-        raise ValueError(_WEIGHTS.format(R.shape[0], w.tolist()))
-    rows = as_floats(R.components, "a component")
-    values, vectors = np.linalg.eigh((w[:, np.newaxis] * rows).T @ rows)
-    if values[3] - values[2] <= 8 * np.finfo(R.dtype).eps * values[3]:
-        raise ValueError(_NO_MEAN)
-    best = vectors[:, 3]
-    return Rotor.from_components((-best if best[0] < 0 else best).astype(R.dtype))
-
-
-def _foreign_mean(R: Rotor, weights: Any) -> Rotor:
-    """Return the mean of arrays of another library, with its derivatives."""
-    given = [] if weights is None else [as_coefficients(weights, "weights")]
-    kind = kind_of(R._data, *given)
-    rows, xp = kind.asarray(R._data), kind.xp
-    if given:
-        w = kind.asarray(given[0])
-        if tuple(w.shape) != R.shape:
-            raise ValueError(_WEIGHTS.format(R.shape[0], f"shape {tuple(w.shape)}"))
-        usable = xp.all(xp.isfinite(w) & (w >= 0)) & xp.any(w > 0)
-        kind.require(usable, _WEIGHTS.format(R.shape[0], w))
-        weighted = w[:, None] * rows
-    else:
-        weighted = rows
-    best = _largest_eigenvector(kind, xp.matmul(xp.permute_dims(weighted, (1, 0)), rows))
-    return Rotor.from_components(kind.where(best[0] < 0, -best, best))
-
-
-def _largest_eigenvector(d: Any, matrix: Any) -> Any:
-    """Return the unit eigenvector (n,) of the matrix (n, n); a ValueError where two eigenvalues are largest.
-
-    A library's own derivatives of eigenvectors need all eigenvalues to differ. Newton's method for
-    ``K v = λ v, vᵀv = 1``, from a solution that counts as constant, needs it of the largest only. After k
-    steps the derivatives are right up to the order 2^k − 1.
-    """
-    xp = d.xp
-    values, vectors = xp.linalg.eigh(d.constant(matrix))
-    n = int(values.shape[0])
-    d.require(values[-1] - values[-2] > 2 * n * d.eps * values[-1], _NO_MEAN)
-    v, value = vectors[:, -1], values[-1]
-    identity = xp.eye(n, dtype=matrix.dtype, **d.placed)
-    zero = xp.reshape(value * 0.0, (1, 1))
-    for _ in range(2):
-        image = xp.sum(matrix * v[None, :], axis=1)
-        column = xp.reshape(v, (n, 1))
-        upper = xp.concat([matrix - value * identity, -column], axis=1)
-        lower = xp.concat([xp.reshape(v, (1, n)), zero], axis=1)
-        error = xp.concat([value * v - image, xp.reshape(0.5 * (1.0 - xp.sum(v * v)), (1,))])
-        step = xp.linalg.solve(xp.concat([upper, lower], axis=0), xp.reshape(error, (n + 1, 1)))[:, 0]
-        v, value = v + step[:n], value + step[n]
-    return v
 
 
 class RotorSpline:
@@ -154,7 +67,7 @@ class RotorSpline:
             i = int(np.argmin(np.diff(knots) > 0))
             raise ValueError(f"times must increase, but {knots[i]:g} at index {i} precedes {knots[i + 1]:g}")
         self._times = frozen(knots)
-        self._values = frozen(_one_sheet(rotors.astype(float)._data))
+        self._values = frozen(rotors.astype(float).continuous()._data)
         self._slopes = frozen(_spline_slopes(knots, self._values))
         _require_near(knots, self._values, self._slopes)
 
@@ -205,16 +118,6 @@ class RotorSpline:
         s = (1 - u) * a + u * b + u * (1 - u) * ((1 - u) * p - u * q)
         rate = (b - a + (1 - u) * (1 - 3 * u) * p + u * (3 * u - 2) * q) / step
         return s, rate
-
-
-def _one_sheet(components: Array) -> Array:
-    """Return the rotors' components with signs that keep neighbours at most a right angle apart.
-
-    At a right angle, to rounding, the attitudes are half a turn apart and the given signs are kept.
-    """
-    apart = np.einsum("ij,ij->i", components[1:], components[:-1]) < -_half_turn(components)
-    signs = np.cumprod(np.where(apart, -1.0, 1.0))
-    return np.concatenate([components[:1], signs[:, np.newaxis] * components[1:]])
 
 
 def _require_near(x: Array, y: Array, slopes: Array) -> None:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from polhode import jax as jax
     from polhode._algebra.estimation import Alignment, align, mean
     from polhode._algebra.interpolation import RotorSpline, slerp
+    from polhode._algebra.jacobians import left_jacobian, right_jacobian
     from polhode._algebra.linear_map import LinearMap
     from polhode._algebra.serialize import from_dict, to_dict
     from polhode._algebra.transform import RigidTransform
@@ -58,8 +59,9 @@ __all__ = [
     "LinearMap", "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline", "Scene", "SceneError",
     "State", "Stepper", "SymmetricTop", "Trajectory", "algebra", "align", "axial", "bivector", "concatenate",
     "cross", "describe_free", "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial",
-    "from_dict", "from_pauli", "mean", "multivector", "scalar", "simulate", "simulate_blocks", "slerp",
-    "split", "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
+    "from_dict", "from_pauli", "left_jacobian", "mean", "multivector", "right_jacobian", "scalar", "simulate",
+    "simulate_blocks", "slerp", "split", "stack", "to_dict", "to_pauli", "torque", "trivector", "vector",
+    "view",
 ]
 # fmt: on
 
@@ -69,6 +71,7 @@ _LATER = {
     for module, names in {
         "_algebra.estimation": "Alignment align mean",
         "_algebra.interpolation": "RotorSpline slerp",
+        "_algebra.jacobians": "left_jacobian right_jacobian",
         "_algebra.linear_map": "LinearMap",
         "_algebra.serialize": "from_dict to_dict",
         "_algebra.transform": "RigidTransform",

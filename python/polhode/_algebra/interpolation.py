@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from polhode._algebra.coefficients import foreign_kind, namespace
 from polhode._algebra.constructors import bivector
+from polhode._algebra.grades import stack
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.signs import half_turn
@@ -46,13 +48,18 @@ class RotorSpline:
     approximated, not reproduced. A ValueError if the times are so uneven that the path could swing far from
     its rotors.
 
+    Times beyond the first and last are an error; with `extrapolate` the path goes on there at the constant
+    angular velocity of that end.
+
     >>> spline = RotorSpline(times, rotors)
-    >>> spline(t), spline.omega_body(t)
+    >>> spline(t), spline.omega_body(t), spline.alpha_body(t)
     """
 
-    __slots__ = ("_slopes", "_times", "_values")
+    __slots__ = ("_extrapolate", "_slopes", "_times", "_values")
 
-    def __init__(self, times: Any, rotors: Rotor) -> None:
+    def __init__(self, times: Any, rotors: Rotor | Sequence[Rotor], *, extrapolate: bool = False) -> None:
+        if not isinstance(rotors, Multivector) and isinstance(rotors, list | tuple) and rotors:
+            rotors = stack(rotors)
         if not isinstance(rotors, Rotor) or len(rotors.shape) != 1 or rotors.shape[0] < 2:
             raise ValueError(f"a spline needs a batch of rotors of shape (n,), n >= 2, got {rotors!r}")
         if not is_float(rotors._data) or foreign_kind(times) is not None:
@@ -60,15 +67,11 @@ class RotorSpline:
                 "a spline needs NumPy floats; convert exact numbers with .astype(float), the arrays of other "
                 "libraries with np.asarray(rotors.components)"
             )
-        knots = np.array(as_floats(times, "times"))
-        if knots.shape != rotors.shape or not np.isfinite(knots).all():
-            raise ValueError(f"times must be {len(rotors)} finite numbers, one for each rotor, got {knots}")
-        if not (np.diff(knots) > 0).all():
-            i = int(np.argmin(np.diff(knots) > 0))
-            raise ValueError(f"times must increase, but {knots[i]:g} at index {i} precedes {knots[i + 1]:g}")
+        knots = increasing_times(times, len(rotors), "rotor")
+        self._extrapolate = bool(extrapolate)
         self._times = frozen(knots)
         self._values = frozen(rotors.astype(float).continuous()._data)
-        self._slopes = frozen(_spline_slopes(knots, self._values))
+        self._slopes = frozen(spline_slopes(knots, self._values))
         _require_near(knots, self._values, self._slopes)
 
     @property
@@ -82,33 +85,47 @@ class RotorSpline:
         return Rotor.from_components(self._values)
 
     def __call__(self, t: Any) -> Rotor:
-        """Return the rotors at the times t (...), between the first and the last."""
-        return Rotor.from_components(self._at(t)[0])
+        """Return the rotors at the times t (...)."""
+        s, rate, _, beyond = self._at(t)
+        path = Rotor.from_components(s)
+        if not beyond.any():
+            return path
+        further: Rotor = path * (_omega(s, rate) * (-0.5 * beyond)).exp()
+        return further
 
     def omega_body(self, t: Any) -> Multivector:
-        """Return the angular velocity at the times t, a bivector in body axes.
+        """Return the angular velocity at the times t, a bivector in body axes, in rad per unit of time."""
+        s, rate, _, _ = self._at(t)
+        return _omega(s, rate)
 
-        With ``s = |s| R``, ``~s s' = ½(|s|²)' + |s|² ~R R'``, and ``Ω_B = −2 ~R R'`` (handout eq. 4.13).
+    def alpha_body(self, t: Any) -> Multivector:
+        """Return the angular acceleration at the times t: the rate of `omega_body`, a bivector in body axes.
+
+        It is continuous, of second order in the distance of the rotors, and 0 beyond the ends.
         """
-        s, rate = self._at(t)
-        even = bivector(rate[..., 1:]) + rate[..., 0]
-        size: Array = np.linalg.norm(s, axis=-1)
-        return (~Rotor.from_components(s) * even).grade(2) * (-2 / size)
+        s, rate, bend, beyond = self._at(t)
+        # (<~s s'>₂)' = <~s s''>₂, since ~s' s' is a scalar.
+        growth = 2 * (s * rate).sum(axis=-1) / (s * s).sum(axis=-1)
+        alpha: Multivector = (_omega(s, bend) - _omega(s, rate) * growth) * np.where(beyond == 0, 1.0, 0.0)
+        return alpha
 
     def __repr__(self) -> str:
         first, last = self._times[[0, -1]]
         return f"RotorSpline({len(self._times)} rotors, times {first:.8g} to {last:.8g})"
 
-    def _at(self, t: Any) -> tuple[Array, Array]:
-        """Return s and its rate at t: on each interval the cubic of its end values and slopes."""
+    def _at(self, t: Any) -> tuple[Array, Array, Array, Array]:
+        """Return s, its first and second derivative at t or the nearest end, and the time beyond this end."""
         when = as_floats(t, "the time")
         first, last = self._times[[0, -1]]
         outside = ~((when >= first) & (when <= last))
-        if outside.any():
-            index = first_index(outside)
-            raise ValueError(
+        unusable = ~np.isfinite(when) if self._extrapolate else outside
+        if unusable.any():
+            index = first_index(unusable)
+            message = (
                 f"the time{at_index(index)} is {when[index]:g}; the spline goes from {first:g} to {last:g}"
             )
+            raise ValueError(message + ("" if self._extrapolate else " (extrapolate=True goes on beyond)"))
+        given, when = when, np.clip(when, first, last)
         k = np.clip(np.searchsorted(self._times, when, side="right") - 1, 0, len(self._times) - 2)
         step = (self._times[k + 1] - self._times[k])[..., np.newaxis]
         u = ((when - self._times[k])[..., np.newaxis]) / step
@@ -117,7 +134,30 @@ class RotorSpline:
         p, q = step * self._slopes[k] - (b - a), step * self._slopes[k + 1] - (b - a)
         s = (1 - u) * a + u * b + u * (1 - u) * ((1 - u) * p - u * q)
         rate = (b - a + (1 - u) * (1 - 3 * u) * p + u * (3 * u - 2) * q) / step
-        return s, rate
+        bend = ((6 * u - 4) * p + (6 * u - 2) * q) / step**2
+        return s, rate, bend, given - when
+
+
+def _omega(s: Array, rate: Array) -> Multivector:
+    """Return the angular velocity of ``R = s/|s|`` where s has this rate.
+
+    ``~s s' = ½(|s|²)' + |s|² ~R R'``, and ``Ω_B = −2 ~R R'`` (handout eq. 4.13).
+    """
+    even = bivector(rate[..., 1:]) + rate[..., 0]
+    size: Array = np.linalg.norm(s, axis=-1)
+    return (~Rotor.from_components(s) * even).grade(2) * (-2 / size)
+
+
+def increasing_times(times: Any, count: int, what: str) -> Array:
+    """Return the times (count,) of samples; a ValueError unless they are finite and increase."""
+    knots = np.array(as_floats(times, "times"))
+    if knots.shape != (count,) or not np.isfinite(knots).all():
+        raise ValueError(f"times must be {count} finite numbers, one for each {what}, got {knots}")
+    rising = np.diff(knots) > 0
+    if not rising.all():
+        i = int(np.argmin(rising))
+        raise ValueError(f"times must increase, but {knots[i]:g} at index {i} precedes {knots[i + 1]:g}")
+    return knots
 
 
 def _require_near(x: Array, y: Array, slopes: Array) -> None:
@@ -140,7 +180,7 @@ def _require_near(x: Array, y: Array, slopes: Array) -> None:
         )
 
 
-def _spline_slopes(x: Array, y: Array) -> Array:
+def spline_slopes(x: Array, y: Array) -> Array:
     """Return the slopes (n, m) at x (n,) of the not-a-knot cubic spline through y (n, m).
 
     With steps h and slopes of chords c, the second derivative is continuous if the slopes d satisfy

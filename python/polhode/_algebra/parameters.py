@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _generic
-from polhode._algebra import euler
 from polhode._algebra.coefficients import as_coefficients, kind_of
 from polhode._algebra.constructors import from_axial, one_grade, vector
 from polhode._algebra.grades import held, with_grades
 from polhode._algebra.multivector import Multivector
-from polhode._generic.numeric import components
 from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float
 
 if TYPE_CHECKING:
@@ -77,14 +75,15 @@ def from_mrp(mrp: Any) -> Rotor:
     p = one_grade(mrp, 1, "the parameters")._data if isinstance(mrp, Multivector) else mrp
     p = _triples(p, "modified Rodrigues parameters")
     kind = kind_of(p)
-    x, y, z = components(p)
+    x, y, z = (p[..., k] for k in range(3))
     half = Rotor.from_components(kind.stack([kind.zeros_like(x) + 1, -x, -y, -z]))
     return half * half
 
 
 def to_mrp(R: Rotor) -> Any:
     """Return modified Rodrigues parameters (..., 3), ``tan(θ/4)`` along the axis, of length at most 1."""
-    s, x, y, z = components(R.canonical()._data)
+    data = R.canonical()._data
+    s, x, y, z = (data[..., k] for k in range(4))
     kind = kind_of(s)
     return kind.stack([kind.divide(-part, 1 + s) for part in (x, y, z)])
 
@@ -141,9 +140,14 @@ def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
     second, lead = sign * second, sign * lead
     frame = Rotor.from_matrix(np.stack([np.cross(second, first), second, first], axis=-1))
     proper = ~frame * R * from_axis_angle(second, lead) * frame
-    alpha, beta, gamma = components(proper.to_euler("ZYZ" if intrinsic else "zyz"))
-    found = kind_of(alpha).stack([alpha, sign * (beta - lead), gamma])
-    return euler.to_degrees(found) if degrees else found
+    angles = proper.to_euler("ZYZ" if intrinsic else "zyz")
+    alpha, beta, gamma = (angles[..., k] for k in range(3))
+    found = kind_of(angles).stack([alpha, sign * (beta - lead), gamma])
+    if not degrees:
+        return found
+    from polhode._algebra import euler
+
+    return euler.to_degrees(found)
 
 
 def _davenport_axes(axes: Any, lengths: tuple[int, ...]) -> Array:
@@ -237,4 +241,8 @@ def _triples(values: Any, what: str) -> Any:
 
 def _radians(angle: Any, degrees: bool) -> Any:
     theta = as_coefficients(angle, "angle")
-    return euler.to_radians(theta) if degrees else theta
+    if not degrees:
+        return theta
+    from polhode._algebra import euler
+
+    return euler.to_radians(theta)

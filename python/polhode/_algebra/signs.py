@@ -9,8 +9,6 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.coefficients import kind_of
-from polhode._generic.exact import is_symbolic
-from polhode._generic.numeric import components
 from polhode._support.arrays import is_float
 
 if TYPE_CHECKING:
@@ -32,7 +30,7 @@ def canonical(R: Rotor) -> Rotor:
         rows = data.reshape(-1, 4)
         flip = np.array([_flips_exact(row) for row in rows], bool).reshape(data.shape[:-1])
         return _native.Rotor._from_rows(np.where(flip[..., np.newaxis], -data, data))
-    s, x, y, z = components(data)
+    s, x, y, z = (data[..., k] for k in range(4))
     flip = (s < 0) | ((s == 0) & ((x > 0) | ((x == 0) & ((y > 0) | ((y == 0) & (z > 0))))))
     return _flipped(R, flip)
 
@@ -78,6 +76,8 @@ def _flipped(R: Rotor, flip: Any) -> Rotor:
 
 
 def _flips_exact(row: Any) -> bool:
+    from polhode._generic.exact import is_symbolic
+
     for k, x in enumerate(row):
         wanted = -1 if k else 1
         if is_symbolic(x):

@@ -21,20 +21,14 @@ def test_axis_and_angle():
     assert close(turns[2, 1], Rotor.from_plane_angle(e3 ^ e1, 0.6), 2)
     # The rotor counts turns to 4π.
     assert close(Rotor.from_axis_angle(e3, 2 * np.pi), -Rotor.identity(), 4)
-    with pytest.raises(ValueError, match=r"the axis at index \(1,\) is zero"):
+    with pytest.raises(ValueError, match=r"the axis at index \(1,\) is .* not zero"):
         Rotor.from_axis_angle([[1, 0, 0], [0, 0, 0]], 1.0)
     with pytest.raises(ValueError, match=r"3 components in the last axis, got shape \(2,\)"):
         Rotor.from_axis_angle([1, 0], 1.0)
+    with pytest.raises(ValueError, match=r"the axis is \[nan, 0.0, 1.0\]; it must be finite"):
+        Rotor.from_axis_angle([np.nan, 0, 1], 1.0)
     with pytest.raises(TypeError, match="the axis must be a vector"):
         Rotor.from_axis_angle(e1 ^ e2, 1.0)
-
-
-def test_planes_and_directions_may_be_arrays():
-    assert Rotor.from_plane_angle([0, 0, 1], 0.3) == Rotor.from_plane_angle(e1 ^ e2, 0.3)
-    assert Rotor.from_plane_angle([0, 0, 1], [0.3, 0.4]).shape == (2,)
-    assert Rotor.from_vectors([1, 0, 0], [[0, 1, 0], [0, 0, 1]])[1] == Rotor.from_vectors(e1, e3)
-    with pytest.raises(ValueError, match=r"3 components in the last axis"):
-        Rotor.from_vectors([1, 0], e1)
 
 
 @given(rotors)

@@ -36,15 +36,17 @@ def from_axis_angle(axis: Any, angle: Any, degrees: bool = False) -> Rotor:
     angle
         In radians, or degrees; batch shapes broadcast. Any size: a rotor distinguishes turns to 4π.
 
-    A ValueError for an axis of zero length, with its index.
+    A ValueError for an axis of zero length, with its batch index.
     """
     given = (
         one_grade(axis, 1, "the axis") if isinstance(axis, Multivector) else vector(_triples(axis, "an axis"))
     )
     if is_float(given._data):
-        zero = (given._data == 0).all(axis=-1)
-        if zero.any():
-            raise ValueError(f"the axis{at_index(first_index(zero))} is zero; give a nonzero vector")
+        unusable = ~np.isfinite(given._data).all(axis=-1) | (given._data == 0).all(axis=-1)
+        if unusable.any():
+            index = first_index(unusable)
+            found = given._data[index].tolist()
+            raise ValueError(f"the axis{at_index(index)} is {found}; it must be finite and not zero")
     return Rotor.from_plane_angle(from_axial(given), _radians(angle, degrees))
 
 

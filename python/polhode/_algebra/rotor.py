@@ -33,13 +33,6 @@ def _components(values: Any, size: int, what: str) -> Any:
     return data
 
 
-def _of_grade(value: Any, grade: int, what: str) -> Any:
-    """Return the components (..., 3) of vectors or bivectors, given as values or as an array."""
-    if isinstance(value, Multivector):
-        return one_grade(value, grade, what)._data
-    return _components(value, 3, what)
-
-
 def _computed(name: str, *operands: Any) -> Any:
     """Apply a function of rotors; batches broadcast. In the compiled core for floats, else generic."""
     if all(map(is_float, operands)):
@@ -83,26 +76,23 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor._from_rows(_computed("from_components", _components(c4, 4, "rotor")))
 
     @staticmethod
-    def from_plane_angle(B: Any, theta: Any) -> Rotor:
-        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored.
-
-        B is a bivector, or an array (..., 3) over ``(e2e3, e3e1, e1e2)``.
-        """
-        plane = _of_grade(B, 2, "the plane")
+    def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
+        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored."""
+        plane = one_grade(B, 2, "the plane")._data
         angle = number_like(theta, "angle", plane)
         if is_float(plane) and is_float(angle):
             angle = angle[..., np.newaxis]  # a column, beside the plane
         return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
 
     @staticmethod
-    def from_vectors(a: Any, b: Any) -> Rotor:
+    def from_vectors(a: Multivector, b: Multivector) -> Rotor:
         """Turn the direction of a into that of b, the short way; lengths are ignored.
 
-        Vectors, or arrays (..., 3); `ph.align` finds the best rotation for many pairs. For opposite
-        directions the plane is not unique; it is taken through a and the basis vector farthest from a.
+        For opposite directions the plane is not unique; it is taken through a and the basis vector farthest
+        from a. `ph.align` finds the best rotation for many pairs.
         """
-        first, second = _of_grade(a, 1, "the first direction"), _of_grade(b, 1, "the second direction")
-        return Rotor._from_rows(_computed("from_vectors", first, second))
+        first, second = one_grade(a, 1, "the first direction"), one_grade(b, 1, "the second direction")
+        return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
 
     @staticmethod
     def from_matrix(m: Any) -> Rotor:
@@ -126,7 +116,8 @@ class Rotor(_native.Rotor, Multivector):
     @staticmethod
     def from_rotation_vector(v: Any) -> Rotor:
         """From vectors (..., 3) along the axis, of length the angle in radians; an array or a Multivector."""
-        return Rotor._from_rows(_computed("from_rotation_vector", _of_grade(v, 1, "rotation vector")))
+        array = one_grade(v, 1, "a rotation vector")._data if isinstance(v, Multivector) else v
+        return Rotor._from_rows(_computed("from_rotation_vector", _components(array, 3, "rotation vector")))
 
     @staticmethod
     def from_scipy(rot: Rotation) -> Rotor:

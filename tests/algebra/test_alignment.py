@@ -122,8 +122,13 @@ def test_what_does_not_determine_a_rotation_raises():
 def test_wrong_vectors_and_weights_raise():
     with pytest.raises(ValueError, match=r"a needs vectors .* got shape \(3,\)"):
         ph.align([1, 2, 3], [1, 2, 3])
-    with pytest.raises(ValueError, match=r"matching shapes .* got \(2, 3\) and \(3, 3\)"):
-        ph.align(np.eye(3)[:2], np.eye(3))
+    for n in (1, 2):
+        with pytest.raises(
+            ValueError, match=rf"equal numbers of vectors .* got shapes \({n}, 3\) and \(3, 3\)"
+        ):
+            ph.align(np.eye(3)[:n], np.eye(3))
+    with pytest.raises(ValueError, match=r"do not broadcast: .* are \(2, 4, 3\) and \(3, 4, 3\)"):
+        ph.align(np.ones((2, 4, 3)), np.ones((3, 4, 3)))
     with pytest.raises(ValueError, match="a vector is not finite"):
         ph.align(np.eye(3), np.diag([1, np.nan, 1]))
     with pytest.raises(ValueError, match=r"weights must be finite numbers >= 0.* got \[ *1. -1. *1.\]"):

@@ -163,11 +163,13 @@ def align(a: Any, b: Any, weights: Any = None) -> Alignment:
     if kind.exact:
         raise TypeError("align needs floats; convert exact numbers with .astype(float)")
     xp = kind.xp
+    shapes = f"{tuple(first.shape)} and {tuple(second.shape)}"
+    if first.shape[-2] != second.shape[-2]:
+        raise ValueError(f"a and b need equal numbers of vectors (..., n, 3), got shapes {shapes}")
     try:
         x, y = xp.broadcast_arrays(kind.asarray(first), kind.asarray(second))
     except (ValueError, RuntimeError):
-        shapes = f"{tuple(first.shape)} and {tuple(second.shape)}"
-        raise ValueError(f"a and b need vectors of matching shapes (..., n, 3), got {shapes}") from None
+        raise ValueError(f"batch shapes of a and b do not broadcast: (..., n, 3) are {shapes}") from None
     batch = tuple(x.shape[:-1])
     kind.require(xp.all(xp.isfinite(x) & xp.isfinite(y), axis=-1), "a vector is not finite; remove it first")
     w = _usable_weights(kind, weights, batch)

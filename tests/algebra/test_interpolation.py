@@ -74,6 +74,41 @@ def test_rotors_without_a_unique_mean_raise():
         ph.mean(ph.Rotor.identity())
 
 
+def test_means_along_axes_are_those_of_rows():
+    R, w = ph.Rotor.random((3, 4, 5), rng=10), np.random.default_rng(10).uniform(0, 1, (3, 4, 5))
+    for weights in (None, w):
+        of_rows = ph.mean(R, weights, axis=-1)
+        assert of_rows.shape == (3, 4)
+        for i in range(3):
+            for j in range(4):
+                alone = ph.mean(R[i, j], None if weights is None else w[i, j])
+                # The error of eigenvectors is the rounding over the gap, here some hundredths.
+                assert of_rows[i, j].is_close(alone, atol=512 * EPS)
+        two = ph.mean(R, weights, axis=(0, 2))
+        assert two.shape == (4,)
+        expected = ph.mean(R[:, 1].reshape(15), None if weights is None else w[:, 1].reshape(15))
+        assert two[1].is_close(expected, atol=512 * EPS)
+    everything = ph.mean(R, w[0, 0])
+    assert everything.is_close(ph.mean(R.reshape(60), np.tile(w[0, 0], 12)), atol=512 * EPS)
+    single = ph.mean(R.astype(np.float32), axis=0)
+    assert single.dtype == np.float32
+    assert single.distance(ph.mean(R, axis=0)).max() < 1e-5
+
+
+def test_means_of_lists_and_wrong_axes():
+    a, b = ph.Rotor.random(2, rng=11)
+    assert ph.mean([a, b]) == ph.mean(ph.stack([a, b]))
+    R = ph.Rotor.random((3, 4), rng=11)
+    for bad in (2, -3, (0, 0), (0, -2), ()):
+        with pytest.raises(ValueError, match="does not name different axes of 2 batch axes"):
+            ph.mean(R, axis=bad)
+    with pytest.raises(ValueError, match=r"that broadcast to \(3, 4\), got shape \(3,\)"):
+        ph.mean(R, [1, 2, 3])
+    half_turns = ph.Rotor.from_components(np.stack([R.components[0], np.eye(4)]))
+    with pytest.raises(ValueError, match=r"at index 1: .*no mean|at index \(1,\): .*no mean"):
+        ph.mean(half_turns, axis=1)
+
+
 def half_turns(count, seed):
     """Rotors, and turns by π in any planes."""
     planes = np.random.default_rng(seed).standard_normal((count, 3))
@@ -121,10 +156,15 @@ def test_means_keep_the_array_type(name):
             assert type(mean.components) is type(asarray(w))
             # The error of eigenvectors is the rounding over the gap, here a tenth of the largest eigenvalue.
             assert np.allclose(np.asarray(mean.components), ph.mean(rotors, weights).components, 0, 64 * EPS)
+            rows = ph.mean(
+                theirs.reshape(5, 6), weights if weights is None else asarray(w.reshape(5, 6)), axis=1
+            )
+            expected = ph.mean(rotors.reshape(5, 6), weights if weights is None else w.reshape(5, 6), axis=1)
+            assert np.allclose(np.asarray(rows.components), expected.components, 0, 512 * EPS)
         assert type(ph.mean(rotors, asarray(w)).components) is type(asarray(w))
         with pytest.raises(ValueError, match="no mean"):
             ph.mean(ph.Rotor.from_components(asarray(np.eye(4))))
-        with pytest.raises(ValueError, match="weights must be 30 finite numbers"):
+        with pytest.raises(ValueError, match="weights must be finite numbers"):
             ph.mean(theirs, asarray(-w))
         half = ph.Rotor.from_components(asarray([0.0, 1.0, 0.0, 0.0]))
         assert np.all(

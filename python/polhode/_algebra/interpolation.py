@@ -1,22 +1,19 @@
-"""Interpolation of rotors: slerp, the mean attitude, and splines."""
+"""Interpolation of rotors: slerp and splines."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from polhode._algebra.coefficients import as_coefficients, foreign_kind, kind_of, namespace
+from polhode._algebra.coefficients import foreign_kind, namespace
 from polhode._algebra.constructors import bivector
+from polhode._algebra.grades import stack
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._algebra.signs import half_turn
 from polhode._support.arrays import Array, as_floats, at_index, first_index, frozen, is_float
-
-# Rounding errors in a sum of four products of rounded numbers.
-_HALF_TURN = 4
-
-_NO_MEAN = "the rotors have no mean: two attitudes are equally close to all of them"
-_WEIGHTS = "weights must be {} finite numbers >= 0, not all 0, got {}"
 
 
 def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
@@ -30,92 +27,10 @@ def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
         if not isinstance(value, Rotor):
             raise TypeError(f"slerp needs rotors, got {type(value).__name__}")
     step = (~R * S)._data
-    longer = step[..., :1] < -_half_turn(step)
+    longer = step[..., :1] < -half_turn(step)
     shorter = Rotor.from_components(namespace(step).where(longer, -step, step))
     path: Rotor = R * shorter**t
     return path
-
-
-def _half_turn(components: Any) -> float:
-    """Return the rounding error of the scalar part of ``~R S`` for attitudes half a turn apart.
-
-    It is a sum of four products of rounded components, whose magnitudes add up to at most 1.
-    """
-    return _HALF_TURN * (
-        float(np.finfo(components.dtype).eps) if is_float(components) else kind_of(components).eps
-    )
-
-
-def mean(R: Rotor, weights: Any = None) -> Rotor:
-    """Return the mean attitude of a batch (n,), for any signs: the Q that minimises ``Σ w |R − Q|²``.
-
-    The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
-    Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are >= 0. A ValueError
-    if the mean is not unique, as for half turns about three axes; while JAX traces, the result is then
-    arbitrary. Arrays of other libraries keep their type; derivatives are right up to the third.
-    """
-    if not isinstance(R, Rotor) or len(R.shape) != 1 or not R.shape[0]:
-        raise ValueError(f"mean needs a batch of rotors of shape (n,), n > 0, got {R!r}")
-    kind = kind_of(R._data)
-    if kind.exact:
-        raise TypeError(
-            f"mean needs floats, got rotors of {R.dtype}; convert exact numbers with .astype(float)"
-        )
-    others = None if weights is None else foreign_kind(weights)
-    if not is_float(R._data) or (others is not None and not others.exact):
-        return _foreign_mean(R, weights)
-    w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")
-    if w.shape != R.shape or not (np.isfinite(w).all() and (w >= 0).all() and w.any()):
-        raise ValueError(_WEIGHTS.format(R.shape[0], w.tolist()))
-    rows = as_floats(R.components, "a component")
-    values, vectors = np.linalg.eigh((w[:, np.newaxis] * rows).T @ rows)
-    if values[3] - values[2] <= 8 * np.finfo(R.dtype).eps * values[3]:
-        raise ValueError(_NO_MEAN)
-    best = vectors[:, 3]
-    return Rotor.from_components((-best if best[0] < 0 else best).astype(R.dtype))
-
-
-def _foreign_mean(R: Rotor, weights: Any) -> Rotor:
-    """Return the mean of arrays of another library, with its derivatives."""
-    given = [] if weights is None else [as_coefficients(weights, "weights")]
-    kind = kind_of(R._data, *given)
-    rows, xp = kind.asarray(R._data), kind.xp
-    if given:
-        w = kind.asarray(given[0])
-        if tuple(w.shape) != R.shape:
-            raise ValueError(_WEIGHTS.format(R.shape[0], f"shape {tuple(w.shape)}"))
-        usable = xp.all(xp.isfinite(w) & (w >= 0)) & xp.any(w > 0)
-        kind.require(usable, _WEIGHTS.format(R.shape[0], w))
-        weighted = w[:, None] * rows
-    else:
-        weighted = rows
-    best = _largest_eigenvector(kind, xp.matmul(xp.permute_dims(weighted, (1, 0)), rows))
-    return Rotor.from_components(kind.where(best[0] < 0, -best, best))
-
-
-def _largest_eigenvector(d: Any, matrix: Any) -> Any:
-    """Return the unit eigenvector (n,) of the matrix (n, n); a ValueError where two eigenvalues are largest.
-
-    A library's own derivatives of eigenvectors need all eigenvalues to differ. Newton's method for
-    ``K v = λ v, vᵀv = 1``, from a solution that counts as constant, needs it of the largest only. After k
-    steps the derivatives are right up to the order 2^k − 1.
-    """
-    xp = d.xp
-    values, vectors = xp.linalg.eigh(d.constant(matrix))
-    n = int(values.shape[0])
-    d.require(values[-1] - values[-2] > 2 * n * d.eps * values[-1], _NO_MEAN)
-    v, value = vectors[:, -1], values[-1]
-    identity = xp.eye(n, dtype=matrix.dtype, **d.placed)
-    zero = xp.reshape(value * 0.0, (1, 1))
-    for _ in range(2):
-        image = xp.sum(matrix * v[None, :], axis=1)
-        column = xp.reshape(v, (n, 1))
-        upper = xp.concat([matrix - value * identity, -column], axis=1)
-        lower = xp.concat([xp.reshape(v, (1, n)), zero], axis=1)
-        error = xp.concat([value * v - image, xp.reshape(0.5 * (1.0 - xp.sum(v * v)), (1,))])
-        step = xp.linalg.solve(xp.concat([upper, lower], axis=0), xp.reshape(error, (n + 1, 1)))[:, 0]
-        v, value = v + step[:n], value + step[n]
-    return v
 
 
 class RotorSpline:
@@ -133,13 +48,18 @@ class RotorSpline:
     approximated, not reproduced. A ValueError if the times are so uneven that the path could swing far from
     its rotors.
 
+    Times beyond the first and last are an error; with `extrapolate` the path goes on there at the constant
+    angular velocity of that end.
+
     >>> spline = RotorSpline(times, rotors)
-    >>> spline(t), spline.omega_body(t)
+    >>> spline(t), spline.omega_body(t), spline.alpha_body(t)
     """
 
-    __slots__ = ("_slopes", "_times", "_values")
+    __slots__ = ("_extrapolate", "_slopes", "_times", "_values")
 
-    def __init__(self, times: Any, rotors: Rotor) -> None:
+    def __init__(self, times: Any, rotors: Rotor | Sequence[Rotor], *, extrapolate: bool = False) -> None:
+        if not isinstance(rotors, Multivector) and isinstance(rotors, list | tuple) and rotors:
+            rotors = stack(rotors)
         if not isinstance(rotors, Rotor) or len(rotors.shape) != 1 or rotors.shape[0] < 2:
             raise ValueError(f"a spline needs a batch of rotors of shape (n,), n >= 2, got {rotors!r}")
         if not is_float(rotors._data) or foreign_kind(times) is not None:
@@ -147,15 +67,11 @@ class RotorSpline:
                 "a spline needs NumPy floats; convert exact numbers with .astype(float), the arrays of other "
                 "libraries with np.asarray(rotors.components)"
             )
-        knots = np.array(as_floats(times, "times"))
-        if knots.shape != rotors.shape or not np.isfinite(knots).all():
-            raise ValueError(f"times must be {len(rotors)} finite numbers, one for each rotor, got {knots}")
-        if not (np.diff(knots) > 0).all():
-            i = int(np.argmin(np.diff(knots) > 0))
-            raise ValueError(f"times must increase, but {knots[i]:g} at index {i} precedes {knots[i + 1]:g}")
+        knots = increasing_times(times, len(rotors), "rotor")
+        self._extrapolate = bool(extrapolate)
         self._times = frozen(knots)
-        self._values = frozen(_one_sheet(rotors.astype(float)._data))
-        self._slopes = frozen(_spline_slopes(knots, self._values))
+        self._values = frozen(rotors.astype(float).continuous()._data)
+        self._slopes = frozen(spline_slopes(knots, self._values))
         _require_near(knots, self._values, self._slopes)
 
     @property
@@ -169,33 +85,47 @@ class RotorSpline:
         return Rotor.from_components(self._values)
 
     def __call__(self, t: Any) -> Rotor:
-        """Return the rotors at the times t (...), between the first and the last."""
-        return Rotor.from_components(self._at(t)[0])
+        """Return the rotors at the times t (...)."""
+        s, rate, _, beyond = self._at(t)
+        path = Rotor.from_components(s)
+        if not beyond.any():
+            return path
+        further: Rotor = path * (_omega(s, rate) * (-0.5 * beyond)).exp()
+        return further
 
     def omega_body(self, t: Any) -> Multivector:
-        """Return the angular velocity at the times t, a bivector in body axes.
+        """Return the angular velocity at the times t, a bivector in body axes, in rad per unit of time."""
+        s, rate, _, _ = self._at(t)
+        return _omega(s, rate)
 
-        With ``s = |s| R``, ``~s s' = ½(|s|²)' + |s|² ~R R'``, and ``Ω_B = −2 ~R R'`` (handout eq. 4.13).
+    def alpha_body(self, t: Any) -> Multivector:
+        """Return the angular acceleration at the times t: the rate of `omega_body`, a bivector in body axes.
+
+        It is continuous, of second order in the distance of the rotors, and 0 beyond the ends.
         """
-        s, rate = self._at(t)
-        even = bivector(rate[..., 1:]) + rate[..., 0]
-        size: Array = np.linalg.norm(s, axis=-1)
-        return (~Rotor.from_components(s) * even).grade(2) * (-2 / size)
+        s, rate, bend, beyond = self._at(t)
+        # (<~s s'>₂)' = <~s s''>₂, since ~s' s' is a scalar.
+        growth = 2 * (s * rate).sum(axis=-1) / (s * s).sum(axis=-1)
+        alpha: Multivector = (_omega(s, bend) - _omega(s, rate) * growth) * np.where(beyond == 0, 1.0, 0.0)
+        return alpha
 
     def __repr__(self) -> str:
         first, last = self._times[[0, -1]]
         return f"RotorSpline({len(self._times)} rotors, times {first:.8g} to {last:.8g})"
 
-    def _at(self, t: Any) -> tuple[Array, Array]:
-        """Return s and its rate at t: on each interval the cubic of its end values and slopes."""
+    def _at(self, t: Any) -> tuple[Array, Array, Array, Array]:
+        """Return s, its first and second derivative at t or the nearest end, and the time beyond this end."""
         when = as_floats(t, "the time")
         first, last = self._times[[0, -1]]
         outside = ~((when >= first) & (when <= last))
-        if outside.any():
-            index = first_index(outside)
-            raise ValueError(
+        unusable = ~np.isfinite(when) if self._extrapolate else outside
+        if unusable.any():
+            index = first_index(unusable)
+            message = (
                 f"the time{at_index(index)} is {when[index]:g}; the spline goes from {first:g} to {last:g}"
             )
+            raise ValueError(message + ("" if self._extrapolate else " (extrapolate=True goes on beyond)"))
+        given, when = when, np.clip(when, first, last)
         k = np.clip(np.searchsorted(self._times, when, side="right") - 1, 0, len(self._times) - 2)
         step = (self._times[k + 1] - self._times[k])[..., np.newaxis]
         u = ((when - self._times[k])[..., np.newaxis]) / step
@@ -204,17 +134,30 @@ class RotorSpline:
         p, q = step * self._slopes[k] - (b - a), step * self._slopes[k + 1] - (b - a)
         s = (1 - u) * a + u * b + u * (1 - u) * ((1 - u) * p - u * q)
         rate = (b - a + (1 - u) * (1 - 3 * u) * p + u * (3 * u - 2) * q) / step
-        return s, rate
+        bend = ((6 * u - 4) * p + (6 * u - 2) * q) / step**2
+        return s, rate, bend, given - when
 
 
-def _one_sheet(components: Array) -> Array:
-    """Return the rotors' components with signs that keep neighbours at most a right angle apart.
+def _omega(s: Array, rate: Array) -> Multivector:
+    """Return the angular velocity of ``R = s/|s|`` where s has this rate.
 
-    At a right angle, to rounding, the attitudes are half a turn apart and the given signs are kept.
+    ``~s s' = ½(|s|²)' + |s|² ~R R'``, and ``Ω_B = −2 ~R R'`` (handout eq. 4.13).
     """
-    apart = np.einsum("ij,ij->i", components[1:], components[:-1]) < -_half_turn(components)
-    signs = np.cumprod(np.where(apart, -1.0, 1.0))
-    return np.concatenate([components[:1], signs[:, np.newaxis] * components[1:]])
+    even = bivector(rate[..., 1:]) + rate[..., 0]
+    size: Array = np.linalg.norm(s, axis=-1)
+    return (~Rotor.from_components(s) * even).grade(2) * (-2 / size)
+
+
+def increasing_times(times: Any, count: int, what: str) -> Array:
+    """Return the times (count,) of samples; a ValueError unless they are finite and increase."""
+    knots = np.array(as_floats(times, "times"))
+    if knots.shape != (count,) or not np.isfinite(knots).all():
+        raise ValueError(f"times must be {count} finite numbers, one for each {what}, got {knots}")
+    rising = np.diff(knots) > 0
+    if not rising.all():
+        i = int(np.argmin(rising))
+        raise ValueError(f"times must increase, but {knots[i]:g} at index {i} precedes {knots[i + 1]:g}")
+    return knots
 
 
 def _require_near(x: Array, y: Array, slopes: Array) -> None:
@@ -237,7 +180,7 @@ def _require_near(x: Array, y: Array, slopes: Array) -> None:
         )
 
 
-def _spline_slopes(x: Array, y: Array) -> Array:
+def spline_slopes(x: Array, y: Array) -> Array:
     """Return the slopes (n, m) at x (n,) of the not-a-knot cubic spline through y (n, m).
 
     With steps h and slopes of chords c, the second derivative is continuous if the slopes d satisfy

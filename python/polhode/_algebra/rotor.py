@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _generic, _native
+from polhode._algebra import groups as _groups
+from polhode._algebra import parameters as _parameters
+from polhode._algebra import signs as _signs
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, reshaped, taken
 from polhode._algebra.constructors import one_grade
 from polhode._algebra.multivector import Multivector
@@ -86,7 +89,7 @@ class Rotor(_native.Rotor, Multivector):
         """Turn the direction of a into that of b, the short way; lengths are ignored.
 
         For opposite directions the plane is not unique; it is taken through a and the basis vector farthest
-        from a.
+        from a. `ph.align` finds the best rotation for many pairs.
         """
         first, second = one_grade(a, 1, "the first direction"), one_grade(b, 1, "the second direction")
         return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
@@ -169,7 +172,18 @@ class Rotor(_native.Rotor, Multivector):
         """Return rotors distributed uniformly over all attitudes; `rng` is a NumPy generator or a seed."""
         return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch_shape(shape), 4)))
 
+    from_axis_angle = staticmethod(_parameters.from_axis_angle)
+    from_mrp = staticmethod(_parameters.from_mrp)
+    from_davenport = staticmethod(_parameters.from_davenport)
+    from_multivector = staticmethod(_parameters.from_multivector)
+    group = staticmethod(_groups.group)
+
     # --- converters
+
+    angle = property(_parameters.angle)
+    magnitude = _parameters.magnitude
+    to_mrp = _parameters.to_mrp
+    to_davenport = _parameters.to_davenport
 
     def to_matrix(self) -> Any:
         """Return rotation matrices (..., 3, 3) acting on columns."""
@@ -239,6 +253,12 @@ class Rotor(_native.Rotor, Multivector):
     def astype(self, dtype: Any) -> Rotor:
         """Return the rotor with components of another type, of norm 1 in its precision."""
         return Rotor.from_components(Multivector.astype(self, dtype)._data)
+
+    # --- signs and symmetries
+
+    canonical = _signs.canonical
+    continuous = _signs.continuous
+    reduce = _groups.reduce
 
     # --- action and algebra
 

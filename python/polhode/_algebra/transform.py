@@ -10,8 +10,8 @@ import numpy as np
 from polhode._algebra.algebra import algebra
 from polhode._algebra.coefficients import as_coefficients, common, kind_of, namespace, number_like
 from polhode._algebra.constructors import one_grade, vector
+from polhode._algebra.estimation import mean
 from polhode._algebra.grades import concatenate, stack, with_grades
-from polhode._algebra.interpolation import mean
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._support.arrays import Array, Shape

@@ -232,6 +232,13 @@ def _exact_plane_angle(r: Parts) -> Parts:
     return [*plane, 2 * atan2(size, s)]
 
 
+def angle(r: Array) -> Any:
+    """Return the angles (...) in [0, π] of exact rotors (..., 4)."""
+    return by_rows(lambda row: [2 * atan2(abs(g3_exact.length(row[1:])), abs(row[0]))], r, range(1))[..., 0][
+        ()
+    ]
+
+
 def log(d: Coefficients, r: Array) -> Array:
     """Return the bivectors (..., 3) of size at most π whose exp is R."""
     return functions.log(d, r, EVEN)[0][..., 1:]

@@ -1,0 +1,278 @@
+"""Best attitudes: the mean of rotors, and the rotation between two sets of vectors."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from polhode._algebra.coefficients import as_coefficients, foreign_kind, kind_of
+from polhode._algebra.constructors import one_grade
+from polhode._algebra.grades import stack
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._support.arrays import Shape, is_float
+
+_NO_MEAN = "the rotors have no mean: two attitudes are equally close to all of them"
+_PARALLEL = (
+    "the directions are all parallel, so the turn about them is not determined; give a second direction, or "
+    "use Rotor.from_vectors for the shortest turn"
+)
+_MIRRORED = "b is a mirror image of a, and two rotations fit it equally well; check the signs of the vectors"
+
+# --- the mean
+
+
+def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None) -> Rotor:
+    """Return the mean attitude of a batch, for any signs: the Q that minimises ``Σ w |R − Q|²``.
+
+    The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
+    Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0.
+
+    Parameters
+    ----------
+    R
+        A batch of rotors, or a list of rotors.
+    weights
+        Numbers >= 0 that broadcast to the batch shape; by default all are equal.
+    axis
+        Batch axis or axes to average over, as in NumPy; by default all of them. The result has the batch
+        shape of the others.
+
+    A ValueError if a mean is not unique, as for half turns about three axes; while JAX traces, the result is
+    then arbitrary. Arrays of other libraries keep their type; derivatives are right up to the third.
+    """
+    rotors = stack(R) if isinstance(R, list | tuple) and R else R
+    if not isinstance(rotors, Rotor) or not rotors.shape or not all(rotors.shape):
+        raise ValueError(f"mean needs a batch of rotors of shape (n,) or more axes, n > 0, got {R!r}")
+    kind = _numbers(rotors, weights)
+    xp, axes = kind.xp, _batch_axes(axis, len(rotors.shape))
+    w = _usable_weights(kind, weights, rotors.shape)
+    kept = tuple(k for k in range(len(rotors.shape)) if k not in axes)
+    order, rest = (*kept, *axes), tuple(rotors.shape[k] for k in kept)
+    rows = kind.asarray(rotors._data)
+    rows = xp.reshape(xp.permute_dims(rows, (*order, len(order))), (*rest, -1, 4))
+    weighted = rows if w is None else xp.reshape(xp.permute_dims(w, order), (*rest, -1, 1)) * rows
+    eps = float(np.finfo(rotors.dtype).eps) if is_float(rotors._data) else kind.eps
+
+    def check(values: Any) -> None:
+        kind.require(values[..., 3] - values[..., 2] > 8 * eps * values[..., 3], _NO_MEAN)
+
+    best = _largest_eigenvector(kind, xp.matmul(xp.matrix_transpose(weighted), rows), check)
+    result = Rotor.from_components(kind.where(best[..., :1] < 0, -best, best))
+    return result.astype(rotors.dtype) if kind.native else result
+
+
+def _numbers(rotors: Rotor, weights: Any) -> Any:
+    """Return the arithmetic of rotors and weights; a TypeError for exact numbers."""
+    kind = kind_of(rotors._data)
+    if kind.exact:
+        raise TypeError(
+            f"mean needs floats, got rotors of {rotors.dtype}; convert exact numbers with .astype(float)"
+        )
+    others = None if weights is None else foreign_kind(weights)
+    if others is not None and not others.exact:
+        return kind_of(rotors._data, weights)
+    return kind
+
+
+def _usable_weights(kind: Any, weights: Any, shape: Shape) -> Any:
+    """Return the weights in this shape, None if there are none; a ValueError unless they are >= 0."""
+    if weights is None:
+        return None
+    given = as_coefficients(weights, "weights")
+    message = "weights must be finite numbers >= 0, not all 0, that broadcast to {}, got {}"
+    try:
+        w = kind.xp.broadcast_to(kind.asarray(given), shape)
+    except (ValueError, RuntimeError):
+        raise ValueError(message.format(shape, f"shape {tuple(given.shape)}")) from None
+    xp = kind.xp
+    usable = xp.all(xp.isfinite(w) & (w >= 0)) & xp.any(w > 0)
+    kind.require(usable, message.format(shape, given))
+    return w
+
+
+def _batch_axes(axis: Any, count: int) -> tuple[int, ...]:
+    if axis is None:
+        return tuple(range(count))
+    given = axis if isinstance(axis, tuple) else (axis,)
+    places = tuple(operator.index(k) for k in given)
+    if (
+        not places
+        or not all(-count <= k < count for k in places)
+        or len({k % count for k in places}) < len(places)
+    ):
+        raise ValueError(f"axis {axis} does not name different axes of {count} batch axes")
+    return tuple(k % count for k in places)
+
+
+# --- alignment
+
+
+class Alignment(NamedTuple):
+    """The result of `align`.
+
+    Attributes
+    ----------
+    rotor
+        R, with scalar part >= 0.
+    residual
+        ``√(Σ w |b − R a ~R|²)``, in the units of the vectors for weights without a unit.
+    covariance
+        Array (..., 3, 3) in rad², in the axes of b: of the small rotation vector ε by which R is off, if the
+        errors of each b have the variance 1/w per component. With equal unknown variances, take weights 1 and
+        multiply by the variance.
+    """
+
+    rotor: Rotor
+    residual: Any
+    covariance: Any
+
+
+def align(a: Any, b: Any, weights: Any = None) -> Alignment:
+    """Return the rotation of a to b: the rotor R that minimises ``Σ w |b − R a ~R|²``.
+
+    Wahba's problem, or Kabsch's for points relative to their centroids. The rotor is the eigenvector of the
+    largest eigenvalue of Davenport's matrix (Keat, 1977; Markley & Mortari, J. Astronaut. Sci. 48 (2000)).
+    SciPy's ``Rotation.align_vectors`` takes the target first: ``align_vectors(b, a)``.
+
+    Parameters
+    ----------
+    a, b
+        Vectors (..., n), or arrays (..., n, 3), n >= 2; batch shapes broadcast. Lengths count: a pair of
+        twice the length has four times the weight.
+    weights
+        Numbers >= 0 that broadcast to the batch shape (..., n); 1 by default. Inverse variances make the
+        covariance that of the attitude.
+
+    Returns
+    -------
+    Alignment
+        The rotor (...), the residual (...) and the covariance (..., 3, 3) of the error in axes of b. A large
+        covariance flags directions that are almost collinear.
+
+    A ValueError, with the batch index, if the rotation is not unique: fewer than two directions, or b
+    a mirror image of a for which two rotations fit equally well. Arrays of JAX and other libraries keep
+    their type and have derivatives.
+    """
+    first, second = _rows(a, "a"), _rows(b, "b")
+    given = [] if weights is None else [as_coefficients(weights, "weights")]
+    kind = kind_of(first, second, *given)
+    if kind.exact:
+        raise TypeError("align needs floats; convert exact numbers with .astype(float)")
+    xp = kind.xp
+    shapes = f"{tuple(first.shape)} and {tuple(second.shape)}"
+    if first.shape[-2] != second.shape[-2]:
+        raise ValueError(f"a and b need equal numbers of vectors (..., n, 3), got shapes {shapes}")
+    try:
+        x, y = xp.broadcast_arrays(kind.asarray(first), kind.asarray(second))
+    except (ValueError, RuntimeError):
+        raise ValueError(f"batch shapes of a and b do not broadcast: (..., n, 3) are {shapes}") from None
+    batch = tuple(x.shape[:-1])
+    kind.require(xp.all(xp.isfinite(x) & xp.isfinite(y), axis=-1), "a vector is not finite; remove it first")
+    w = _usable_weights(kind, weights, batch)
+    weights = kind.zeros(batch) + 1.0 if w is None else w
+    sizes = [xp.sqrt(xp.sum(xp.sum(weights[..., None] * v * v, axis=-1), axis=-1)) for v in (x, y)]
+
+    def check(values: Any) -> None:
+        _require_unique(kind, values, sizes[0] * sizes[1])
+
+    rows = _largest_eigenvector(kind, _davenport_matrix(kind, _profile(xp, weights, x, y)), check)
+    rotor = Rotor.from_components(kind.where(rows[..., :1] < 0, -rows, rows))
+    # The matrix holds squares of small angles between directions; differences recover what these lose.
+    for _ in range(3 if kind.native else 0):
+        covariance, off = _linearized(kind, rotor, x, y, weights)
+        slope = xp.sum(weights[..., None] * xp.linalg.cross(y - off, off), axis=-2)
+        rotor = Rotor.from_rotation_vector(xp.matmul(covariance, slope[..., None])[..., 0]) * rotor
+    covariance, off = _linearized(kind, rotor, x, y, weights)
+    residual = xp.sqrt(xp.sum(weights * xp.sum(off * off, axis=-1), axis=-1))
+    return Alignment(rotor.canonical(), residual[()] if kind.native else residual, covariance)
+
+
+def _rows(values: Any, what: str) -> Any:
+    """Return the components (..., n, 3) of vectors, given as values, a list of values or an array."""
+    if isinstance(values, list | tuple) and any(isinstance(x, Multivector) for x in values):
+        values = stack(values)
+    if isinstance(values, Multivector):
+        values = one_grade(values, 1, what)._data
+    data = as_coefficients(values, what)
+    if len(data.shape) < 2 or data.shape[-1] != 3 or not data.shape[-2]:
+        raise ValueError(
+            f"{what} needs vectors (..., n) or an array (..., n, 3), got shape {tuple(data.shape)}"
+        )
+    return data
+
+
+def _profile(xp: Any, weights: Any, x: Any, y: Any) -> Any:
+    """``Σ w b aᵀ``."""
+    return xp.matmul(xp.matrix_transpose(weights[..., None] * y), x)
+
+
+def _davenport_matrix(kind: Any, profile: Any) -> Any:
+    """Return the matrix (..., 4, 4) of the form ``Σ w b·(R a ~R)`` in the components of R."""
+    (a, b, c), (d, e, f), (g, h, i) = ([profile[..., k, m] for m in range(3)] for k in range(3))
+    # The bivector of a rotor is minus the axis of the quaternion, whose product with Σ w a x b appears here.
+    p, q, r = f - h, g - c, b - d
+    rows = [
+        [a + e + i, p, q, r],
+        [p, a - e - i, b + d, c + g],
+        [q, b + d, e - a - i, f + h],
+        [r, c + g, f + h, i - a - e],
+    ]
+    matrix: Any = kind.xp.stack([kind.stack(row) for row in rows], axis=-2)
+    return matrix
+
+
+def _linearized(kind: Any, rotor: Rotor, x: Any, y: Any, weights: Any) -> tuple[Any, Any]:
+    """Return the inverse second derivative of ``½ Σ w |b − exp(ε) R a|²``, and the differences, at ε = 0."""
+    xp = kind.xp
+    turned = xp.matmul(x, xp.matrix_transpose(rotor.to_matrix()))
+    gain = _profile(xp, weights, turned, y)
+    symmetric = 0.5 * (gain + xp.matrix_transpose(gain))
+    identity = xp.eye(3, dtype=kind.dtype, **kind.placed)
+    trace = xp.sum(xp.sum(symmetric * identity, axis=-1), axis=-1)
+    return xp.linalg.inv(trace[..., None, None] * identity - symmetric), y - turned
+
+
+def _require_unique(kind: Any, values: Any, size: Any) -> None:
+    """Raise a ValueError where the eigenvalues (..., 4) do not determine the rotation.
+
+    With the singular values s1 >= s2 >= |s3| of ``Σ w b aᵀ``, the last with the sign of its determinant, they
+    are s1 + s2 + s3, s1 − s2 − s3, s2 − s1 − s3 and s3 − s1 − s2.
+    """
+    rounding = 32 * kind.eps * size
+    first, second, third = (values[..., k] for k in (3, 2, 1))
+    kind.require(first + third > rounding, _PARALLEL)
+    kind.require(first - second > rounding, _MIRRORED)
+
+
+# --- eigenvectors
+
+
+def _largest_eigenvector(d: Any, matrix: Any, check: Callable[[Any], None]) -> Any:
+    """Return the unit eigenvector (..., n) of the largest eigenvalue; `check` sees them all, ascending.
+
+    A library's own derivatives of eigenvectors need all eigenvalues to differ. Newton's method for
+    ``K v = λ v, vᵀv = 1``, from a solution that counts as constant, needs it of the largest only. After k
+    steps the derivatives are right up to the order 2^k − 1.
+    """
+    xp = d.xp
+    values, vectors = xp.linalg.eigh(d.constant(matrix))
+    check(values)
+    v, value = vectors[..., -1], values[..., -1]
+    if d.native:
+        return v
+    n = int(values.shape[-1])
+    identity = xp.eye(n, dtype=matrix.dtype, **d.placed)
+    for _ in range(2):
+        image = xp.sum(matrix * v[..., None, :], axis=-1)
+        column, zero = v[..., None], value[..., None, None] * 0.0
+        upper = xp.concat([matrix - value[..., None, None] * identity, -column], axis=-1)
+        lower = xp.concat([xp.matrix_transpose(column), zero], axis=-1)
+        short = 0.5 * (1.0 - xp.sum(v * v, axis=-1))
+        error = xp.concat([value[..., None] * v - image, short[..., None]], axis=-1)
+        step = xp.linalg.solve(xp.concat([upper, lower], axis=-2), error[..., None])[..., 0]
+        v, value = v + step[..., :n], value + step[..., n]
+    return v

@@ -1,0 +1,57 @@
+"""Jacobians of the exponential map of rotations: rotation vectors and small turns."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from polhode import _generic
+from polhode._algebra.coefficients import as_coefficients, kind_of
+from polhode._algebra.multivector import Multivector
+
+
+def left_jacobian(v: Any, *, inverse: bool = False) -> Any:
+    """Return the left Jacobian of the exponential map: J with ``R(v + dv) = R(J dv) R(v)``.
+
+    R(v) is ``Rotor.from_rotation_vector(v)``. J maps rates of the rotation vector to the angular velocity in
+    space, ``ω_S = J_l(v) v'``, and its inverse maps back:
+    ``J = 1 + (1 − cos θ)/θ² [v]ₓ + (θ − sin θ)/θ³ [v]ₓ²`` (Chirikjian, Stochastic Models 2, eq. 10.86).
+
+    Parameters
+    ----------
+    v
+        Rotation vectors (..., 3) of angle ``θ = |v|`` in radians; vectors; or planes, bivectors ``Bθ``, which
+        have the same components.
+    inverse
+        Whether to return the inverse. A ValueError at full turns, θ = 2π, 4π, …, where there is none.
+
+    Returns
+    -------
+    Matrices (..., 3, 3), accurate to rounding for all angles; the inverse grows as 1/|2π − θ|. Of NumPy
+    floats, SymPy expressions or arrays of JAX, with derivatives at θ = 0, too.
+    """
+    return _jacobian(v, 1, inverse)
+
+
+def right_jacobian(v: Any, *, inverse: bool = False) -> Any:
+    """Return the right Jacobian of the exponential map: J with ``R(v + dv) = R(v) R(J dv)``.
+
+    It maps rates of the rotation vector to the angular velocity in body axes, ``ω_B = J_r(v) v'``, and is
+    the transpose of the left one, ``J_r(v) = J_l(−v)``. Arguments and errors as in `left_jacobian`.
+    """
+    return _jacobian(v, -1, inverse)
+
+
+def _jacobian(v: Any, sign: int, inverse: bool) -> Any:
+    if isinstance(v, Multivector):
+        if v.algebra.signature != (3, 0, 0) or v.grades not in ((1,), (2,)):
+            raise TypeError(f"a rotation vector is a vector or a bivector of 3-d space, got {v!r}")
+        given = v._data
+    else:
+        given = as_coefficients(v, "rotation vector")
+    if not given.shape or given.shape[-1] != 3:
+        raise ValueError(
+            f"a rotation vector needs 3 components in the last axis, got shape {tuple(given.shape)}"
+        )
+    kind = kind_of(given)
+    matrices = _generic.jacobians.left(kind, sign * kind.asarray(given), inverse)
+    return matrices.astype(given.dtype, copy=False) if kind.native else matrices

@@ -1,0 +1,250 @@
+"""Rotors from axis and angle, Rodrigues parameters, Davenport angles and multivectors."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _generic
+from polhode._algebra.coefficients import as_coefficients, kind_of
+from polhode._algebra.constructors import from_axial, one_grade, vector
+from polhode._algebra.grades import held, with_grades
+from polhode._algebra.multivector import Multivector
+from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float
+
+if TYPE_CHECKING:
+    from polhode._algebra.rotor import Rotor
+else:  # the same type; `polhode._algebra.rotor` adds its methods
+    from polhode._native import Rotor
+
+_EVEN = 0b0101
+# How far from a right angle neighbouring axes may be, as in SciPy.
+_RIGHT_ANGLE = 1e-7
+
+
+# --- axis and angle
+
+
+def from_axis_angle(axis: Any, angle: Any, degrees: bool = False) -> Rotor:
+    """Turn by `angle` about `axis`, in the right-handed sense: ``exp(−I n θ/2)``.
+
+    Parameters
+    ----------
+    axis
+        Vectors, or an array (..., 3); their length is ignored.
+    angle
+        In radians, or degrees; batch shapes broadcast. Any size: a rotor distinguishes turns to 4π.
+
+    A ValueError for an axis of zero length, with its batch index.
+    """
+    given = (
+        one_grade(axis, 1, "the axis") if isinstance(axis, Multivector) else vector(_triples(axis, "an axis"))
+    )
+    if is_float(given._data):
+        unusable = ~np.isfinite(given._data).all(axis=-1) | (given._data == 0).all(axis=-1)
+        if unusable.any():
+            index = first_index(unusable)
+            found = given._data[index].tolist()
+            raise ValueError(f"the axis{at_index(index)} is {found}; it must be finite and not zero")
+    return Rotor.from_plane_angle(from_axial(given), _radians(angle, degrees))
+
+
+def angle(R: Rotor) -> Any:
+    """The angle of the rotation in [0, π], in radians: the same for R and −R.
+
+    A float, or an array of the batch shape; accurate for small angles and near π, too. `plane_angle` returns
+    the angle of the rotor, to 2π.
+    """
+    if kind_of(R._data).exact:
+        return _generic.rotors.angle(R._data)
+    return R.canonical().plane_angle()[1]
+
+
+def magnitude(R: Rotor) -> Any:
+    """Return the angle of the rotation in [0, π], as SciPy's method of this name: `angle`."""
+    return angle(R)
+
+
+# --- modified Rodrigues parameters
+
+
+def from_mrp(mrp: Any) -> Rotor:
+    """From modified Rodrigues parameters (..., 3), ``tan(θ/4)`` along the axis; an array or vectors.
+
+    The rotor is the square of ``1 − I p`` divided by its norm, which turns by θ/2.
+    """
+    p = one_grade(mrp, 1, "the parameters")._data if isinstance(mrp, Multivector) else mrp
+    p = _triples(p, "modified Rodrigues parameters")
+    kind = kind_of(p)
+    x, y, z = (p[..., k] for k in range(3))
+    half = Rotor.from_components(kind.stack([kind.zeros_like(x) + 1, -x, -y, -z]))
+    return half * half
+
+
+def to_mrp(R: Rotor) -> Any:
+    """Return modified Rodrigues parameters (..., 3), ``tan(θ/4)`` along the axis, of length at most 1."""
+    data = R.canonical()._data
+    s, x, y, z = (data[..., k] for k in range(4))
+    kind = kind_of(s)
+    return kind.stack([kind.divide(-part, 1 + s) for part in (x, y, z)])
+
+
+# --- Davenport angles
+
+
+def from_davenport(axes: Any, order: str, angles: Any, degrees: bool = False) -> Rotor:
+    """From Davenport angles: turns about one to three axes, neighbours perpendicular; named as in SciPy.
+
+    Parameters
+    ----------
+    axes
+        Vectors (n,) or an array (n, 3), n = 1 to 3, or (3,) for a single axis; lengths are ignored.
+    order
+        ``"extrinsic"`` or ``"e"``: the axes are fixed in space; ``"intrinsic"`` or ``"i"``: they turn with
+        the body.
+    angles
+        Array (..., n) in radians, or degrees, one for each axis; for one axis a single angle need not be an
+        array.
+    """
+    unit, intrinsic = _davenport_axes(axes, (1, 2, 3)), _intrinsic(order)
+    theta = _radians(angles, degrees)
+    if not theta.shape:
+        theta = theta[None]
+    if theta.shape[-1] != len(unit):
+        raise ValueError(
+            f"{len(unit)} axes need {len(unit)} angles in the last axis, got shape {tuple(theta.shape)}"
+        )
+    turns = [from_axis_angle(axis, theta[..., k]) for k, axis in enumerate(unit)]
+    # Turns about axes of the body are the same turns about fixed axes in the opposite order.
+    total, *others = turns[::-1] if intrinsic else turns
+    for turn in others:
+        total = turn * total
+    return total
+
+
+def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
+    """Return Davenport angles (..., 3) about three axes, as in `from_davenport`, in radians or degrees.
+
+    The first and third lie in [−π, π], the second in [−λ, π − λ] for the angle λ in [−π, π] from the first
+    axis to the third about the second (for turns about fixed axes: from the third to the first), or, where
+    λ < 0, in [−π − λ, −λ]. At the ends of its range, in gimbal lock, the third angle is 0. There the three
+    angles still give the attitude, so there is no warning.
+    """
+    first, second, third = _davenport_axes(axes, (3,))
+    intrinsic = _intrinsic(order)
+    if not intrinsic:  # the same turns about axes of the body, in the opposite order
+        first, third = third, first
+    # The third axis is the first one turned by λ about the second, so that R times this turn is a product of
+    # turns about the first, second and first axis.
+    lead = float(np.arctan2(second @ np.cross(first, third), first @ third))
+    sign = -1.0 if lead < 0 else 1.0
+    second, lead = sign * second, sign * lead
+    frame = Rotor.from_matrix(np.stack([np.cross(second, first), second, first], axis=-1))
+    proper = ~frame * R * from_axis_angle(second, lead) * frame
+    angles = proper.to_euler("ZYZ" if intrinsic else "zyz")
+    alpha, beta, gamma = (angles[..., k] for k in range(3))
+    found = kind_of(angles).stack([alpha, sign * (beta - lead), gamma])
+    if not degrees:
+        return found
+    from polhode._algebra import euler
+
+    return euler.to_degrees(found)
+
+
+def _davenport_axes(axes: Any, lengths: tuple[int, ...]) -> Array:
+    """Return unit axes (n, 3); a ValueError unless neighbours are perpendicular."""
+    given = one_grade(axes, 1, "the axes")._data if isinstance(axes, Multivector) else axes
+    if isinstance(given, list | tuple):
+        given = [row.components if isinstance(row, Multivector) else row for row in given]
+    array = np.atleast_2d(as_floats(given, "the axes"))
+    count = "three" if lengths == (3,) else "one to three"
+    if array.ndim != 2 or array.shape[1] != 3 or len(array) not in lengths:
+        raise ValueError(f"Davenport angles need {count} axes, an array (n, 3), got shape {array.shape}")
+    sizes = np.linalg.norm(array, axis=-1)
+    usable = np.isfinite(sizes) & (sizes > 0)
+    if not usable.all():
+        k = int(np.argmin(usable))
+        raise ValueError(f"axis {k} is {array[k].tolist()}; it must be finite and not zero")
+    unit: Array = array / sizes[:, np.newaxis]
+    for k in range(len(unit) - 1):
+        cosine = float(unit[k] @ unit[k + 1])
+        if abs(cosine) > _RIGHT_ANGLE:
+            raise ValueError(
+                f"axes {k} and {k + 1} must be perpendicular; the cosine of their angle is {cosine:.3g}"
+            )
+    return unit
+
+
+def _intrinsic(order: str) -> bool:
+    if order not in ("e", "extrinsic", "i", "intrinsic"):
+        raise ValueError(f'order must be "extrinsic" ("e") or "intrinsic" ("i"), got {order!r}')
+    return order[0] == "i"
+
+
+# --- multivectors
+
+
+def from_multivector(M: Multivector, *, tolerance: float = 0.1) -> Rotor:
+    """From an even multivector of 3-d space whose norm is near 1, divided by its norm.
+
+    For sums and products that were rotors but for rounding or a small step, such as ``R − ½ R Ω dt``. Odd
+    grades must be absent or zero. A ValueError if the norm differs from 1 by more than `tolerance`, which is
+    mostly a mistake: pass ``M.normalized()`` if it is not.
+    """
+    if isinstance(M, Rotor):
+        return M
+    if not isinstance(M, Multivector):
+        raise TypeError(f"from_multivector needs a multivector, got {type(M).__name__}")
+    if M.algebra.signature != (3, 0, 0):
+        raise TypeError(f"a rotor is a value of 3-d space, got one of {M.algebra}")
+    if held(M) & ~_EVEN:
+        odd = [k for k in M.grades if k % 2]
+        raise ValueError(f"a rotor is even, with the grades 0 and 2; got grades {M.grades}; remove {odd}")
+    even = Multivector._of(with_grades(M, _EVEN), _EVEN)
+    _require_near_one(even, tolerance)
+    return Rotor.from_components(even._data)
+
+
+def _require_near_one(even: Multivector, tolerance: float) -> None:
+    """Raise a ValueError where the norm is known and too far from 1."""
+    size, kind = even.norm(), kind_of(even._data)
+    if kind.exact:
+        numbers = [x if isinstance(x, float | int) else _known(x) for x in np.ravel(size)]
+        size = np.array(numbers, float).reshape(even.shape)
+    message = "the norm of a rotor is 1, got {}; use M.normalized() if any norm is meant"
+    if isinstance(size, float | np.ndarray):
+        far = ~(np.abs(np.asarray(size) - 1) <= tolerance)
+        if far.any():
+            index = first_index(far)
+            found = message.format(f"{np.asarray(size)[index]:.6g}")
+            raise ValueError(f"at index {index}: {found}" if index else found)
+    else:
+        kind.require(kind.abs(size - 1) <= tolerance, message.format("another one"))
+
+
+def _known(x: Any) -> float:
+    """Return a number as a float; 1 for an expression without a value, which passes."""
+    try:
+        return float(x)
+    except TypeError:
+        return 1.0
+
+
+# --- helpers
+
+
+def _triples(values: Any, what: str) -> Any:
+    data = as_coefficients(values, what)
+    if not data.shape or data.shape[-1] != 3:
+        raise ValueError(f"{what} needs 3 components in the last axis, got shape {tuple(data.shape)}")
+    return data
+
+
+def _radians(angle: Any, degrees: bool) -> Any:
+    theta = as_coefficients(angle, "angle")
+    if not degrees:
+        return theta
+    from polhode._algebra import euler
+
+    return euler.to_radians(theta)

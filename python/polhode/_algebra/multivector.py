@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, overload
 
 import numpy as np
 
 from polhode import _native
+from polhode._algebra import blade_names as _blade_names
 from polhode._algebra import comparison as _comparison
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
 from polhode._algebra import subspaces as _subspaces
+from polhode._algebra import versors as _versors
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.native import joins
 from polhode._algebra.products import coerced, product
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode._algebra.algebra import Algebra
+
+
+_one_grade = _native.Multivector.grade
 
 
 @joins(_native.Multivector)
@@ -81,6 +86,11 @@ class Multivector(_native.Multivector):
         data: NDArray[Any] = self._data
         return data if self._is_one else copied(data)
 
+    def dense(self) -> NDArray[Any]:
+        """Return all components in basis order, zeros where grades are absent: shape ``(*shape, 2**n)``."""
+        data: NDArray[Any] = self._with_grades(self.algebra._all)
+        return data
+
     @property
     def shape(self) -> Shape:
         """Shape of the batch; ``()`` for a single value."""
@@ -91,13 +101,15 @@ class Multivector(_native.Multivector):
         """The dtype of the components: float64, float32, object (exact or symbolic), or another library's."""
         return self._data.dtype
 
+    def grade(self, *grades: int) -> Multivector:
+        """Return the part of one grade or of several, ``grade(2)`` or ``grade(1, 3)``; zeros where absent."""
+        if len(grades) == 1:
+            return _one_grade(self, grades[0])
+        return self._part(_grades.mask_of(self.algebra, grades))
+
     def _grade(self, k: int) -> Multivector:
         """Return the part of grade k, for values that the native method does not cover."""
-        n = self.algebra.dimension
-        if operator.index(k) not in range(n + 1):
-            space = "3-d space" if self.algebra.signature == (3, 0, 0) else str(self.algebra)
-            raise ValueError(f"{space} has grades 0 to {n}, got {k}")
-        return self._part(1 << k)
+        return self._part(_grades.mask_of(self.algebra, (k,)))
 
     def astype(self, dtype: Any) -> Self:
         """Return the value with components of another type, such as ``np.float32`` or ``float``."""
@@ -113,7 +125,21 @@ class Multivector(_native.Multivector):
             raise TypeError("a single multivector has no length; only batches have")
         return self.shape[0]
 
-    def __getitem__(self, index: Any) -> Self:
+    @overload
+    def __getitem__(self, index: str) -> Any: ...
+
+    @overload
+    def __getitem__(self, index: Any) -> Self: ...
+
+    def __getitem__(self, index: Any) -> Any:
+        """Return values of a batch by NumPy's indices, or a component by name.
+
+        ``a["e12"]`` is a number, or an array of the batch shape, 0 for a grade not held. ``e12``, ``e1e2``,
+        ``e1^e2`` and ``e1∧e2`` are the same, and ``a["e21"]`` is ``-a["e12"]``. The scalar is ``"1"``, the
+        pseudoscalar ``"I"``.
+        """
+        if isinstance(index, str):
+            return _blade_names.component(self, index)
         parts = index if isinstance(index, tuple) else (index,)
         # The Ellipsis keeps the index off the component axis.
         rest: tuple[Any, ...] = () if any(part is Ellipsis for part in parts) else (Ellipsis,)
@@ -140,8 +166,16 @@ class Multivector(_native.Multivector):
             )
         return float(self._data[0])
 
-    def __array__(self, *_: Any, **__: Any) -> Any:
-        raise TypeError("a multivector does not convert to an array; use its .components")
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        """Return the components of a value of one grade, as a copy; a TypeError for several grades."""
+        if len(self.grades) != 1:
+            raise TypeError(
+                f"a value of the grades {self.grades} does not convert to an array; use .components for "
+                f"these grades, or .dense() for all {self.algebra.size} components"
+            )
+        if copy is False:
+            raise ValueError("the array of a multivector is a copy; use np.asarray(value) without copy=False")
+        return np.array(self._data, dtype)
 
     def __array_function__(self, function: Any, *_: object) -> Any:
         # Otherwise np.array_equal is False, and the errors of other functions do not help.
@@ -153,6 +187,12 @@ class Multivector(_native.Multivector):
         from polhode._algebra import format as _format
 
         return _format.value(type(self).__name__, self._data, self.algebra._names(self._mask))
+
+    def __format__(self, spec: str) -> str:
+        """Return the text with each component in this format: ``f"{a:.3f}"``."""
+        from polhode._algebra import format as _format
+
+        return _format.value(type(self).__name__, self._data, self.algebra._names(self._mask), spec)
 
     def _repr_latex_(self) -> str | None:
         from polhode._algebra import format as _format
@@ -219,6 +259,7 @@ class Multivector(_native.Multivector):
         return product(name, self, right, out)
 
     __pow__ = _functions.power
+    __call__ = _versors.act
 
     # --- involutions
 
@@ -259,7 +300,7 @@ class Multivector(_native.Multivector):
     # --- norms
 
     norm_squared = _functions.norm_squared
-    norm = _functions.norm
+    norm = __abs__ = _functions.norm
     normalized = _functions.normalized
 
     # --- functions, called by native methods

@@ -98,7 +98,7 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATER, *_MODULES} - {"Any", "TYPE_CHECKING", "importlib"})
+    return sorted({*__all__, "__version__", "jax"})
 
 
 def load_ipython_extension(shell: Any) -> None:

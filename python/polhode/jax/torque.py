@@ -52,6 +52,10 @@ __all__ = [
 P = ParamSpec("P")
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 def _law(
     constructor: Callable[P, native.Torque], kernel: Callable[..., Any] | None = None
 ) -> Callable[P, Torque]:

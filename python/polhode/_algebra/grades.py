@@ -150,6 +150,17 @@ def summed(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Mul
     return _native.Multivector._of(total, value._mask, value.algebra)
 
 
+def averaged(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Multivector:
+    """Return the mean of a batch over some of its axes, or all; for rotors a TypeError that names `ph.mean`."""
+    if isinstance(value, _native.Rotor):
+        raise TypeError("the mean of components is not a rotor; use ph.mean(R) for the mean attitude")
+    total = summed(value, axis)
+    count = math.prod(value.shape) // (math.prod(total.shape) or 1)
+    if not math.prod(value.shape):
+        raise ValueError(f"mean needs at least one value, got a batch of shape {value.shape}")
+    return total / count
+
+
 def concatenate(values: Iterable[V], axis: int = 0) -> V:
     """Join batches along an existing batch axis; all rotors give rotors. `axis` counts batch axes."""
     parts, shapes, build = _unified(values, "concatenate")

@@ -10,6 +10,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra import blade_names as _blade_names
+from polhode._algebra import circular as _circular
 from polhode._algebra import comparison as _comparison
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
@@ -157,6 +158,7 @@ class Multivector(_native.Multivector):
 
     reshape = _grades.reshaped
     sum = _grades.summed
+    mean = _grades.averaged
 
     def __float__(self) -> float:
         if self._mask != 1 or self.shape:
@@ -303,10 +305,14 @@ class Multivector(_native.Multivector):
     norm = __abs__ = _functions.norm
     normalized = _functions.normalized
 
-    # --- functions, called by native methods
+    # --- functions; the first is called by native methods
 
     def _function(self, name: str) -> Multivector:
         return _functions.exp(self) if name == "exp" else _functions.function(name, self)
+
+    sin, cos, tan = _circular.sin, _circular.cos, _circular.tan
+    sinh, cosh, tanh = _circular.sinh, _circular.cosh, _circular.tanh
+    outer_exp = _circular.outer_exp
 
     # --- comparison, called by native operators
 

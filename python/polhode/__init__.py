@@ -30,6 +30,7 @@ from polhode._native import __version__ as __version__
 if TYPE_CHECKING:
     from polhode import event, force, torque
     from polhode import jax as jax
+    from polhode._algebra.frames import reciprocal_frame
     from polhode._algebra.interpolation import RotorSpline, mean, slerp
     from polhode._algebra.linear_map import LinearMap
     from polhode._algebra.serialize import from_dict, to_dict
@@ -57,8 +58,8 @@ __all__ = [
     "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline", "Scene", "SceneError", "State",
     "Stepper", "SymmetricTop", "Trajectory", "algebra", "axial", "bivector", "concatenate", "cross",
     "describe_free", "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict",
-    "from_pauli", "mean", "multivector", "scalar", "simulate", "simulate_blocks", "slerp", "split",
-    "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
+    "from_pauli", "mean", "multivector", "reciprocal_frame", "scalar", "simulate", "simulate_blocks",
+    "slerp", "split", "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
 ]
 # fmt: on
 
@@ -66,6 +67,7 @@ __all__ = [
 _LATER = {
     name: module
     for module, names in {
+        "_algebra.frames": "reciprocal_frame",
         "_algebra.interpolation": "RotorSpline mean slerp",
         "_algebra.linear_map": "LinearMap",
         "_algebra.serialize": "from_dict to_dict",

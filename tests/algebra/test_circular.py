@@ -11,7 +11,7 @@ import scipy.linalg
 import sympy
 
 import polhode as ph
-from polhode import I, e1, e2, e3
+from polhode import I, e1, e2
 from values import EPS
 
 NAMES = ["sin", "cos", "tan", "sinh", "cosh", "tanh"]

@@ -151,7 +151,7 @@ def summed(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Mul
 
 
 def averaged(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Multivector:
-    """Return the mean of a batch over some of its axes, or all; for rotors a TypeError that names `ph.mean`."""
+    """Return the mean of a batch over some of its axes, or all. Of rotors a TypeError: see `ph.mean`."""
     if isinstance(value, _native.Rotor):
         raise TypeError("the mean of components is not a rotor; use ph.mean(R) for the mean attitude")
     total = summed(value, axis)

@@ -12,6 +12,7 @@ from polhode import _native
 from polhode._algebra import blade_names as _blade_names
 from polhode._algebra import circular as _circular
 from polhode._algebra import comparison as _comparison
+from polhode._algebra import frames as _frames
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
 from polhode._algebra import subspaces as _subspaces
@@ -298,6 +299,7 @@ class Multivector(_native.Multivector):
     project = _subspaces.project
     reject = _subspaces.reject
     reflect = _subspaces.reflect
+    factor = _frames.factor
 
     # --- norms
 

@@ -49,6 +49,12 @@ def latex(name: str, data: Any, blades: Sequence[str]) -> str | None:
     return None if array is None else _displayed(name, array, 1, lambda row: _sum(row, blades, _LATEX))
 
 
+def bare_latex(name: str, data: Any, blades: Sequence[str]) -> str | None:
+    """Return LaTeX without dollar signs; None if the values are not known."""
+    text = latex(name, data, blades)
+    return None if text is None else text.strip("$")
+
+
 def matrix_latex(name: str, matrices: Any) -> str:
     """Return LaTeX of matrices (..., 3, 3) for notebooks."""
 

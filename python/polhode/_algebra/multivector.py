@@ -16,6 +16,7 @@ from polhode._algebra import frames as _frames
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
 from polhode._algebra import subspaces as _subspaces
+from polhode._algebra import symbols as _symbols
 from polhode._algebra import versors as _versors
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.native import joins
@@ -118,6 +119,9 @@ class Multivector(_native.Multivector):
         return self._like(as_coefficients(self._data, "a component", dtype))
 
     map = _grades.mapped
+    diff = _symbols.diff
+    subs = _symbols.subs
+    simplify = _symbols.simplify
 
     def __bool__(self) -> bool:
         raise TypeError("a multivector has no truth value; compare it with == or is_close")
@@ -201,6 +205,13 @@ class Multivector(_native.Multivector):
         from polhode._algebra import format as _format
 
         return _format.latex(type(self).__name__, self._data, self.algebra._names(self._mask))
+
+    def _latex(self, *_: Any, **__: Any) -> str:
+        """Return LaTeX without dollar signs, for ``sympy.latex``."""
+        from polhode._algebra import format as _format
+
+        names = self.algebra._names(self._mask)
+        return _format.bare_latex(type(self).__name__, self._data, names) or rf"\text{{{self!r}}}"
 
     # --- helpers of methods
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from polhode import _native
-from polhode._generic.exact import is_symbolic
+from polhode import _generic, _native
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -45,7 +44,7 @@ def simplify(value: V, **options: Any) -> V:
 def _mapped(value: Multivector, name: str, f: Callable[[Any], Any]) -> Any:
     """Return the components, as SymPy's, with f of each."""
     data = value._data
-    if data.dtype != object or not any(map(is_symbolic, data.flat)):
+    if data.dtype != object or not any(map(_generic.exact.is_symbolic, data.flat)):
         kind = type(data.flat[0]).__name__ if data.dtype == object and data.size else data.dtype
         raise TypeError(f"{name} needs coefficients that are SymPy expressions, got {kind}")
     import sympy

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from polhode import event, force, torque
     from polhode import jax as jax
     from polhode._algebra.estimation import Alignment, align, mean
+    from polhode._algebra.frames import reciprocal_frame
     from polhode._algebra.interpolation import RotorSpline, slerp
     from polhode._algebra.jacobians import left_jacobian, right_jacobian
     from polhode._algebra.linear_map import LinearMap
@@ -62,9 +63,9 @@ __all__ = [
     "Scene", "SceneError", "State", "Stepper", "SymmetricTop", "Trajectory", "algebra", "align",
     "attitude_from_rates", "axial", "bivector", "concatenate", "cross", "describe_free", "e1", "e2", "e3",
     "evaluate", "event", "force", "formula", "from_axial", "from_dict", "from_pauli", "left_jacobian",
-    "mean", "multivector", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf", "right_jacobian",
-    "scalar", "simulate", "simulate_blocks", "slerp", "split", "stack", "to_dict", "to_pauli", "torque",
-    "trivector", "vector", "view",
+    "mean", "multivector", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf",
+    "reciprocal_frame", "right_jacobian", "scalar", "simulate", "simulate_blocks", "slerp", "split",
+    "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
 ]
 # fmt: on
 
@@ -73,6 +74,7 @@ _LATER = {
     name: module
     for module, names in {
         "_algebra.estimation": "Alignment align mean",
+        "_algebra.frames": "reciprocal_frame",
         "_algebra.interpolation": "RotorSpline slerp",
         "_algebra.jacobians": "left_jacobian right_jacobian",
         "_algebra.linear_map": "LinearMap",
@@ -108,7 +110,7 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATER, *_MODULES} - {"Any", "TYPE_CHECKING", "importlib"})
+    return sorted({*__all__, "__version__", "jax"})
 
 
 def load_ipython_extension(shell: Any) -> None:

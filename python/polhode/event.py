@@ -22,6 +22,8 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.laws import function_of, law_of_formula, number, shown
 from polhode._mechanics.parameters import check_finite
 
+__all__ = ["Event", "angle", "formula", "function", "plane", "position", "spin"]
+
 
 @dataclass(frozen=True, repr=False)
 class Event:
@@ -43,6 +45,10 @@ class Event:
         if terminal:
             named["terminal"] = terminal
         return _shown(self.law.name, arguments, named)
+
+
+def __dir__() -> list[str]:
+    return __all__
 
 
 def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: bool = False) -> Event:

@@ -16,6 +16,18 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.laws import Sum, function_of, law_of_formula, number, shown
 from polhode._mechanics.registry import FORCES
 
+__all__ = [
+    "Force",
+    "central",
+    "constant",
+    "drag",
+    "formula",
+    "function",
+    "quadratic_drag",
+    "spring",
+    "thrust",
+]
+
 
 @dataclass(frozen=True, repr=False)
 class Force(Sum):
@@ -28,6 +40,10 @@ class Force(Sum):
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Force(())"
+
+
+def __dir__() -> list[str]:
+    return __all__
 
 
 def constant(F: Any) -> Force:

@@ -47,6 +47,10 @@ Strategy = Any
 _SIZE = 1e6
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 def components(bound: float = _SIZE) -> Strategy:
     """Floats [float] of size at most `bound`; 0, or of size at least 1/bound; whole numbers often."""
     if not 1 <= bound < math.inf:

@@ -152,7 +152,7 @@ def test_functions_of_a_batch_are_those_of_its_values(name, grades, order):
 
 def test_indexing_errors_name_the_batch_shape():
     A = ph.vector(np.zeros((2, 3, 3)))
-    for index in [2, (0, 3), (0, 0, 0), "x", 1.5]:
+    for index in [2, (0, 3), (0, 0, 0), 1.5]:
         with pytest.raises(IndexError, match=r"batch shape \(2, 3\)"):
             A[index]
     with pytest.raises(IndexError, match=r"batch shape \(\)\); .*components"):

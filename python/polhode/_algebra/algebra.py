@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
+from polhode._algebra.blade_names import Blades
 from polhode._algebra.coefficients import as_coefficients, duplicate
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
@@ -49,12 +50,16 @@ class Algebra(_native.Algebra):
 
     @property
     def blades(self) -> dict[str, Multivector]:
-        """The basis elements by name, such as ``"e1∧e2"``; the scalar is ``"1"``."""
+        """The basis elements by name, such as ``"e1∧e2"``; the scalar is ``"1"``.
+
+        ``"e12"``, ``"e1e2"`` and ``"e1^e2"`` name the same element, ``"e21"`` its negative.
+        """
         names = self._names(self._all)
-        return {
+        elements = {
             name or "1": self.multivector(row)._part(1 << int(k))
             for name, row, k in zip(names, np.eye(self.size), self._grade_of, strict=True)
         }
+        return Blades(self, elements)
 
     @property
     def I(self) -> Multivector:  # noqa: E743  # the handout's name

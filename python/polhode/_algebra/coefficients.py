@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _generic, _native
-from polhode._support.arrays import as_floats, is_float, leaves
+from polhode._support.arrays import as_floats, is_float, leaves, refuse_multivectors
 from polhode._support.extras import register_pytree
 
 _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
@@ -32,6 +32,8 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
         return values
     if isinstance(values, list | tuple):
         strange = [leaf for leaf in leaves(values) if type(leaf) not in _PLAIN]
+        if strange:
+            refuse_multivectors(strange, what)
         special = any(not isinstance(leaf, np.ndarray | np.generic) for leaf in strange)
     else:
         special = type(values) not in _PLAIN and not isinstance(values, np.ndarray | np.generic)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -11,9 +12,9 @@ import numpy as np
 
 from polhode._generic.exact import is_symbolic
 
-_DIGITS = 8
 _SHOWN = 6
 _NEW_LINE = r" \\ "
+_SIGN = re.compile(r"^(.?[<>=^])?[-+ ]")  # of a format, after the alignment
 
 
 class _Notation(NamedTuple):
@@ -24,16 +25,21 @@ class _Notation(NamedTuple):
     more: str
 
 
-def value(name: str, data: Any, blades: Sequence[str]) -> str:
-    """Return the ``repr``: the value, or the first and last values of a batch."""
+def value(name: str, data: Any, blades: Sequence[str], spec: str = "") -> str:
+    """Return the ``repr``: the value, or the first and last values of a batch.
+
+    `spec` is a format of the components. Without one, floats have as many significant digits as NumPy's
+    option `precision`, by default 8; with its option `suppress`, as many decimals and no exponents.
+    """
     batch = tuple(data.shape[:-1])
     array = _numbers(data)
     if array is None:
         basis = ", ".join(blade or "1" for blade in blades)
         return f"{name} of shape {batch} over ({basis}):\n{data!r}"
+    notation = _in_format(spec) if spec else _TEXT
     if not batch:
-        return _sum(array, blades, _TEXT)
-    lines = ",\n ".join(_shown(array, 1, lambda row: _sum(row, blades, _TEXT), _TEXT.more))
+        return _sum(array, blades, notation)
+    lines = ",\n ".join(_shown(array, 1, lambda row: _sum(row, blades, notation), notation.more))
     return f"{name} of shape {batch}:\n[{lines}]"
 
 
@@ -41,6 +47,12 @@ def latex(name: str, data: Any, blades: Sequence[str]) -> str | None:
     """Return LaTeX for notebooks; None, so that the text is shown, if the values are not known."""
     array = _numbers(data)
     return None if array is None else _displayed(name, array, 1, lambda row: _sum(row, blades, _LATEX))
+
+
+def bare_latex(name: str, data: Any, blades: Sequence[str]) -> str | None:
+    """Return LaTeX without dollar signs; None if the values are not known."""
+    text = latex(name, data, blades)
+    return None if text is None else text.strip("$")
 
 
 def matrix_latex(name: str, matrices: Any) -> str:
@@ -84,13 +96,15 @@ def _sum(components: Any, blades: Sequence[str], notation: _Notation) -> str:
         if _is_zero(x):
             continue
         negative, size = notation.coefficient(x)
+        if size == "0":  # rounded
+            continue
         space, element = notation.blade(blade)
         term = size if not blade else element if size == "1" else size + space + element
         if text:
             text += f" - {term}" if negative else f" + {term}"
         else:
             text = f"-{term}" if negative else term
-    return text or "0"
+    return text or notation.coefficient(0.0)[1]
 
 
 def _is_zero(x: Any) -> bool:
@@ -103,13 +117,37 @@ def _is_zero(x: Any) -> bool:
 def _sign_and_size(x: Any) -> tuple[bool, str]:
     """Return the sign and magnitude of a number or an expression; a sum is bracketed."""
     if isinstance(x, float | np.floating):
-        return bool(x < 0), f"{abs(x):.{_DIGITS}g}"
+        return bool(x < 0), _digits(abs(float(x)))
     text = str(x)
     if is_symbolic(x):  # whole powers are x^2 and x^-2 in formulas
         text = re.sub(r"\*\*(?:(\d+)(?![.\d])|\((-\d+)\))", r"^\1\2", text)
     if " " in text:
         return False, f"({text})"
     return text.startswith("-"), text.lstrip("+-")
+
+
+def _digits(x: float) -> str:
+    """Return a magnitude in NumPy's options for printing."""
+    options: dict[str, Any] = {**np.get_printoptions()}
+    precision = options["precision"]
+    if options["suppress"] and math.isfinite(x):
+        text = f"{x:.{precision}f}"
+        return text.rstrip("0").rstrip(".") if "." in text else text
+    return f"{x:.{precision}g}"
+
+
+def _in_format(spec: str) -> _Notation:
+    """Return a notation with components in a format; its sign is the one between the terms."""
+    unsigned = _SIGN.sub(r"\1", spec)
+
+    def coefficient(x: Any) -> tuple[bool, str]:
+        try:
+            number = x if isinstance(x, int | float | np.floating) else float(x)
+        except TypeError:
+            raise TypeError(f"the format {spec!r} needs numbers, got the component {x}; use str") from None
+        return bool(number < 0), format(abs(number), unsigned)
+
+    return _Notation(coefficient, _TEXT.blade, _TEXT.more)
 
 
 _TEXT = _Notation(_sign_and_size, lambda blade: (" ", blade), "…")

@@ -139,6 +139,19 @@ def _require(ok: Any, what: str, value: Multivector) -> None:
     raise ValueError(f"the multivector{at_index(index)} {what.format(np.asarray(norm(value))[index])}")
 
 
+def require_in_range(name: str, result: Multivector, value: Multivector) -> None:
+    """Raise a ValueError, with the batch index, where a function of the value overflows."""
+    if is_float(result._data):
+        _require_finite(name, result._data, value)
+    else:
+        _generic.numeric.require_in_range(kind_of(result._data), result._data)
+
+
+def _require_finite(name: str, result: Array, value: Multivector) -> None:
+    in_range = np.isfinite(result).all(axis=-1)
+    _require(in_range, f"of norm {{}} has no {name} in the range of {result.dtype}; scale it", value)
+
+
 def function(name: str, value: Multivector) -> Multivector:
     """Return inverse, exp, log or sqrt: in the compiled core for floats, else by the generic formulas."""
     algebra, data = value.algebra, value._data
@@ -149,8 +162,7 @@ def function(name: str, value: Multivector) -> Multivector:
             return _native.function(algebra, name, rows, single)[..., algebra._indices(mask)]
 
         result = mapped(native, _parts.over_grades(value, algebra._all))
-        in_range = np.isfinite(result).all(axis=-1)
-        _require(in_range, f"of norm {{}} has no {name} in the range of {data.dtype}; scale it", value)
+        _require_finite(name, result, value)
     elif algebra.signature == (3, 0, 0):
         result, mask = getattr(_generic.functions, name)(kind_of(data), data, value._mask)
     else:

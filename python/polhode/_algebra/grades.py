@@ -16,9 +16,25 @@ from polhode._algebra.products import coerced, common_algebra
 from polhode._support.arrays import Shape, is_float
 
 if TYPE_CHECKING:
+    from polhode._algebra.algebra import Algebra
     from polhode._algebra.multivector import Multivector
 
 V = TypeVar("V", bound="Multivector")
+
+
+def mask_of(algebra: Algebra, grades: Sequence[int]) -> int:
+    """Return these grades as bits; an error for one that the algebra does not have."""
+    n, mask = algebra.dimension, 0
+    for k in grades:
+        if not hasattr(k, "__index__"):
+            raise TypeError(f"grades are whole numbers, as in grade(1, 3), got {k!r}")
+        if operator.index(k) not in range(n + 1):
+            space = "3-d space" if algebra.signature == (3, 0, 0) else str(algebra)
+            raise ValueError(f"{space} has grades 0 to {n}, got {k}")
+        mask |= 1 << operator.index(k)
+    if not mask:
+        raise TypeError("grade needs at least one grade, as in grade(1, 3)")
+    return mask
 
 
 def with_grades(value: Multivector, mask: int) -> Any:
@@ -132,6 +148,17 @@ def summed(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Mul
     axes = tuple(_batch_axis(k, count) for k in chosen)
     total = namespace(value._data).sum(value._data, axis=axes)
     return _native.Multivector._of(total, value._mask, value.algebra)
+
+
+def averaged(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Multivector:
+    """Return the mean of a batch over some of its axes, or all. Of rotors a TypeError: see `ph.mean`."""
+    if isinstance(value, _native.Rotor):
+        raise TypeError("the mean of components is not a rotor; use ph.mean(R) for the mean attitude")
+    total = summed(value, axis)
+    count = math.prod(value.shape) // (math.prod(total.shape) or 1)
+    if not math.prod(value.shape):
+        raise ValueError(f"mean needs at least one value, got a batch of shape {value.shape}")
+    return total / count
 
 
 def concatenate(values: Iterable[V], axis: int = 0) -> V:

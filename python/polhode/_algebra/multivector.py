@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, overload
 
 import numpy as np
 
 from polhode import _native
+from polhode._algebra import blade_names as _blade_names
+from polhode._algebra import circular as _circular
 from polhode._algebra import comparison as _comparison
+from polhode._algebra import frames as _frames
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
 from polhode._algebra import subspaces as _subspaces
+from polhode._algebra import symbols as _symbols
+from polhode._algebra import versors as _versors
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.native import joins
 from polhode._algebra.products import coerced, product
@@ -22,6 +27,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode._algebra.algebra import Algebra
+
+
+_one_grade = _native.Multivector.grade
 
 
 @joins(_native.Multivector)
@@ -81,6 +89,11 @@ class Multivector(_native.Multivector):
         data: NDArray[Any] = self._data
         return data if self._is_one else copied(data)
 
+    def dense(self) -> NDArray[Any]:
+        """Return all components in basis order, zeros where grades are absent: shape ``(*shape, 2**n)``."""
+        data: NDArray[Any] = self._with_grades(self.algebra._all)
+        return data
+
     @property
     def shape(self) -> Shape:
         """Shape of the batch; ``()`` for a single value."""
@@ -91,19 +104,24 @@ class Multivector(_native.Multivector):
         """The dtype of the components: float64, float32, object (exact or symbolic), or another library's."""
         return self._data.dtype
 
+    def grade(self, *grades: int) -> Multivector:
+        """Return the part of one grade or of several, ``grade(2)`` or ``grade(1, 3)``; zeros where absent."""
+        if len(grades) == 1:
+            return _one_grade(self, grades[0])
+        return self._part(_grades.mask_of(self.algebra, grades))
+
     def _grade(self, k: int) -> Multivector:
         """Return the part of grade k, for values that the native method does not cover."""
-        n = self.algebra.dimension
-        if operator.index(k) not in range(n + 1):
-            space = "3-d space" if self.algebra.signature == (3, 0, 0) else str(self.algebra)
-            raise ValueError(f"{space} has grades 0 to {n}, got {k}")
-        return self._part(1 << k)
+        return self._part(_grades.mask_of(self.algebra, (k,)))
 
     def astype(self, dtype: Any) -> Self:
         """Return the value with components of another type, such as ``np.float32`` or ``float``."""
         return self._like(as_coefficients(self._data, "a component", dtype))
 
     map = _grades.mapped
+    diff = _symbols.diff
+    subs = _symbols.subs
+    simplify = _symbols.simplify
 
     def __bool__(self) -> bool:
         raise TypeError("a multivector has no truth value; compare it with == or is_close")
@@ -113,7 +131,21 @@ class Multivector(_native.Multivector):
             raise TypeError("a single multivector has no length; only batches have")
         return self.shape[0]
 
-    def __getitem__(self, index: Any) -> Self:
+    @overload
+    def __getitem__(self, index: str) -> Any: ...
+
+    @overload
+    def __getitem__(self, index: Any) -> Self: ...
+
+    def __getitem__(self, index: Any) -> Any:
+        """Return values of a batch by NumPy's indices, or a component by name.
+
+        ``a["e12"]`` is a number, or an array of the batch shape, 0 for a grade not held. ``e12``, ``e1e2``,
+        ``e1^e2`` and ``e1∧e2`` are the same, and ``a["e21"]`` is ``-a["e12"]``. The scalar is ``"1"``, the
+        pseudoscalar ``"I"``.
+        """
+        if isinstance(index, str):
+            return _blade_names.component(self, index)
         parts = index if isinstance(index, tuple) else (index,)
         # The Ellipsis keeps the index off the component axis.
         rest: tuple[Any, ...] = () if any(part is Ellipsis for part in parts) else (Ellipsis,)
@@ -131,6 +163,7 @@ class Multivector(_native.Multivector):
 
     reshape = _grades.reshaped
     sum = _grades.summed
+    mean = _grades.averaged
 
     def __float__(self) -> float:
         if self._mask != 1 or self.shape:
@@ -140,8 +173,16 @@ class Multivector(_native.Multivector):
             )
         return float(self._data[0])
 
-    def __array__(self, *_: Any, **__: Any) -> Any:
-        raise TypeError("a multivector does not convert to an array; use its .components")
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        """Return the components of a value of one grade, as a copy; a TypeError for several grades."""
+        if len(self.grades) != 1:
+            raise TypeError(
+                f"a value of the grades {self.grades} does not convert to an array; use .components for "
+                f"these grades, or .dense() for all {self.algebra.size} components"
+            )
+        if copy is False:
+            raise ValueError("the array of a multivector is a copy; use np.asarray(value) without copy=False")
+        return np.array(self._data, dtype)
 
     def __array_function__(self, function: Any, *_: object) -> Any:
         # Otherwise np.array_equal is False, and the errors of other functions do not help.
@@ -154,10 +195,23 @@ class Multivector(_native.Multivector):
 
         return _format.value(type(self).__name__, self._data, self.algebra._names(self._mask))
 
+    def __format__(self, spec: str) -> str:
+        """Return the text with each component in this format: ``f"{a:.3f}"``."""
+        from polhode._algebra import format as _format
+
+        return _format.value(type(self).__name__, self._data, self.algebra._names(self._mask), spec)
+
     def _repr_latex_(self) -> str | None:
         from polhode._algebra import format as _format
 
         return _format.latex(type(self).__name__, self._data, self.algebra._names(self._mask))
+
+    def _latex(self, *_: Any, **__: Any) -> str:
+        """Return LaTeX without dollar signs, for ``sympy.latex``."""
+        from polhode._algebra import format as _format
+
+        names = self.algebra._names(self._mask)
+        return _format.bare_latex(type(self).__name__, self._data, names) or rf"\text{{{self!r}}}"
 
     # --- helpers of methods
 
@@ -219,6 +273,7 @@ class Multivector(_native.Multivector):
         return product(name, self, right, out)
 
     __pow__ = _functions.power
+    __call__ = _versors.act
 
     # --- involutions
 
@@ -255,17 +310,22 @@ class Multivector(_native.Multivector):
     project = _subspaces.project
     reject = _subspaces.reject
     reflect = _subspaces.reflect
+    factor = _frames.factor
 
     # --- norms
 
     norm_squared = _functions.norm_squared
-    norm = _functions.norm
+    norm = __abs__ = _functions.norm
     normalized = _functions.normalized
 
-    # --- functions, called by native methods
+    # --- functions; the first is called by native methods
 
     def _function(self, name: str) -> Multivector:
         return _functions.exp(self) if name == "exp" else _functions.function(name, self)
+
+    sin, cos, tan = _circular.sin, _circular.cos, _circular.tan
+    sinh, cosh, tanh = _circular.sinh, _circular.cosh, _circular.tanh
+    outer_exp = _circular.outer_exp
 
     # --- comparison, called by native operators
 

@@ -15,7 +15,17 @@ from polhode._algebra.constructors import one_grade
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
 from polhode._algebra.products import aligned, common_algebra, result_array
-from polhode._support.arrays import Array, Shape, batch_shape, is_float, joined, mapped, new
+from polhode._support.arrays import (
+    Array,
+    Shape,
+    at_index,
+    batch_shape,
+    first_index,
+    is_float,
+    joined,
+    mapped,
+    new,
+)
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
@@ -95,14 +105,21 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
 
     @staticmethod
-    def from_matrix(m: Any) -> Rotor:
+    def from_matrix(m: Any, nearest: bool = False) -> Rotor:
         """From rotation matrices (..., 3, 3) acting on columns; the nearest rotation, within 1e-4 of one.
 
         A ValueError for a reflection or anything farther off. The rotor's scalar part is >= 0.
+
+        With ``nearest=True``, from any matrices M of NumPy floats: the rotation Q of the smallest
+        ``Σ (M − Q)²``, for a singular value decomposition ``M = U S Vᵀ`` the matrix
+        ``U diag(1, 1, det U Vᵀ) Vᵀ`` (Kabsch, Acta Cryst. A 34 (1978)). A ValueError, with the batch index,
+        where it is not unique: where the two smallest singular values are 0, or equal in a reflection.
         """
         matrices = as_coefficients(m, "rotation matrix")
         if tuple(matrices.shape[-2:]) != (3, 3):
             raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}")
+        if nearest:
+            matrices = _nearest_rotation(matrices)
         if is_float(matrices):
             matrices = matrices.reshape((*matrices.shape[:-2], 9))
         return Rotor._from_rows(_computed("from_matrix", matrices))
@@ -315,6 +332,34 @@ class Rotor(_native.Rotor, Multivector):
         turn = self.log() * powers
         power: Rotor = turn.exp()
         return power
+
+
+def _nearest_rotation(m: Any) -> Array:
+    """Return the nearest rotations to any matrices."""
+    if not is_float(m):
+        raise TypeError(
+            f"the nearest rotation needs NumPy floats, got {type(m).__name__} of {m.dtype}; convert exact "
+            "numbers with dtype=float, other arrays with np.asarray"
+        )
+    finite = np.isfinite(m).all(axis=(-2, -1))
+    if not finite.all():
+        where = at_index(first_index(~finite))
+        raise ValueError(
+            f"the matrix{where} has an entry that is NaN or infinite; remove such matrices first"
+        )
+    u, sizes, v = np.linalg.svd(m.astype(np.float64))
+    sign = np.sign(np.linalg.det(u @ v))
+    unique = sizes[..., 1] + sign * sizes[..., 2] > 8 * np.finfo(m.dtype).eps * sizes[..., 0]
+    if not unique.all():
+        index = first_index(~unique)
+        kind = "reflection" if sign[index] < 0 else "matrix"
+        raise ValueError(
+            f"the nearest rotation to the matrix{at_index(index)} is not unique: it is a {kind} of singular "
+            f"values {sizes[index].tolist()}"
+        )
+    u[..., 2] *= sign[..., np.newaxis]
+    rotations: Array = (u @ v).astype(m.dtype)
+    return rotations
 
 
 def _powers(R: Rotor, n: Array) -> Rotor:

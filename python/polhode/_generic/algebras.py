@@ -51,7 +51,7 @@ def inverse(
         with np.errstate(all="ignore"):
             regular = [data[..., i] for i in range(data.shape[-1]) if not null or null[i] == 0]
             largest = d.largest(regular)
-            factors = _null_factors(d, null, data, d.where(largest > 0, largest, 1.0))
+            factors = null_factors(d, null, data, d.where(largest > 0, largest, 1.0))
             result = _refined_inverse(d, terms, generators, data * factors) / factors
             require_in_range(d, result)
             return result
@@ -92,7 +92,7 @@ def _number(d: Coefficients, like: Array, value: int) -> Array:
     return d.stack([zero + value] + [zero] * (like.shape[-1] - 1))
 
 
-def _null_factors(d: Numeric, null: Sequence[int], data: Array, size: Any) -> Array:
+def null_factors(d: Numeric, null: Sequence[int], data: Array, size: Any) -> Array:
     """Return factors of the components (..., 2ⁿ) that scale those with generators of square 0 down to a size.
 
     Scaling these generators is an automorphism. With it, large translations do not swamp the rotations beside
@@ -139,7 +139,7 @@ def exp(
         if simple:
             result = _closed_exp(d, terms, data)
         else:
-            factors = _null_factors(d, null, data, 1.0)
+            factors = null_factors(d, null, data, 1.0)
             result = _series_exp(d, terms, data * factors) / factors
         require_in_range(d, result)
     return result

@@ -86,7 +86,7 @@ def law_of_formula(
 
 def function_of(f: Any, names: str) -> Any:
     """Return a function of these arguments."""
-    if not callable(f):
+    if not callable(f) or isinstance(f, Multivector):
         raise TypeError(f"expected a function of {names}, got {type(f).__name__}")
     return f
 

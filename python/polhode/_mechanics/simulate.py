@@ -293,7 +293,8 @@ def as_torque(torque: Any) -> Torque | None:
     if torque is None or isinstance(torque, Torque):
         return torque
     # A constructor of laws, given without its arguments, is callable too.
-    if callable(torque) and getattr(torque, "__module__", None) != function.__module__:
+    own = getattr(torque, "__module__", None) == function.__module__
+    if callable(torque) and not own and not isinstance(torque, Multivector):
         return function(torque)
     raise TypeError(f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}")
 

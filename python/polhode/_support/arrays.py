@@ -26,6 +26,7 @@ _LARGE = 1 << 20  # bytes; the allocator reuses smaller blocks itself
 
 def as_floats(values: Any, what: str) -> Array:
     """Convert real numbers of any kind to float64; a TypeError for anything else."""
+    refuse_multivectors(values, what)
     try:
         array = np.asarray(values)
     except ValueError as error:
@@ -38,6 +39,14 @@ def as_floats(values: Any, what: str) -> Array:
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}")
     return array.astype(np.float64, copy=False)
+
+
+def refuse_multivectors(values: Any, what: str) -> None:
+    """Raise a TypeError for a multivector or a list of them, which NumPy would convert to components."""
+    nested = isinstance(values, list | tuple)
+    if any(isinstance(leaf, _native.Multivector) for leaf in (leaves(values) if nested else (values,))):
+        kind = "a list with a multivector" if nested else "a multivector"
+        raise TypeError(f"{what} must be real numbers, got {kind}; pass its .components")
 
 
 def leaves(value: Any) -> Iterator[Any]:

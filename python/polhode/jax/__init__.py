@@ -11,3 +11,9 @@ from polhode.jax import torque as torque
 from polhode.jax._free import free as free
 from polhode.jax._kernel import advance as advance
 from polhode.jax._simulate import simulate as simulate
+
+__all__ = ["advance", "free", "simulate", "torque"]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -52,6 +52,10 @@ __all__ = [
 P = ParamSpec("P")
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 def _law(
     constructor: Callable[P, native.Torque], kernel: Callable[..., Any] | None = None
 ) -> Callable[P, Torque]:
@@ -121,7 +125,7 @@ def function(f: Callable[[Any, Any, Any], Any]) -> Torque:
     angular velocity (..., 3) in body axes, and returns the torque (..., 3) in body axes. Values that it
     closes over may be traced.
     """
-    if not callable(f):
+    if not callable(f) or isinstance(f, Multivector):
         raise TypeError(f"expected a function of t, rotor and omega_body, got {type(f).__name__}")
     if isinstance(f, jax.tree_util.Partial):
         return Torque((laws.Function(partial=f, frame=None, f=None),))
@@ -136,7 +140,8 @@ def of(torque: Any) -> Torque:
         return torque
     if isinstance(torque, native.Torque):
         return sum((_of_native(law) for law in torque.laws), Torque(()))
-    if callable(torque) and getattr(torque, "__module__", None) != __name__:
+    own = getattr(torque, "__module__", None) == __name__
+    if callable(torque) and not own and not isinstance(torque, Multivector):
         return function(torque)
     raise TypeError(
         f"torque must be a law of polhode.jax.torque, such as heavy(c), got {type(torque).__name__}"

@@ -1,0 +1,77 @@
+"""Action of versors, products of vectors that have an inverse, on values."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _generic, _native
+from polhode._algebra.coefficients import kind_of
+from polhode._algebra.products import common_algebra
+from polhode._support.arrays import at_index, first_index
+
+if TYPE_CHECKING:
+    from polhode._algebra.multivector import Multivector
+
+_EVEN, _ODD = 0b101010101, 0b010101010
+_REMEDY = "only rotors and versors, products of invertible vectors, act on values; for a product write A * X"
+
+
+def act(V: Multivector, X: Multivector) -> Multivector:
+    """``V X V⁻¹`` for a versor V, a product of vectors: ``(b*a)(x)`` turns by twice the angle from a to b.
+
+    Of an odd number of vectors ``V X̂ V⁻¹``, with X̂ the grade involution, as in `reflect`. V has any length,
+    batches broadcast. A TypeError for a V that is not a versor to half of its digits.
+    """
+    if not isinstance(X, _native.Multivector):
+        raise TypeError(
+            f"a versor acts on multivectors, got {type(X).__name__}; wrap arrays with ph.vector, and for a "
+            "product with numbers write *"
+        )
+    common_algebra(V, X)
+    held = V._held()
+    if held & _EVEN and held & _ODD:
+        raise TypeError(f"a value with the even and odd grades {V.grades} is not a versor; {_REMEDY}")
+    reverse = ~V
+    square = V * reverse
+    _require_number(square, V)
+    if V.algebra.dimension > 5:  # below, V ~V is a number for versors only
+        _require_vectors(V, reverse)
+    mirrored = X.grade_involution() if held & _ODD else X
+    turned: Multivector = V * mirrored * (reverse / square.grade(0))
+    return X._like(turned._with_grades(X._mask))
+
+
+def _require_number(square: Multivector, V: Multivector) -> None:
+    """Raise a TypeError unless ``V ~V`` is a number other than 0."""
+    scalar, rest = square.grade(0)._data[..., 0], square - square.grade(0)
+    ok = _small(rest._data, V) & ~_small(scalar[..., None], V, digits=0.9)
+    if _fails(ok):
+        index = first_index(~np.asarray(ok))
+        raise TypeError(
+            f"V ~V must be a number other than 0{at_index(index)}, got {square[index]}; {_REMEDY}"
+        )
+
+
+def _require_vectors(V: Multivector, reverse: Multivector) -> None:
+    """Raise a TypeError unless ``V a ~V`` is a vector for each basis vector a."""
+    for a in V.algebra.basis_vectors:
+        image = V * a * reverse
+        if _fails(_small((image - image.grade(1))._data, V)):
+            raise TypeError(f"V ~V is a number, but V a ~V is not a vector for a = {a}; {_REMEDY}")
+
+
+def _fails(ok: Any) -> bool:
+    """Whether a condition is known to fail for some value; not while values are traced."""
+    concrete = isinstance(ok, np.ndarray | np.bool_) or kind_of(ok * 1.0).is_concrete(ok)
+    return concrete and not bool(np.all(np.asarray(ok)))
+
+
+def _small(data: Any, V: Multivector, digits: float = 0.5) -> Any:
+    """Whether components are 0 to this part of the digits, beside the squares of those of V."""
+    kind = kind_of(data, V._data)
+    if kind.exact:
+        return np.frompyfunc(_generic.exact.is_zero, 1, 1)(data).astype(bool).all(axis=-1)
+    bound = kind.eps**digits * kind.xp.sum(V._data * V._data, axis=-1)
+    return kind.xp.all(kind.xp.abs(data) <= bound[..., None], axis=-1)

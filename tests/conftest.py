@@ -1,5 +1,6 @@
 """Fixtures that tests share, and settings of the libraries that they use."""
 
+import itertools
 import os
 import sys
 from pathlib import Path
@@ -23,6 +24,20 @@ os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
 # Property tests draw the same examples on every run.
 settings.register_profile("polhode", derandomize=True, database=None, deadline=None, max_examples=60)
 settings.load_profile("polhode")
+
+
+def pytest_collection_modifyitems(items):
+    """Spread the modules that wait for a browser among the others, which compute meanwhile."""
+    modules = [list(tests) for _, tests in itertools.groupby(items, key=lambda item: item.path)]
+    waiting = [tests for tests in modules if tests[0].path.parent.name == "viewer"]
+    others = [tests for tests in modules if tests[0].path.parent.name != "viewer"]
+    places = {}
+    for group in (waiting, others):
+        starts = itertools.accumulate(map(len, group), initial=0)
+        total = max(sum(map(len, group)), 1)
+        places |= {tests[0].path: start / total for tests, start in zip(group, starts, strict=False)}
+    modules.sort(key=lambda tests: places[tests[0].path])
+    items[:] = [test for tests in modules for test in tests]
 
 
 @pytest.fixture

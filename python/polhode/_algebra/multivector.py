@@ -29,9 +29,6 @@ if TYPE_CHECKING:
     from polhode._algebra.algebra import Algebra
 
 
-_one_grade = _native.Multivector.grade
-
-
 @joins(_native.Multivector)
 class Multivector(_native.Multivector):
     """An element of a geometric algebra, or an array of them. Immutable.
@@ -104,15 +101,9 @@ class Multivector(_native.Multivector):
         """The dtype of the components: float64, float32, object (exact or symbolic), or another library's."""
         return self._data.dtype
 
-    def grade(self, *grades: int) -> Multivector:
-        """Return the part of one grade or of several, ``grade(2)`` or ``grade(1, 3)``; zeros where absent."""
-        if len(grades) == 1:
-            return _one_grade(self, grades[0])
+    def _grade(self, *grades: int) -> Multivector:
+        """Return the part of these grades, for values that the native method does not cover."""
         return self._part(_grades.mask_of(self.algebra, grades))
-
-    def _grade(self, k: int) -> Multivector:
-        """Return the part of grade k, for values that the native method does not cover."""
-        return self._part(_grades.mask_of(self.algebra, (k,)))
 
     def astype(self, dtype: Any) -> Self:
         """Return the value with components of another type, such as ``np.float32`` or ``float``."""

@@ -12,7 +12,7 @@ use polhode_ga::{Graded, Multivector as FullMultivector};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyInt, PyType};
+use pyo3::types::{PyBool, PyInt, PyTuple, PyType};
 
 #[pymethods]
 impl Multivector {
@@ -163,12 +163,14 @@ impl Multivector {
         }
     }
 
-    /// Return the part of grade k; zero if there is none.
-    fn grade<'py>(slf: &Bound<'py, Self>, k: Any<'_, 'py>) -> Object<'py> {
-        let whole: Option<u16> = k.cast_exact::<PyInt>().ok().and_then(|k| k.extract().ok());
+    /// Return the part of one grade or of several, ``grade(2)`` or ``grade(1, 3)``; zeros where absent.
+    #[pyo3(signature = (*grades))]
+    fn grade<'py>(slf: &Bound<'py, Self>, grades: &Bound<'py, PyTuple>) -> Object<'py> {
+        let single = grades.get_item(0).ok().filter(|_| grades.len() == 1);
+        let whole = single.and_then(|k| k.cast_exact::<PyInt>().ok()?.extract::<u16>().ok());
         match (slf.get().single(), whole) {
             (Some(value), Some(k @ 0..=3)) => one(slf.py(), value.with_grades(Grades(1 << k))),
-            _ => slf.call_method1(intern!(slf.py(), "_grade"), (k,)),
+            _ => slf.call_method1(intern!(slf.py(), "_grade"), grades),
         }
     }
 

@@ -113,6 +113,7 @@ def test_forces_move_bodies_whose_moments_differ(write):
     np.testing.assert_allclose(motion.position.components[:, -1, 2], -0.25, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_motion_with_an_off_centre_thrust_is_torqued(write, tmp_path):
     text = FREE.replace("moments = [1, 2, 3]", "moments = [1, 2, 3]\nmass = 2").replace("700", "20")
     path = write(text.replace("[run]", "[force]\nthrust = { force = [0, 0, 1], at = [0.1, 0, 0] }\n[run]"))
@@ -386,6 +387,7 @@ def test_ctrl_c_keeps_the_complete_bodies(write, tmp_path):
     assert np.isfinite(data.attitude.values).all()
 
 
+@pytest.mark.slow
 def test_a_run_interrupted_early_leaves_no_file(write, tmp_path):
     # The first block takes minutes.
     text = (

@@ -87,6 +87,7 @@ def test_a_time_has_one_picture(exact):
         assert np.abs(pixels(picture) - pixels(first)).max() > 50
 
 
+@pytest.mark.slow
 def test_a_view_from_a_direction():
     """Seen along e3, the arrows e1 and e2 are in the plane of the picture, where the azimuth puts them."""
     orange, blue = [np.array([int(code[k : k + 2], 16) for k in (0, 2, 4)]) for code in ("D55E00", "0072B2")]
@@ -113,12 +114,14 @@ def test_the_paper_is_white_and_texts_are_at_its_edges(exact):
     assert not ((rows > 40) & (rows < SIZE[1] - 40)).any()
 
 
+@pytest.mark.slow
 def test_times_outside_of_the_motion_are_refused():
     unknown = pytest.raises(OSError, match="the motion is not known at t = 9 s")
     with opened(motion(lambda t, R, W: -0.1 * W)) as studio, unknown:
         studio.capture(9.0)
 
 
+@pytest.mark.slow
 def test_it_runs_inside_an_event_loop():
     """As in a notebook, where Playwright refuses to run. In a thread: ours may have a loop already."""
 

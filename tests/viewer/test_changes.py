@@ -104,6 +104,7 @@ def test_local_files_can_be_opened(box, follow):
     box.compare(followed)
 
 
+@pytest.mark.slow
 def test_presets_can_be_opened(opened):
     page = opened("asymmetric")
     select = page.page.get_by_label("Scene", exact=True)

@@ -71,6 +71,7 @@ ALONE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("still", ["reduce", "no-preference"])
 @pytest.mark.parametrize("chosen", [True, False], ids=["chosen", "given"])
 def test_body_stands_still_for_its_camera(still, chosen, opened, follow):

@@ -21,6 +21,7 @@ def test_number_field_seeks(opened):
     assert page.page.get_by_role("slider", name="Time").input_value() == "3.25"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "last"), [("gyroscope", None), ("magnetic", 5)])
 def test_number_field_shows_the_current_time(name, last, opened):
     """Entries that are not a time, or lie beyond the known motion, are replaced."""

@@ -153,7 +153,8 @@ class RigidTransform:
         real, dual = ([given[..., k + i] for i in range(4)] for k in (0, 4))
         if not scalar_first:
             real, dual = [real[3], *real[:3]], [dual[3], *dual[:3]]
-        return _from_dual_quat(real, dual)
+        (w, i, j, k), (a, b, c, d) = real, dual
+        return _of_motor(_motor(kind_of(given), [w, -k, j, b, -i, c, d, a]))
 
     @staticmethod
     def from_motor(M: Multivector) -> RigidTransform:
@@ -162,8 +163,7 @@ class RigidTransform:
             raise TypeError("a motor is an even element of ph.algebra(3, 0, 1)")
         if any(k % 2 for k in M.grades):
             raise ValueError(f"a motor is an even element, got the grades {M.grades}")
-        w, xy, xz, x4, yz, y4, z4, xyz4 = _columns(M)
-        return _from_dual_quat([w, -yz, xz, -xy], [xyz4, x4, y4, z4])
+        return _of_motor(M)
 
     @staticmethod
     def from_scipy(transform: ScipyTransform) -> RigidTransform:
@@ -232,9 +232,8 @@ class RigidTransform:
         w, yz, zx, xy = (turn[..., k] for k in range(4))
         x, y, z = (moved[..., k] for k in range(3))
         zero = kind.zeros_like(w)
-        rotor = Multivector._of(kind.stack([w, xy, -zx, zero, yz, zero, zero, zero]), _EVEN, _MOTORS)
-        shift = kind.stack([zero + 1, zero, zero, x / 2, zero, y / 2, z / 2, zero])
-        return Multivector._of(shift, _EVEN, _MOTORS) * rotor
+        rotor = _motor(kind, [w, xy, -zx, zero, yz, zero, zero, zero])
+        return _motor(kind, [zero + 1, zero, zero, x / 2, zero, y / 2, z / 2, zero]) * rotor
 
     def to_scipy(self) -> ScipyTransform:
         """Return a ``scipy.spatial.transform.RigidTransform`` (SciPy 1.16 or later)."""
@@ -377,18 +376,17 @@ def _columns(value: Multivector, mask: int = _EVEN) -> list[Any]:
     return [data[..., k] for k in range(data.shape[-1])]
 
 
-def _from_dual_quat(real: list[Any], dual: list[Any]) -> RigidTransform:
-    """Return the transform with ``x0 = 2 d ~r``, from quaternions (w, x, y, z)."""
-    kind = kind_of(real[0])
-    w, x, y, z = real
-    norm = kind.sqrt(w * w + x * x + y * y + z * z)
-    r, d = ([part / norm for part in q] for q in (real, dual))
-    rotor = Rotor.from_quaternion(kind.stack(r), order="wxyz")
-    # In quaternions ~r = (w, −v): the vector part of d ~r.
-    (a, b, c, e), (w, x, y, z) = d, r
-    moved = [
-        2 * (-a * x + b * w - c * z + e * y),
-        2 * (-a * y + c * w - e * x + b * z),
-        2 * (-a * z + e * w - b * y + c * x),
-    ]
-    return RigidTransform(rotor, kind.stack(moved))
+def _motor(kind: Any, columns: list[Any]) -> Multivector:
+    return Multivector._of(kind.stack(columns), _EVEN, _MOTORS)
+
+
+def _of_motor(M: Multivector) -> RigidTransform:
+    """Return the transform of an even element that need not have norm 1."""
+    w, xy, xz, _, yz, *_ = _columns(M)
+    kind = kind_of(w)
+    zero = kind.zeros_like(w)
+    turn = _motor(kind, [w, xy, xz, zero, yz, zero, zero, zero])
+    # M = (1 + ½ x0∧e4) R, with R of any norm.
+    _, _, _, x, _, y, z, _ = _columns(M * ~turn / turn.norm_squared())
+    rotor = Rotor.from_components(kind.stack([w, yz, -xz, xy]))
+    return RigidTransform(rotor, kind.stack([2 * x, 2 * y, 2 * z]))

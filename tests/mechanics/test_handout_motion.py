@@ -427,3 +427,8 @@ def test_eq_4_35_the_rotor_of_the_top(i1, i3):
     # Angles up to 20 carry their relative rounding.
     assert_equal(top_of(i1, i3).at(t).rotor, expected, 20 * EPS)
     assert_equal(moving(t, body=J).rotor, expected, 20 * stepped(10))
+
+
+def test_a_symmetric_top_is_shown_by_its_own_name():
+    top = ph.SymmetricTop(ph.Inertia.from_principal_moments(1, 1, 2), ph.Rotor.identity(), [0.1, 0.2, 3])
+    assert str(top).startswith("SymmetricTop(symmetric top, ")

@@ -108,8 +108,8 @@ class FreeMotion:
 
     def __repr__(self) -> str:
         if self.shape:
-            return f"FreeMotion(batch {self.shape})"
-        return f"FreeMotion({self.describe()['regime']}, {self._inertia!r})"
+            return f"{type(self).__name__}(batch {self.shape})"
+        return f"{type(self).__name__}({self.describe()['regime']}, {self._inertia!r})"
 
     def at(self, t: Any) -> State:
         """Return the states of all bodies at all times t in s, of batch shape ``m.shape + t.shape``.

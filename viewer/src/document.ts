@@ -21,9 +21,34 @@ export interface PageDocument {
   page?: "motion" | "algebra";
   /** Lines of the algebra page. */
   lines?: string;
+  /** Values that the algebra page draws beside those of its lines. */
+  values?: GivenValue[];
   /** Differences from the default view. */
   view?: Partial<ViewState>;
 }
+
+/** A value of projective or conformal geometry, as Python wrote and measured it; a batch has a shape per element. */
+export interface GivenValue {
+  name: string;
+  /** What it is, such as `plane` or `100 points`. */
+  kind: string;
+  /** The value in its blades. */
+  text: string;
+  shapes: Shape[];
+}
+
+type Numbers = [number, number, number];
+
+/** What is drawn of a value, in the units of the coordinates. Directions and normals have length 1. */
+export type Shape =
+  | { kind: "point"; at: Numbers }
+  | { kind: "direction"; along: Numbers }
+  | { kind: "line"; at: Numbers; along: Numbers }
+  | { kind: "plane"; at: Numbers; normal: Numbers }
+  | { kind: "sphere"; at: Numbers; radius: number }
+  | { kind: "circle"; at: Numbers; normal: Numbers; radius: number }
+  /** A rotation by an angle about an axis through `at`, and a translation by `shift` along it. */
+  | { kind: "screw"; at: Numbers; along: Numbers; angle: number; shift: number };
 
 /** Parses a document; errors begin with `where` it comes from. */
 export function parsed(text: string, where: string): PageDocument {

@@ -3,6 +3,14 @@ import { arc, circle, HEAD, ROUND, Shapes } from "../stage/shapes.ts";
 
 /** Pieces of planes, volumes and turns of one colour. */
 export class Blades extends Shapes {
+  /** Shapes of the same colour around another origin. */
+  at(origin: Vector3): Blades {
+    const moved = new Blades(this.screen, this.colour);
+    moved.object.position.copy(origin);
+    this.object.add(moved.object);
+    return moved;
+  }
+
   /** The parallelogram a∧b, whose rim runs along `a` first. */
   parallelogram(a: Vector3, b: Vector3, from = new Vector3(), opacity = 0.16): void {
     const corners = [from, from.clone().add(a), from.clone().add(a).add(b), from.clone().add(b)];

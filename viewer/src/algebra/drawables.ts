@@ -1,6 +1,7 @@
 import { Vector3 } from "three";
 import type { Line, Quadruple, Triple } from "../core/core.ts";
 import type { Core } from "../core/wasm.ts";
+import type { GivenValue, Shape } from "../document.ts";
 import { vectorLiteral } from "./literal.ts";
 import { nonzeroGrades } from "./notation.ts";
 
@@ -12,8 +13,8 @@ const LONGEST = 8;
 
 /** The parts of the value of a line that are drawn. Bivectors are given by their axial vectors. */
 export interface Drawable {
-  /** The number of its line, from 0. */
-  line: number;
+  /** The number of its line, from 0; null for a given value. */
+  line: number | null;
   /** The name, or the formula, or the number of the line if the formula is long. */
   label: string;
   colour: number;
@@ -24,6 +25,8 @@ export interface Drawable {
   rotor: { axis: Vector3; angle: number; turned: Vector3[] } | null;
   /** The two or three vectors of which it is the wedge product, if it is one. */
   edges: Vector3[];
+  /** What is drawn of a given value. */
+  shapes: readonly Shape[];
   /** Whether its components are literals in the text. */
   movable: boolean;
 }
@@ -43,6 +46,12 @@ export function drawablesOf(lines: readonly Line[], core: Core): Drawable[] {
   });
   for (const { shown } of lines) if (shown !== null) recordTurned(shown, named);
   return items;
+}
+
+/** The drawable of a given value, with the next colour after `before` others. */
+export function drawableOfGiven({ name, shapes }: GivenValue, before: number): Drawable {
+  const nothing = { vector: null, bivector: null, trivector: null, rotor: null, edges: [], movable: false };
+  return { ...nothing, line: null, label: name, colour: before % COLOURS, shapes };
 }
 
 function drawableOf(
@@ -66,6 +75,7 @@ function drawableOf(
     trivector: grades.includes(3) && components[7] !== 0 ? components[7]! : null,
     rotor: rotor ? turnOf(components, core) : null,
     edges: edges(line.shown!, named),
+    shapes: [],
     movable: isMovable(line),
   };
   const visible = item.vector ?? item.bivector ?? item.trivector ?? item.rotor;

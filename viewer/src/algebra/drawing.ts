@@ -9,6 +9,7 @@ import { Viewport } from "../stage/viewport.ts";
 import type { Drawable } from "./drawables.ts";
 import { extent, type Figure, figureOf } from "./figures.ts";
 import { Handles } from "./handles.ts";
+import type { Scale } from "./objects.ts";
 import { nameParts } from "./notation.ts";
 
 /** Radius of the ball that everything is fitted into, and the limits of the reach at which it is fitted again. */
@@ -36,9 +37,7 @@ export class Drawing extends Viewport {
   private readonly handles: Handles;
   /** Items with a label on a rim. */
   private rims: { label: Label; figure: Figure }[] = [];
-  /** Drawn units per 1, and the centre of the picture. */
-  private unit = 1;
-  private middle = new Vector3();
+  private readonly scale: Scale = { unit: 1, middle: new Vector3() };
   private subject = "";
 
   constructor(
@@ -48,7 +47,7 @@ export class Drawing extends Viewport {
     move: (line: number, components: Triple) => void,
   ) {
     super(host);
-    this.handles = new Handles(host, () => this.unit, move);
+    this.handles = new Handles(host, () => this.scale.unit, move);
     this.viewpoint.go("oblique", AXES[2], true);
     this.watch(() => this.build(items.value, palette.value));
   }
@@ -81,7 +80,7 @@ export class Drawing extends Viewport {
     this.keepInView(items);
     this.replace(palette);
     const tones = colours(palette);
-    const figures = items.map((item) => figureOf(item, items, this.screen, tones[item.colour]!, this.unit));
+    const figures = items.map((item) => figureOf(item, items, this.screen, tones[item.colour]!, this.scale));
     this.space.add(this.axes(palette).object, ...figures.map(({ shapes }) => shapes.object));
     this.rims = figures
       .map((figure) => ({ figure, label: this.name(figure, tones[figure.item.colour]!) }))
@@ -97,8 +96,8 @@ export class Drawing extends Viewport {
   /** Keeps the unit while sizes are similar; otherwise a dragged vector would move away from the pointer. */
   private keepInView(items: readonly Drawable[]): void {
     const subject = items.map((item) => item.label).join(" ");
-    const reach = Math.max(...items.flatMap(extent).map((point) => point.length()), 0) * this.unit;
-    const farthest = this.middle.length() + LARGEST;
+    const reach = Math.max(...items.flatMap(extent).map((point) => point.length()), 0) * this.scale.unit;
+    const farthest = this.scale.middle.length() + LARGEST;
     if (subject !== this.subject || reach > farthest || (reach > 0 && reach < SMALLEST)) this.fit(items);
     this.subject = subject;
   }
@@ -108,14 +107,14 @@ export class Drawing extends Viewport {
     if (points.length === 0) points.push(new Vector3(1, 1, 1), new Vector3());
     const middle = new Box3().setFromPoints(points).getCenter(new Vector3());
     const radius = Math.max(...points.map((point) => point.distanceTo(middle)));
-    this.unit = radius > 0 ? BALL / radius : 1;
-    this.middle = middle.multiplyScalar(this.unit);
-    this.viewpoint.look(this.middle);
+    this.scale.unit = radius > 0 ? BALL / radius : 1;
+    this.scale.middle = middle.multiplyScalar(this.scale.unit);
+    this.viewpoint.look(this.scale.middle);
   }
 
   /** The length of the drawn axes: 1 if that is well visible, otherwise a round multiple or fraction of it. */
   private step(): number {
-    const { unit } = this;
+    const { unit } = this.scale;
     if (unit > 0.3 && unit < 1.9) return unit;
     const power = 10 ** Math.floor(Math.log10(1 / unit));
     return [5, 2, 1].map((first) => first * power * unit).find((step) => step < 1.2)!;
@@ -149,8 +148,9 @@ export class Drawing extends Viewport {
   }
 }
 
-function described({ vector, bivector, trivector, rotor }: Drawable): string {
+function described({ vector, bivector, trivector, rotor, shapes }: Drawable): string {
   const kinds = [
+    ...new Set(shapes.map(({ kind }) => `a ${kind}`)),
     vector && "a vector",
     bivector && "a bivector",
     trivector !== null && (trivector > 0 ? "a right-handed trivector" : "a left-handed trivector"),

@@ -3,6 +3,7 @@ import type { Screen } from "../stage/ribbon.ts";
 import { across, arc, circle, ROUND } from "../stage/shapes.ts";
 import { Blades } from "./blades.ts";
 import type { Drawable } from "./drawables.ts";
+import { drawShape, extentOf, type Scale } from "./objects.ts";
 
 /** The point of a label, and the text of the label after the name. */
 export interface Mark {
@@ -12,7 +13,7 @@ export interface Mark {
   rim?: { axis: Vector3; radius: number };
 }
 
-/** The shapes and the label of a item, in drawn units: `unit` times the values. */
+/** The shapes and the label of an item, in drawn units: `unit` times the values. */
 export interface Figure {
   item: Drawable;
   shapes: Blades;
@@ -28,12 +29,14 @@ export function figureOf(
   items: readonly Drawable[],
   screen: Screen,
   colour: string,
-  unit: number,
+  scale: Scale,
 ): Figure {
+  const { unit } = scale;
   const shapes = new Blades(screen, colour);
   let mark: Mark = { at: new Vector3(), note: "" };
   const scaled = (vector: Vector3) => vector.clone().multiplyScalar(unit);
   const [a, b, c] = item.edges.map(scaled);
+  for (const shape of item.shapes) mark.at = drawShape(shapes, shape, scale);
   if (item.rotor) {
     const alone = !items.some((other) => other !== item && other.rotor && other.rotor.turned.length > 0);
     mark = turn(shapes, item.rotor, unit, alone);
@@ -71,6 +74,7 @@ export function figureOf(
 /** Points that must be in view, in the units of the values. */
 export function extent(item: Drawable): Vector3[] {
   const points = [new Vector3()];
+  points.push(...item.shapes.flatMap(extentOf));
   if (item.vector) points.push(item.vector);
   const [a, b, c] = item.edges;
   if (a && b) points.push(a, b, a.clone().add(b));

@@ -77,7 +77,7 @@ export class Handles {
       // All digits of the tip are kept here: a rounded tip would not follow small movements.
       const tip = this.dragged(last.tip, event.clientX - last.x, event.clientY - last.y, event.shiftKey);
       last = { x: event.clientX, y: event.clientY, tip };
-      this.move(entry.item.line, tip.clone().divideScalar(this.unit()).toArray());
+      this.move(entry.item.line!, tip.clone().divideScalar(this.unit()).toArray());
     });
     for (const end of ["pointerup", "pointercancel"] as const) {
       button.addEventListener(end, () => (last = null));
@@ -115,7 +115,7 @@ export class Handles {
     });
     const along = steps[key === 1 && event.shiftKey ? 2 : key]!;
     this.move(
-      item.line,
+      item.line!,
       along
         .multiplyScalar(sign * STEP)
         .add(item.vector!)

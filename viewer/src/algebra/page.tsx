@@ -6,18 +6,24 @@ import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import styles from "./algebra.css?inline";
 import { colours, Drawing } from "./drawing.ts";
+import { GivenValues } from "./given.tsx";
 import { outline, withVector } from "./literal.ts";
 import { ALGEBRA_PRESETS } from "./presets.ts";
 import { Rows } from "./rows.tsx";
-import { type Drawable, drawablesOf } from "./drawables.ts";
+import { type Drawable, drawableOfGiven, drawablesOf } from "./drawables.ts";
 
 /** The algebra page: lines of formulas, their values, and a drawing. The text is its only state. */
 export function AlgebraPage({ model, palette }: { model: Model; palette: ReadonlySignal<Palette> }) {
   useEffect(() => {
-    if (model.lines.peek() === "") model.lines.value = ALGEBRA_PRESETS[0]!.lines;
+    if (model.lines.peek() === "" && model.values.peek().length === 0)
+      model.lines.value = ALGEBRA_PRESETS[0]!.lines;
   }, [model]);
   const lines = useComputed(() => model.core.evaluated(model.lines.value));
-  const items = useComputed(() => drawablesOf(lines.value, model.core));
+  const items = useComputed(() => {
+    const written = drawablesOf(lines.value, model.core);
+    const given = model.values.value.map((value, k) => drawableOfGiven(value, written.length + k));
+    return [...written, ...given];
+  });
   const tones = useComputed(() => colours(palette.value));
   const change = useMemo(
     () => (line: number, text: (old: string) => string) => {
@@ -37,7 +43,10 @@ export function AlgebraPage({ model, palette }: { model: Model; palette: Readonl
         palette={palette}
         move={(line, to) => change(line, (old) => withVector(old, to))}
       />
-      <Rows text={model.lines} lines={lines} items={items} tones={tones} change={change} />
+      <div class="column">
+        <GivenValues values={model.values} items={items} tones={tones} />
+        <Rows text={model.lines} lines={lines} items={items} tones={tones} change={change} />
+      </div>
     </div>
   );
 }

@@ -1,7 +1,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import { type About, type Files, Problem, sizeAt, State } from "../core/core.ts";
 import type { Core, Motion } from "../core/wasm.ts";
-import type { CameraName, PageDocument, Shown, ViewState } from "../document.ts";
+import type { CameraName, GivenValue, PageDocument, Shown, ViewState } from "../document.ts";
 import { unpacked } from "../packed.ts";
 
 /** Time limit for solving a scene in the page, in s. */
@@ -49,8 +49,9 @@ export class Model {
   readonly camera = signal<CameraName>("oblique");
   readonly theme = signal<ViewState["theme"]>("auto");
   readonly shown = signal<Shown>(SHOWN);
-  /** The lines of the algebra page. */
+  /** The lines of the algebra page, and the values that it was given. */
   readonly lines = signal("");
+  readonly values = signal<readonly GivenValue[]>([]);
   /** The motion when its scene was last opened; the sliders take their ranges from it. */
   readonly opened = signal<About | null>(null);
   /** Caption of the picture. */
@@ -84,6 +85,7 @@ export class Model {
     const rows = document.recorded && floats(await unpacked(document.recorded.rows));
     batch(() => {
       if (document.lines !== undefined) this.lines.value = document.lines;
+      this.values.value = document.values ?? [];
       this.page.value = document.page ?? "motion";
       if (document.recorded && rows) {
         this.record(document, rows, files);

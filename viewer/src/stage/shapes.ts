@@ -7,6 +7,7 @@ import {
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
+  SphereGeometry,
   Vector3,
 } from "three";
 import { Ribbon, type RibbonStyle, type Screen } from "./ribbon.ts";
@@ -23,8 +24,8 @@ export class Shapes {
   private readonly solid: MeshLambertMaterial;
 
   constructor(
-    private readonly screen: Screen,
-    private readonly colour: ColorRepresentation,
+    protected readonly screen: Screen,
+    protected readonly colour: ColorRepresentation,
   ) {
     this.solid = new MeshLambertMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.45 });
   }
@@ -51,6 +52,16 @@ export class Shapes {
     });
     const mesh = new Mesh(geometry, material);
     mesh.renderOrder = order;
+    this.object.add(mesh);
+  }
+
+  /** A ball around a point; with an opacity, one that is seen through. */
+  ball(at: Vector3, radius: number, opacity?: number): void {
+    const { colour: color } = this;
+    const clear = { color, transparent: true, opacity: opacity ?? 1, depthWrite: false };
+    const material = opacity === undefined ? this.solid : new MeshBasicMaterial(clear);
+    const mesh = new Mesh(new SphereGeometry(radius, 48, 32), material);
+    mesh.position.copy(at);
     this.object.add(mesh);
   }
 

@@ -69,7 +69,7 @@ def body_of(scene: Scene, inertia: Inertia) -> dict[str, Any]:
     """Return the body, with the inertia that determines its motion."""
     moments = inertia.principal_moments
     return {
-        "mass": scene.body.mass if scene.tells_mass else None,
+        "mass": scene.body.mass if scene.has_mass else None,
         "center_of_mass": scene.body.center_of_mass.components.tolist(),
         "held": scene.held,
         "principal_moments": moments.tolist(),

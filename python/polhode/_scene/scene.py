@@ -50,7 +50,7 @@ class Scene:
         The file, its content, and its title or None.
     body
         The body; with gravity in axes whose origin is the fixed point.
-    tells_mass
+    has_mass
         False if the file gives an inertia only; the body then has 1 kg, which does not affect the motion.
     solid
         Kind and sizes in m of the solid in the file, named as there; None without.
@@ -81,7 +81,7 @@ class Scene:
     text: str = field(init=False, repr=False)
     title: str | None = field(init=False)
     body: Body = field(init=False)
-    tells_mass: bool = field(init=False)
+    has_mass: bool = field(init=False)
     solid: dict[str, Any] | None = field(init=False)
     shift: Array = field(init=False)
     state: State = field(init=False)

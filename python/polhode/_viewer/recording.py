@@ -174,7 +174,7 @@ def _body(origin: Scene | Problem | None) -> dict[str, Any]:
         return {"mass": None, "center_of_mass": zero, "solid": None, "solid_at": zero}
     body, scene = origin.body, origin if isinstance(origin, Scene) else None
     return {
-        "mass": body.mass if scene is None or scene.tells_mass else None,
+        "mass": body.mass if scene is None or scene.has_mass else None,
         "center_of_mass": body.center_of_mass.components.tolist(),
         "solid": scene.solid if scene else None,
         "solid_at": scene.shift.tolist() if scene else zero,

@@ -64,7 +64,7 @@ impl Scene {
         result.set_item("title", &scene.title)?;
         result.set_item("text", &scene.text)?;
         result.set_item("body", Py::new(py, Body(*body))?)?;
-        result.set_item("tells_mass", scene.has_mass())?;
+        result.set_item("has_mass", scene.has_mass())?;
         result.set_item("solid", scene.solid().map(|solid| dict(py, solid.facts())).transpose()?)?;
         result.set_item("shift", line(py, scene.shift().0.to_vec()))?;
         result.set_item("rotor", line(py, scene.attitude.components().to_vec()))?;

@@ -10,6 +10,7 @@ import json
 import os
 import tempfile
 import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,9 @@ from typing import Any
 import numpy as np
 
 from polhode._algebra.constructors import bivector
+from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._algebra.transform import RigidTransform
 from polhode._mechanics.bodies import Body, Inertia, bodies_of
 from polhode._mechanics.closed_forms import ClosedForm, DampedTop, LagrangeTop, LarmorSphere
 from polhode._mechanics.free_motion import FreeMotion
@@ -33,6 +36,7 @@ from polhode._scene.writer import UnwritableError, scene_text
 from polhode._support.arrays import Array, as_float
 from polhode._support.packing import packed, unpacked
 from polhode._viewer.recording import recorded
+from polhode._viewer.values import of_values
 from polhode.torque import Torque, damping, heavy, larmor, settled
 
 Document = dict[str, Any]
@@ -75,9 +79,11 @@ def document(
         return of_trajectory(x)
     if isinstance(x, (str, os.PathLike)):
         return of_file(Path(x))
+    if isinstance(x, (Multivector, RigidTransform, Mapping, list, tuple)):
+        return of_values(x)
     raise TypeError(
         f"cannot show a value of type {type(x).__name__}: give a Scene, a Trajectory, a closed-form motion, "
-        "the path of a scene or netCDF file, or a Body and its State"
+        "the path of a scene or netCDF file, a Body and its State, or values of the algebra"
     )
 
 

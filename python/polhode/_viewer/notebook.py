@@ -18,7 +18,7 @@ def view(
     *,
     duration: float | None = None,
 ) -> Viewer:
-    """Show a motion in a notebook, with controls for its scene.
+    """Show a motion, or values of the algebra, in a notebook.
 
     The page computes with the same core: if a scene describes the motion, its spin, attitude, body and
     torques can be changed in the page, and the motion follows. Page and Python are synchronised in both
@@ -30,6 +30,9 @@ def view(
         - A `Scene`, or the path of a scene file.
         - A `Trajectory` of one body, or the path of a netCDF file of one.
         - A `FreeMotion`, `LagrangeTop`, `DampedTop` or `LarmorSphere`.
+        - A `Multivector`, a list of them, or a dict of them by name. The algebra page draws vectors, bivectors,
+          trivectors and rotors of 3-d space, whose formulas can be changed, and the points, lines, planes,
+          spheres, circles and motors of `pga` and `cga`.
         - A `Body` or an `Inertia`; with `state`, and `torque` and `force` as for `polhode.simulate`.
     duration
         Duration in s, for bodies and closed forms; None for 20 turns at the initial rate.

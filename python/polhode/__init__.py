@@ -30,11 +30,13 @@ from polhode._native import __version__ as __version__
 if TYPE_CHECKING:
     from polhode import event, force, torque
     from polhode import jax as jax
+    from polhode._algebra.cga import CGA, cga
     from polhode._algebra.estimation import Alignment, align, mean
     from polhode._algebra.frames import reciprocal_frame
     from polhode._algebra.interpolation import RotorSpline, slerp
     from polhode._algebra.jacobians import left_jacobian, right_jacobian
     from polhode._algebra.linear_map import LinearMap
+    from polhode._algebra.pga import PGA, pga
     from polhode._algebra.rates import attitude_from_rates, rates_from_attitude
     from polhode._algebra.serialize import from_dict, to_dict
     from polhode._algebra.transform import RigidTransform
@@ -57,13 +59,13 @@ if TYPE_CHECKING:
 # Without `jax`, which needs JAX to be installed.
 # fmt: off
 __all__ = [
-    "Agreement", "Algebra", "Alignment", "Body", "Certificate", "Crossings", "DampedTop", "Failure",
-    "FlowDerivatives", "Formula", "FormulaError", "FreeMotion", "I", "Inertia", "LagrangeTop",
+    "CGA", "PGA", "Agreement", "Algebra", "Alignment", "Body", "Certificate", "Crossings", "DampedTop",
+    "Failure", "FlowDerivatives", "Formula", "FormulaError", "FreeMotion", "I", "Inertia", "LagrangeTop",
     "LarmorSphere", "LinearMap", "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline",
     "Scene", "SceneError", "State", "Stepper", "SymmetricTop", "Trajectory", "algebra", "align",
-    "attitude_from_rates", "axial", "bivector", "concatenate", "cross", "describe_free", "e1", "e2", "e3",
-    "evaluate", "event", "force", "formula", "from_axial", "from_dict", "from_pauli", "left_jacobian",
-    "mean", "multivector", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf",
+    "attitude_from_rates", "axial", "bivector", "cga", "concatenate", "cross", "describe_free", "e1", "e2",
+    "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict", "from_pauli", "left_jacobian",
+    "mean", "multivector", "pga", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf",
     "reciprocal_frame", "right_jacobian", "scalar", "simulate", "simulate_blocks", "slerp", "split",
     "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
 ]
@@ -73,11 +75,13 @@ __all__ = [
 _LATER = {
     name: module
     for module, names in {
+        "_algebra.cga": "CGA cga",
         "_algebra.estimation": "Alignment align mean",
         "_algebra.frames": "reciprocal_frame",
         "_algebra.interpolation": "RotorSpline slerp",
         "_algebra.jacobians": "left_jacobian right_jacobian",
         "_algebra.linear_map": "LinearMap",
+        "_algebra.pga": "PGA pga",
         "_algebra.rates": "attitude_from_rates rates_from_attitude",
         "_algebra.serialize": "from_dict to_dict",
         "_algebra.transform": "RigidTransform",

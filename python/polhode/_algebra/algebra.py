@@ -5,23 +5,27 @@ from __future__ import annotations
 import functools
 import math
 import operator
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.blade_names import Blades
+from polhode._algebra.blade_names import Blades, generators_of
 from polhode._algebra.coefficients import as_coefficients, duplicate
+from polhode._algebra.grades import mask_of
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
+from polhode._support.arrays import Shape, batch_shape
 
 
 @joins(_native.Algebra)
 class Algebra(_native.Algebra):
     """The geometric algebra Cl(p, q, r): p generators square to +1, q to −1, r to 0, in this order.
 
-    Created by `algebra`. The basis is ordered by grade, then by rising generators (``e1e2, e1e3, …``); with
-    three generators the bivectors are ``e2e3, e3e1, e1e2``. `I` is the product of all generators.
+    Created by `algebra`, `pga` and `cga`. The basis is ordered by grade, then by rising generators
+    (``e1e2, e1e3, …``); with three generators the bivectors are ``e2e3, e3e1, e1e2``. `pga` has the generator
+    e0 and a basis of its own. `I` is the product of all generators.
     """
 
     __slots__ = ()
@@ -32,6 +36,10 @@ class Algebra(_native.Algebra):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return algebra, self.signature
+
+    def _key(self) -> Any:
+        """Return what `to_dict` writes: a list of three counts, or a name."""
+        return list(self.signature)
 
     @property
     def dimension(self) -> int:
@@ -45,7 +53,7 @@ class Algebra(_native.Algebra):
 
     @property
     def basis_vectors(self) -> tuple[Multivector, ...]:
-        """The generators, e1 first."""
+        """The generators in their order, e1 first; of `pga` e0."""
         return tuple(self.vector(row) for row in np.eye(self.dimension))
 
     @property
@@ -94,6 +102,29 @@ class Algebra(_native.Algebra):
         """Create multivectors from an array (..., 2**n) over the whole basis."""
         return self._wrapped(components, "multivector", self.size, self._all, dtype, copy)
 
+    def random(
+        self,
+        shape: int | Shape = (),
+        *,
+        grades: int | Iterable[int] | None = None,
+        rng: np.random.Generator | int | None = None,
+    ) -> Multivector:
+        """Return values with independent components of the standard normal distribution.
+
+        Parameters
+        ----------
+        shape
+            The batch shape.
+        grades
+            A grade or several; all by default.
+        rng
+            A NumPy generator or a seed.
+        """
+        wanted = range(self.dimension + 1) if grades is None else grades
+        mask = mask_of(self, tuple(wanted) if isinstance(wanted, Iterable) else (wanted,))
+        numbers = np.random.default_rng(rng).standard_normal((*batch_shape(shape), len(self._indices(mask))))
+        return Multivector._of(numbers, mask, self)
+
     def _single(self, x: Any, what: str, grade: int, dtype: Any) -> Multivector:
         data = as_coefficients(x, what, dtype)
         return Multivector._of(duplicate(data)[..., None], 1 << grade, self)
@@ -137,7 +168,22 @@ class Algebra(_native.Algebra):
     def _names(self, mask: int) -> tuple[str, ...]:
         """Return the names of the basis elements of some grades; that of the scalar is empty."""
         blades = self._blades()
-        return tuple(_name(*blades[i], self.dimension) for i in self._indices(mask))
+        return tuple(self._name(*blades[i]) for i in self._indices(mask))
+
+    def _name(self, bits: int, sign: int) -> str:
+        if bits.bit_count() == self.dimension > 1:
+            return "I"
+        return "∧".join(f"e{i + self._first()}" for i in generators_of(bits, sign))
+
+    @functools.cache  # noqa: B019
+    def _null_counts(self) -> list[int]:
+        """Return the number of generators of square 0 in each basis element."""
+        null = sum(1 << i for i, square in enumerate(self._squares()) if square == 0)
+        return [(bits & null).bit_count() for bits, _ in self._blades()]
+
+    def _named(self) -> dict[str, Multivector]:
+        """Return values that have names besides the basis elements."""
+        return {}
 
     @functools.cache  # noqa: B019
     def _reverse_squares(self, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
@@ -175,7 +221,8 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
 
     ``algebra(3)`` is the algebra of 3-d space, to which `vector`, `e1` and the others belong;
     ``algebra(3, 0, 1)`` the plane-based algebra of Euclidean space, with the null generator ``e4`` last;
-    ``algebra(4, 1)`` the conformal algebra; ``algebra(1, 3)`` the algebra of space-time.
+    ``algebra(4, 1)`` the conformal algebra; ``algebra(1, 3)`` the algebra of space-time. `pga` and `cga` are
+    the plane-based and the conformal algebra with points, lines, planes and spheres.
     """
     for count in (p, q, r):
         if not hasattr(count, "__index__"):
@@ -192,11 +239,3 @@ def _algebra(p: int, q: int, r: int) -> Algebra:
     if (p, q, r) == (3, 0, 0):
         return _native.g3()
     return _native.Algebra(p, q, r)  # type: ignore[return-value]
-
-
-def _name(bits: int, sign: int, dimension: int) -> str:
-    if bits.bit_count() == dimension and dimension > 1:
-        return "I"
-    generators = [f"e{i + 1}" for i in range(dimension) if bits >> i & 1]
-    # e3∧e1 is the only basis element not in rising order.
-    return "∧".join(generators if sign > 0 else reversed(generators))

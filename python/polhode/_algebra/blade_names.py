@@ -23,6 +23,9 @@ class Blades(dict[str, "Multivector"]):
         self._algebra = algebra
 
     def __missing__(self, name: Any) -> Multivector:
+        named = self._algebra._named()
+        if name in named:
+            return named[name]
         try:
             place, sign = place_of(self._algebra, name)
         except IndexError as error:
@@ -64,6 +67,15 @@ def place_of(algebra: Algebra, name: str) -> tuple[int, int]:
         if blade == bits:
             return place, -sign if swaps % 2 else sign
     raise AssertionError(f"{algebra} has no basis element of the bits {bits}")
+
+
+def generators_of(bits: int, sign: int) -> list[int]:
+    """Return the generators of a basis element, from 0, in the order of its name: of ``e31`` 2 and 0.
+
+    A negative sign swaps the last two.
+    """
+    rising = [i for i in range(bits.bit_length()) if bits >> i & 1]
+    return rising if sign > 0 else [*rising[:-2], rising[-1], rising[-2]]
 
 
 def _generators(algebra: Algebra, name: Any) -> list[int]:

@@ -174,8 +174,7 @@ def _closed(d: Any, value: Multivector, sign: int, squares: tuple[int, ...]) -> 
 def _series(d: Any, value: Multivector, sign: int) -> Pair:
     """Sum the series of ``A/2ᵏ`` and double it k times: ``cosh 2x = cosh²x + sinh²x``."""
     algebra = value.algebra
-    regular = algebra.dimension - algebra.signature[2]
-    null = [(bits >> regular).bit_count() for bits, _ in algebra._blades()]
+    null = algebra._null_counts()
     # Scaling null generators is an automorphism; then a large translation costs the rotation no digits.
     factors = _generic.algebras.null_factors(d, null, value.dense(), 1.0)
     x = _scaled(value, factors)

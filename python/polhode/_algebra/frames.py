@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _generic, _native
+from polhode._algebra.blade_names import generators_of
 from polhode._algebra.coefficients import kind_of
 from polhode._algebra.products import common_algebra
 from polhode._support.arrays import Array, at_index, first_index, is_float
@@ -44,7 +45,7 @@ def factor(blade: Multivector) -> tuple[Multivector, ...]:
     size = np.abs(rows).max(axis=-1, keepdims=True, initial=0)
     _require(np.isfinite(size[..., 0]) & (size[..., 0] > 0), "is zero or not finite; a blade is neither")
     rows = rows / size
-    axes = _orthogonal(_spanned(rows, part, k), algebra.signature)
+    axes = _orthogonal(_spanned(rows, part, k), np.array(algebra._squares(), dtype=float))
     factors = [algebra.vector(axes[..., i]) for i in range(k)]
     product = functools.reduce(operator.xor, factors)
     unit = np.asarray(product)
@@ -75,7 +76,7 @@ def _spanned(rows: Array, blade: Multivector, k: int) -> Array:
         images = [np.asarray(e.wedge(unit).grade(k + 1)) for e in algebra.basis_vectors]
         span = np.swapaxes(np.linalg.svd(np.stack(images, axis=-1))[2][..., n - k :, :], -1, -2)
     largest = np.abs(rows).argmax(axis=-1)
-    generators = np.array([_generators(algebra._blades()[i]) for i in algebra._indices(1 << k)])[largest]
+    generators = np.array([generators_of(*algebra._blades()[i]) for i in algebra._indices(1 << k)])[largest]
     # The projections of these axes on the span, as columns; their triangular factor has a positive diagonal.
     axes = np.swapaxes(np.take_along_axis(span, generators[..., np.newaxis], axis=-2), -1, -2)
     q, r = np.linalg.qr(span @ axes)
@@ -84,19 +85,10 @@ def _spanned(rows: Array, blade: Multivector, k: int) -> Array:
     return orthonormal
 
 
-def _generators(blade: tuple[int, int]) -> list[int]:
-    """Return the generators of a basis element, in its order."""
-    bits, sign = blade
-    rising = [i for i in range(bits.bit_length()) if bits >> i & 1]
-    return rising if sign > 0 else rising[::-1]
-
-
-def _orthogonal(axes: Array, signature: tuple[int, int, int]) -> Array:
-    """Return columns of the same span that are also orthogonal in the metric."""
-    p, q, r = signature
-    if not (q or r):
+def _orthogonal(axes: Array, metric: Array) -> Array:
+    """Return columns of the same span that are also orthogonal in the metric, given by squares."""
+    if (metric == 1).all():
         return axes
-    metric = np.array([1.0] * p + [-1.0] * q + [0.0] * r)
     gram = np.swapaxes(axes, -1, -2) @ (metric[:, np.newaxis] * axes)
     off = gram * (1 - np.eye(gram.shape[-1]))
     turned = axes @ np.linalg.eigh(gram)[1]

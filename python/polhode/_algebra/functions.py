@@ -181,8 +181,7 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
     mask, everything = algebra._grades_of_function(name, value._mask), algebra._all
     terms, _ = algebra._terms("geometric", everything, everything)
     full = _parts.over_grades(value, everything)
-    regular = algebra.dimension - algebra.signature[2]
-    null = [(bits >> regular).bit_count() for bits, _ in algebra._blades()]
+    null = algebra._null_counts()
     if name == "exp":
         rows = _generic.algebras.exp(kind_of(full), terms, algebra._indices(value._mask), full, null)
     else:

@@ -42,11 +42,12 @@ class Multivector(_native.Multivector):
     arrays of JAX or any other array-API library.
 
     ``A*B`` is the geometric product, ``A^B`` the wedge, ``A|B`` the dot (the lowest grade,
-    ``abs(r - s)``), ``~A`` the reverse. Numbers and arrays act as scalars, an array as a batch.
+    ``abs(r - s)``), ``A&B`` the regressive product `vee`, ``V>>A`` the action ``V(A)`` of a versor, ``~A``
+    the reverse. Numbers and arrays act as scalars, an array as a batch.
 
-    Python binds ``^`` and ``|`` *looser* than ``+`` and ``*``: ``1 ^ e1 + e2`` means ``1 ^ (e1 + e2)``,
-    and ``e1 | e2 * e1`` means ``e1 | (e2 * e1)``. On paper they bind tighter than the product. Put
-    brackets around them, or use the named methods ``A.wedge(B)`` and ``A.dot(B)``.
+    Python binds ``^``, ``|``, ``&`` and ``>>`` *looser* than ``+`` and ``*``: ``1 ^ e1 + e2`` means
+    ``1 ^ (e1 + e2)``, and ``e1 | e2 * e1`` means ``e1 | (e2 * e1)``. On paper they bind tighter than
+    the product. Put brackets around them, or use the named methods ``A.wedge(B)`` and ``A.dot(B)``.
 
     Created by `scalar`, `vector`, `bivector`, `trivector` and `multivector`, not directly.
     """
@@ -265,6 +266,7 @@ class Multivector(_native.Multivector):
 
     __pow__ = _functions.power
     __call__ = _versors.act
+    __rshift__ = _versors.sandwich
 
     # --- involutions
 
@@ -296,6 +298,7 @@ class Multivector(_native.Multivector):
     right_complement = _subspaces.right_complement
     left_complement = _subspaces.left_complement
     vee = _subspaces.vee
+    __and__, __rand__ = _subspaces.regressive, _subspaces.regressive_from
     join = _subspaces.join
     meet = _subspaces.meet
     project = _subspaces.project

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+import re
 from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
@@ -11,9 +12,11 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.algebra import algebra
+from polhode._algebra.algebra import Algebra, algebra
+from polhode._algebra.cga import cga
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.multivector import Multivector
+from polhode._algebra.pga import pga
 from polhode._algebra.rotor import Rotor
 from polhode._support.arrays import is_float
 
@@ -22,7 +25,9 @@ _DTYPES = {"float64": np.float64, "float32": np.float32, "object": object}
 
 
 def to_dict(value: Multivector) -> dict[str, Any]:
-    """Return signature, grades, whether it is a rotor, batch shape, dtype and components as nested lists.
+    """Return algebra, grades, whether it is a rotor, batch shape, dtype and components as nested lists.
+
+    An algebra is its signature (p, q, r), or a name such as ``"pga(3)"``.
 
     JSON can hold all of them; a fraction is text, ``"1/3"``. `from_dict` restores the value, bit for bit. A
     TypeError for symbolic coefficients; arrays of other libraries are restored as NumPy floats.
@@ -31,7 +36,7 @@ def to_dict(value: Multivector) -> dict[str, Any]:
         raise TypeError(f"to_dict needs a multivector, got {type(value).__name__}")
     data = np.asarray(value._data)
     return {
-        "algebra": list(value.algebra.signature),
+        "algebra": value.algebra._key(),
         "grades": list(value.grades),
         "rotor": isinstance(value, Rotor),
         "shape": list(value.shape),
@@ -60,10 +65,7 @@ def from_dict(fields: Mapping[str, Any]) -> Multivector:
 
 
 def _restored(fields: Mapping[str, Any]) -> Multivector:
-    signature, grades = list(fields["algebra"]), list(fields["grades"])
-    if len(signature) != 3:
-        raise ValueError(f"an algebra is three counts (p, q, r), got {signature}")
-    space = algebra(*signature)
+    space, grades = _algebra_of(fields["algebra"]), list(fields["grades"])
     if not grades or grades != sorted(set(grades)) or not set(grades) <= set(range(space.dimension + 1)):
         raise ValueError(f"grades must rise from 0 to at most {space.dimension}, got {grades}")
     mask = sum(1 << k for k in grades)
@@ -85,6 +87,19 @@ def _restored(fields: Mapping[str, Any]) -> Multivector:
     rounding = 32 * np.finfo(data.dtype if is_float(data) else float).eps
     same = unit.is_close(Multivector._of(data, mask), rtol=rounding)
     return Rotor._from_rows(data) if np.all(same) else unit
+
+
+def _algebra_of(key: Any) -> Algebra:
+    """Return the algebra of a signature, or of a name such as ``"pga(3)"``."""
+    if isinstance(key, str):
+        named = re.fullmatch(r"(pga|cga)\((\d)\)", key)
+        if not named:
+            raise ValueError(f'an algebra is three counts (p, q, r), "pga(n)" or "cga(n)", got {key!r}')
+        return {"pga": pga, "cga": cga}[named[1]](int(named[2]))
+    signature = list(key)
+    if len(signature) != 3:
+        raise ValueError(f"an algebra is three counts (p, q, r), got {signature}")
+    return algebra(*signature)
 
 
 def _number(x: Any) -> Any:

@@ -50,6 +50,17 @@ def vee(left: Multivector, other: Any) -> Multivector:
     return left.right_complement().wedge(right.right_complement()).left_complement()
 
 
+def regressive(left: Multivector, right: Any) -> Multivector:
+    """``A & B``, the regressive product `vee`; Python binds ``&`` looser than ``+`` and ``*``."""
+    return NotImplemented if coerced(right, left) is None else vee(left, right)
+
+
+def regressive_from(right: Multivector, left: Any) -> Multivector:
+    """``A & B`` for a number or an array A."""
+    number = coerced(left, right)
+    return NotImplemented if number is None else vee(number, right)
+
+
 def join(value: Multivector, other: Multivector) -> Multivector:
     """Return the unit blade of the smallest subspace that contains both blades.
 

@@ -43,10 +43,17 @@ def act(V: Multivector, X: Multivector) -> Multivector:
     return X._like(turned._with_grades(X._mask))
 
 
+def sandwich(V: Multivector, X: Multivector) -> Multivector:
+    """``V >> X``, the action ``V(X)`` of a rotor or a versor. It binds looser than ``+`` and ``*``."""
+    if not isinstance(X, _native.Multivector):
+        return NotImplemented
+    return V(X)
+
+
 def _require_number(square: Multivector, V: Multivector) -> None:
     """Raise a TypeError unless ``V ~V`` is a number other than 0."""
     scalar, rest = square.grade(0)._data[..., 0], square - square.grade(0)
-    ok = _small(rest._data, V) & ~_small(scalar[..., None], V, digits=0.9)
+    ok = small(rest._data, V) & ~small(scalar[..., None], V, digits=0.9)
     if _fails(ok):
         index = first_index(~np.asarray(ok))
         raise TypeError(
@@ -58,7 +65,7 @@ def _require_vectors(V: Multivector, reverse: Multivector) -> None:
     """Raise a TypeError unless ``V a ~V`` is a vector for each basis vector a."""
     for a in V.algebra.basis_vectors:
         image = V * a * reverse
-        if _fails(_small((image - image.grade(1))._data, V)):
+        if _fails(small((image - image.grade(1))._data, V)):
             raise TypeError(f"V ~V is a number, but V a ~V is not a vector for a = {a}; {_REMEDY}")
 
 
@@ -68,7 +75,7 @@ def _fails(ok: Any) -> bool:
     return concrete and not bool(np.all(np.asarray(ok)))
 
 
-def _small(data: Any, V: Multivector, digits: float = 0.5) -> Any:
+def small(data: Any, V: Multivector, digits: float = 0.5) -> Any:
     """Whether components are 0 to this part of the digits, beside the squares of those of V."""
     kind = kind_of(data, V._data)
     if kind.exact:

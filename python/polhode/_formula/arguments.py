@@ -101,6 +101,7 @@ def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[s
     """Return the values by name. An unusable value is an error only if the formula uses it."""
     everything = _together(values, named)
     algebra, owner = _main_algebra(core, everything)
+    everything = {**algebra._named(), **everything}
     known: dict[str, Any] = {}
     refused: dict[str, TypeError] = {}
     for name, value in everything.items():
@@ -160,6 +161,7 @@ def kinds_of(algebra: Any, kinds: dict[str, Any]) -> tuple[Any, list[Kind]]:
     """Return the algebra and the kinds of names, given as values or described."""
     values = {name: kind for name, kind in kinds.items() if isinstance(kind, Multivector)}
     algebra = _common_algebra(algebra, values)
+    kinds = {**algebra._named(), **kinds} if kinds else kinds  # without any, names are open
     return algebra, [(name, *_described(name, kind, algebra)) for name, kind in kinds.items()]
 
 

@@ -42,15 +42,13 @@ pub struct Calculus {
 impl Calculus {
     /// Computes the table of signs of `algebra`.
     pub fn new(algebra: &Algebra) -> Calculus {
-        let signature = algebra.signature();
-        let generators = signature.generators();
+        let generators = algebra.squares().len();
         let size = 1 << generators;
-        let signs = (0..size * size)
-            .map(|x| signature.blade_product((x / size) as u32, (x % size) as u32).0)
-            .collect();
+        let signs =
+            (0..size * size).map(|x| algebra.blade_product((x / size) as u32, (x % size) as u32).0).collect();
         Calculus {
             generators,
-            null: (0..generators).filter(|&i| signature.square(i) == 0).map(|i| 1 << i).sum(),
+            null: (0..generators).filter(|&i| algebra.squares()[i] == 0).map(|i| 1 << i).sum(),
             order: algebra.blades().iter().map(|b| (b.bits as usize, f64::from(b.sign))).collect(),
             signs,
             tolerances: Tolerances::new(f64::EPSILON),

@@ -11,11 +11,12 @@
 //! the 8 × 8 products of the first three generators: a tile, written once. The signs are that of `h1 h2`, and one more
 //! for odd `l2` if `h1` is odd. An algebra is then a short list of pairs of cosets.
 //!
-//! Generators of square +1 come first, those of square 0 last: with at least three that do not square to 0,
-//! the first three square to +1 or −1, and no product in a tile vanishes.
+//! For this the generators are sorted: those of square +1 first, those of square 0 last. With at least three that do not
+//! square to 0, the first three square to +1 or −1, and no product in a tile vanishes. Where the basis of the algebra is
+//! in another order, as that of `Algebra::pga`, some basis elements are minus the sorted blades (`flips`).
 
 use crate::simd::{ByRow, Kernel, Lane};
-use crate::table::{Algebra, Signature};
+use crate::table::{Algebra, Signature, swaps};
 
 /// The sign of the product of two blades of three generators, the first `P` of which square to +1 and the
 /// others to −1.
@@ -43,8 +44,21 @@ pub(crate) struct Tiles {
     positive: usize,
     /// The components of each coset, in order of the bits of `l`.
     cosets: Vec<[usize; 8]>,
+    /// The sign bits of the components of each coset against the sorted blades; empty if no sign differs.
+    flips: Vec<[u64; 8]>,
     /// In order of `out`.
     pairs: Vec<Pair>,
+}
+
+/// A blade with its generators in sorted order: its bits there, and whether it is minus that blade.
+fn sorted(bits: u32, place_of: &[usize]) -> (u32, bool) {
+    let mut sorted = 0;
+    let mut negative = false;
+    for (_, &place) in place_of.iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1) {
+        negative ^= swaps(sorted, 1 << place) % 2 == 1;
+        sorted |= 1 << place;
+    }
+    (sorted, negative)
 }
 
 impl Tiles {
@@ -55,15 +69,30 @@ impl Tiles {
         if signature.generators() < 4 || p + q < 3 {
             return None;
         }
+        let mut order: Vec<usize> = (0..signature.generators()).collect();
+        // A stable sort by the squares 1, −1, 0.
+        order.sort_by_key(|&i| [0, 2, 1][(1 - algebra.squares()[i]) as usize]);
+        let mut place_of = order.clone();
+        order.iter().enumerate().for_each(|(place, &i)| place_of[i] = place);
+        let plain = Algebra::new(signature)?;
         let mut cosets = vec![[0; 8]; algebra.blades().len() / 8];
+        let mut flips = vec![[0; 8]; cosets.len()];
         for (component, blade) in algebra.blades().iter().enumerate() {
-            cosets[blade.bits as usize / 8][blade.bits as usize % 8] = component;
+            let (bits, negative) = sorted(blade.bits, &place_of);
+            let (coset, l) = (bits as usize / 8, bits as usize % 8);
+            cosets[coset][l] = component;
+            flips[coset][l] = u64::from(negative != (blade.sign < 0)) << 63;
+        }
+        if flips.iter().flatten().all(|&flip| flip == 0) {
+            flips.clear();
+        } else if p < 3 {
+            return None;
         }
         let mut pairs = Vec::new();
         for out in 0..cosets.len() {
             for a in 0..cosets.len() {
                 let b = a ^ out;
-                let (high, _) = signature.blade_product(8 * a as u32, 8 * b as u32);
+                let (high, _) = plain.blade_product(8 * a as u32, 8 * b as u32);
                 if high != 0 {
                     let even = high < 0;
                     let odd = even ^ (a.count_ones() % 2 == 1);
@@ -71,11 +100,11 @@ impl Tiles {
                 }
             }
         }
-        Some(Tiles { positive: p.min(3), cosets, pairs })
+        Some(Tiles { positive: p.min(3), cosets, flips, pairs })
     }
 
     #[inline(always)]
-    fn multiply<const P: usize, const FUSED: bool, const W: usize>(
+    fn multiply<const P: usize, const FLIPS: bool, const FUSED: bool, const W: usize>(
         &self,
         a: &[Lane<W>],
         b: &[Lane<W>],
@@ -86,10 +115,14 @@ impl Tiles {
             for pair in pairs {
                 let xs = self.cosets[pair.a].map(|component| &a[component]);
                 let ys = self.cosets[pair.b].map(|component| &b[component]);
-                tile::<P, FUSED, W>(xs, ys, pair.signs, &mut sums);
+                let flips = if FLIPS { [self.flips[pair.a], self.flips[pair.b]] } else { [[0; 8]; 2] };
+                tile::<P, FLIPS, FUSED, W>(xs, ys, pair.signs, flips, &mut sums);
             }
-            for (sum, &component) in sums.iter().zip(&self.cosets[pairs[0].out]) {
-                out[component] = *sum;
+            let coset = pairs[0].out;
+            for (l, (sum, &component)) in sums.iter().zip(&self.cosets[coset]).enumerate() {
+                // Adding 0 makes −0 to 0.
+                out[component] =
+                    if FLIPS { Lane(sum.0.map(|x| flipped(x, self.flips[coset][l]) + 0.0)) } else { *sum };
             }
         }
     }
@@ -97,10 +130,11 @@ impl Tiles {
     #[inline(always)]
     fn block<const FUSED: bool, const W: usize>(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         match self.positive {
-            0 => self.multiply::<0, FUSED, W>(a, b, out),
-            1 => self.multiply::<1, FUSED, W>(a, b, out),
-            2 => self.multiply::<2, FUSED, W>(a, b, out),
-            _ => self.multiply::<3, FUSED, W>(a, b, out),
+            0 => self.multiply::<0, false, FUSED, W>(a, b, out),
+            1 => self.multiply::<1, false, FUSED, W>(a, b, out),
+            2 => self.multiply::<2, false, FUSED, W>(a, b, out),
+            _ if self.flips.is_empty() => self.multiply::<3, false, FUSED, W>(a, b, out),
+            _ => self.multiply::<3, true, FUSED, W>(a, b, out),
         }
     }
 }
@@ -118,12 +152,19 @@ macro_rules! each {
     };
 }
 
+/// A number with its sign bit changed by that of a mask.
+#[inline(always)]
+fn flipped(x: f64, mask: u64) -> f64 {
+    f64::from_bits(x.to_bits() ^ mask)
+}
+
 /// Adds the product of two cosets.
 #[inline(always)]
-fn tile<const P: usize, const FUSED: bool, const W: usize>(
+fn tile<const P: usize, const FLIPS: bool, const FUSED: bool, const W: usize>(
     a: [&Lane<W>; 8],
     b: [&Lane<W>; 8],
     signs: [u64; 2],
+    flips: [[u64; 8]; 2],
     sums: &mut [Lane<W>; 8],
 ) {
     for row in 0..W {
@@ -131,10 +172,10 @@ fn tile<const P: usize, const FUSED: bool, const W: usize>(
         let mut y = [0.0; 8];
         each!(L, {
             sum[L] = sums[L].0[row];
-            y[L] = f64::from_bits(b[L].0[row].to_bits() ^ signs[L.count_ones() as usize % 2]);
+            y[L] = flipped(b[L].0[row], signs[L.count_ones() as usize % 2] ^ flips[1][L]);
         });
         each!(L1, {
-            let x = a[L1].0[row];
+            let x = if FLIPS { flipped(a[L1].0[row], flips[0][L1]) } else { a[L1].0[row] };
             each!(L2, {
                 let x = if const { sign::<P>(L1, L2) } > 0 { x } else { -x };
                 sum[L1 ^ L2] = if FUSED { x.mul_add(y[L2], sum[L1 ^ L2]) } else { sum[L1 ^ L2] + x * y[L2] };

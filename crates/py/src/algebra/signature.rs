@@ -34,13 +34,19 @@ pub(crate) fn g3_object(py: Python<'_>) -> PyResult<Py<Algebra>> {
 
 /// The algebra of 3-d space.
 pub(crate) fn g3(py: Python<'_>) -> PyResult<&Py<Algebra>> {
-    G3.get_or_try_init(py, || Py::new(py, Algebra::new(3, 0, 0)?))
+    G3.get_or_try_init(py, || Py::new(py, Algebra::new(3, 0, 0, false)?))
 }
 
-/// An algebra with the maximum number of generators.
-pub(crate) fn largest(py: Python<'_>) -> PyResult<&Py<Algebra>> {
-    static LARGEST: PyOnceLock<Py<Algebra>> = PyOnceLock::new();
-    LARGEST.get_or_try_init(py, || Py::new(py, Algebra::new(table::MAX_GENERATORS, 0, 0)?))
+/// Algebras with the maximum number of generators, from e1 and from e0.
+pub(crate) fn largest(py: Python<'_>) -> PyResult<&[Py<Algebra>; 2]> {
+    static LARGEST: PyOnceLock<[Py<Algebra>; 2]> = PyOnceLock::new();
+    let most = table::MAX_GENERATORS;
+    LARGEST.get_or_try_init(py, || {
+        Ok([
+            Py::new(py, Algebra::new(most, 0, 0, false)?)?,
+            Py::new(py, Algebra::new(most - 1, 0, 1, true)?)?,
+        ])
+    })
 }
 
 impl Algebra {
@@ -85,11 +91,20 @@ impl Algebra {
 
 #[pymethods]
 impl Algebra {
+    /// With `from_e0`, for the signature (n, 0, 1), the null generator is e0 and comes first.
     #[new]
-    fn new(p: usize, q: usize, r: usize) -> PyResult<Algebra> {
+    #[pyo3(signature = (p, q, r, from_e0=false))]
+    fn new(p: usize, q: usize, r: usize, from_e0: bool) -> PyResult<Algebra> {
+        if from_e0 && (q, r) != (0, 1) {
+            return Err(bad(format!("only algebras Cl(n, 0, 1) have a generator e0, got Cl({p}, {q}, {r})")));
+        }
         let n = p.saturating_add(q).saturating_add(r);
         let most = table::MAX_GENERATORS;
-        let table = if n > most { None } else { table::Algebra::new(Signature { p, q, r }) };
+        let table = match n > most {
+            true => None,
+            false if from_e0 => table::Algebra::pga(p),
+            false => table::Algebra::new(Signature { p, q, r }),
+        };
         let too_many = || bad(format!("an algebra must have at most {most} generators, got {p} + {q} + {r}"));
         Ok(Algebra {
             table: table.ok_or_else(too_many)?,
@@ -104,6 +119,16 @@ impl Algebra {
     fn signature(&self) -> (usize, usize, usize) {
         let Signature { p, q, r } = self.table.signature();
         (p, q, r)
+    }
+
+    /// The square of each generator: 1, −1 or 0.
+    fn _squares(&self) -> Vec<i8> {
+        self.table.squares().to_vec()
+    }
+
+    /// The number in the name of the first generator: 1, or 0 where e0 comes first.
+    fn _first(&self) -> usize {
+        self.table.numbers().start
     }
 
     /// The generators of each basis element, as bits, and its sign against their rising order.

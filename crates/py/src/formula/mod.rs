@@ -16,6 +16,7 @@ use polhode_ga::formula::{
     types,
 };
 use polhode_ga::product::Grades;
+use polhode_ga::table::Signature;
 use program::{Place, Program, characters, error};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -39,8 +40,8 @@ pub(crate) struct Formula {
     calls: Calls,
 }
 
-/// The signature of the algebra, and the names with their kinds.
-type Key = ((usize, usize, usize), Vec<NameKind>);
+/// The signature of the algebra, the number of its first generator, and the names with their kinds.
+type Key = (Signature, usize, Vec<NameKind>);
 
 #[pymethods]
 impl Formula {
@@ -96,12 +97,12 @@ impl Formula {
 
     /// The program for values of these kinds, in this algebra.
     fn program(&self, py: Python<'_>, algebra: Py<Algebra>, given: Vec<NameKind>) -> PyResult<Py<Program>> {
-        let signature = algebra.get().table.signature();
-        let key = ((signature.p, signature.q, signature.r), given);
+        let table = &algebra.get().table;
+        let key = (table.signature(), table.numbers().start, given);
         if let Some(program) = self.programs.lock().map_err(bad)?.get(&key) {
             return Ok(program.clone_ref(py));
         }
-        let program = Py::new(py, self.compiled(py, &algebra, &key.1)?)?;
+        let program = Py::new(py, self.compiled(py, &algebra, &key.2)?)?;
         let mut programs = self.programs.lock().map_err(bad)?;
         if programs.len() >= KEPT {
             programs.clear();
@@ -158,7 +159,11 @@ impl Formula {
     fn read_open(&self, py: Python<'_>) -> PyResult<Tree> {
         let read = self.read(py, self.algebra_or_g3(py)?, Names::open());
         let read = match (read, &self.algebra) {
-            (Err(first), None) => self.read(py, largest(py)?, Names::open()).map_err(|_| first),
+            (Err(first), None) => {
+                let mut others = largest(py)?.iter();
+                let other = others.find_map(|algebra| self.read(py, algebra, Names::open()).ok());
+                other.ok_or(first)
+            }
             (read, _) => read,
         };
         Ok(read?.0)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
+from polhode._algebra.algebra import algebra
 from polhode._algebra.linear_map import LinearMap
 from polhode._formula.shell.session import FUNCTIONS, Answer, LineError, Session, canonical, without_comment
 
@@ -31,7 +32,7 @@ def spelled(text: str, everything: dict[str, Any]) -> dict[str, str]:
     algebras, are given only to such formulas.
     """
     usable = {name: value for name, value in everything.items() if _is_usable(value)}
-    algebras = {signature for value in usable.values() if (signature := _signature(value))}
+    algebras = {own for value in usable.values() if (own := _algebra(value))}
     letters = set(unicodedata.normalize("NFKD", _CALLS.sub("(", text)))
     found: dict[str, str] = {}
     for name, value in usable.items():
@@ -54,11 +55,11 @@ def _is_usable(value: Any) -> bool:
     return hasattr(value, "__array_namespace__") or (sympy is not None and isinstance(value, sympy.Expr))
 
 
-def _signature(value: Any) -> tuple[int, int, int] | None:
-    """Return the signature of the algebra of a value; linear maps belong to 3-d space."""
+def _algebra(value: Any) -> Any:
+    """Return the algebra of a value; linear maps belong to 3-d space."""
     if isinstance(value, _native.Multivector):
-        return value.algebra.signature
-    return (3, 0, 0) if isinstance(value, LinearMap) else None
+        return value.algebra
+    return algebra(3) if isinstance(value, LinearMap) else None
 
 
 def magic(everything: dict[str, Any]) -> Any:

@@ -143,7 +143,7 @@ impl Compiler<'_> {
             Kind::Pi => self.steps.step(Op::Pi, Type::SCALAR),
             Kind::Blade(generators) => self.blade(generators),
             Kind::Pseudoscalar => {
-                let all: Vec<u8> = (1..=self.steps.count() as u8).collect();
+                let all: Vec<u8> = self.steps.space.algebra.numbers().map(|g| g as u8).collect();
                 self.blade(&all)
             }
             Kind::Name(name) => self.name(name),
@@ -173,7 +173,8 @@ impl Compiler<'_> {
 
     fn blade(&mut self, generators: &[u8]) -> Built {
         let algebra = self.steps.space.algebra;
-        let generator = |g: u8| algebra.blades().iter().position(|b| b.bits == 1 << (g - 1)).unwrap_or(0);
+        // The generators stand after the scalar, in order.
+        let generator = |g: u8| 1 + usize::from(g) - algebra.numbers().start;
         let (mut sign, mut index) = (1, 0);
         for &g in generators {
             let (s, k) = algebra.basis_product(index, generator(g));
@@ -363,7 +364,7 @@ impl Compiler<'_> {
     fn total(&mut self, index: &str, node: &Node) -> Built {
         let index = index.chars().next().unwrap_or('k');
         let mut sum = None;
-        for k in 1..=self.steps.count() {
+        for k in self.steps.space.algebra.numbers() {
             self.frame.indices.push((index, k));
             let term = self.node(node)?;
             self.frame.indices.pop();
@@ -400,8 +401,9 @@ impl Compiler<'_> {
     /// The values of these indices in the `number`-th case.
     fn values_of(&self, free: &[char], mut number: usize) -> Vec<(char, usize)> {
         let n = self.steps.count().max(1);
+        let first = self.steps.space.algebra.numbers().start;
         let digit = |&index: &char| {
-            let k = number % n + 1;
+            let k = number % n + first;
             number /= n;
             (index, k)
         };

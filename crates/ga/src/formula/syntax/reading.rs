@@ -171,15 +171,18 @@ impl Reader<'_> {
 
     /// Why these generators are not a basis element.
     fn no_blade(&self, generators: &[u8]) -> Option<String> {
-        let n = self.space.algebra.signature().generators();
+        let names = self.space.algebra.numbers();
         if let Some(i) = (1..generators.len()).find(|&i| generators[..i].contains(&generators[i])) {
             return Some(format!(
                 "contains e{} twice; the vectors of a blade must be distinct",
                 generators[i]
             ));
         }
-        let fits = generators.iter().all(|&g| (1..=n).contains(&usize::from(g)));
-        (!fits).then(|| format!("is not a basis element; the basis vectors are e1 to e{n}"))
+        let fits = generators.iter().all(|&g| names.contains(&usize::from(g)));
+        (!fits).then(|| {
+            let (first, end) = (names.start, names.end);
+            format!("is not a basis element; the basis vectors are e{first} to e{}", end.saturating_sub(1))
+        })
     }
 
     /// The error for a name without a value, which was also read letter by letter.

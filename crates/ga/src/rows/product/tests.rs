@@ -98,6 +98,20 @@ fn every_row_equals_the_table() {
     }
 }
 
+/// Those with e0 first, whose basis elements have signs.
+#[test]
+fn rows_of_plane_based_algebras_equal_the_table() {
+    for n in 1..=5 {
+        let algebra = Algebra::pga(n).unwrap();
+        let all = Grades((1 << (n + 2)) - 1);
+        let engine = Plan::new(&algebra, Product::Geometric, all, all).engine;
+        assert_eq!(matches!(engine, Engine::Tiles(_)), n >= 3);
+        for product in Product::ALL {
+            check_table(&algebra, product, if n == 3 { &ROWS } else { &[1, 8, 9, 17] });
+        }
+    }
+}
+
 /// Large ones: of every number of positive generators among the first three, and of two alone.
 #[test]
 fn rows_of_large_algebras_equal_the_table() {

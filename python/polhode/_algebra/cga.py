@@ -1,0 +1,313 @@
+"""`cga`: conformal geometric algebra, with points, spheres, circles, lines and planes."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+from polhode._algebra.algebra import Algebra, algebra
+from polhode._algebra.coefficients import as_coefficients, kind_of
+from polhode._algebra.euclidean import columns, dimension_of, require, require_value, unit_in, vector_in
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.relabel import relabelled
+from polhode._algebra.rotor import Rotor
+from polhode._algebra.transform import RigidTransform
+
+
+class CGA(Algebra):
+    """The conformal geometric algebra Cl(n + 1, 1) of n-dimensional Euclidean space, created by `cga`.
+
+    With the generators ``e+`` and ``e−`` after e1, …, en, in three dimensions e4 and e5 (as in clifford):
+
+    - ``eo = ½ (e− − e+)`` is the origin, ``einf = e− + e+`` infinity: null vectors with ``eo·einf = −1``;
+    - a point is ``up(x) = eo + x + ½ x² einf``, and ``up(x)·up(y) = −½ |x − y|²``;
+    - objects are direct: wedges of their points, so that P is on X if ``P∧X = 0``. Point pairs, circles and
+      spheres are wedges of two, three and four points; with einf in place of one of them lines and planes.
+
+    Versors move all of them: ``T >> X`` with `rotor`, `translator`, `dilator` and `motor`. Points, directions
+    and normals are given as arrays (..., n) or vectors of ``ph.algebra(n)``, with leading batch axes and any
+    coefficients. `blades` and formulas know the names eo and einf.
+    """
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return f"cga({self._n})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return cga, (self._n,)
+
+    def _key(self) -> Any:
+        return repr(self)
+
+    @property
+    def _n(self) -> int:
+        return self.dimension - 2
+
+    @property
+    def _space(self) -> Algebra:
+        """The algebra of Euclidean vectors."""
+        return algebra(self._n)
+
+    @property
+    @functools.cache  # noqa: B019  # algebras live as long as the process
+    def eo(self) -> Multivector:
+        """The origin ``½ (e− − e+)``."""
+        return (self.basis_vectors[-1] - self.basis_vectors[-2]) / 2
+
+    @property
+    @functools.cache  # noqa: B019
+    def einf(self) -> Multivector:
+        """The point at infinity ``e− + e+``."""
+        return self.basis_vectors[-1] + self.basis_vectors[-2]
+
+    def _named(self) -> dict[str, Multivector]:
+        return {"eo": self.eo, "einf": self.einf}
+
+    # --- points
+
+    def up(self, x: Any) -> Multivector:
+        """Return the points ``eo + x + ½ x² einf`` at the positions x."""
+        v = vector_in(self._space, x, "the position")
+        kind, parts = kind_of(v._data), columns(v)
+        half = kind.divide(v.norm_squared(), 2)
+        one = kind.divide(kind.zeros_like(half) + 1, 2)
+        return self.vector(kind.stack([*parts, half - one, half + one]))
+
+    def point(self, x: Any) -> Multivector:
+        """Return `up(x)`."""
+        return self.up(x)
+
+    def down(self, X: Multivector) -> Multivector:
+        """Return the positions of points of any weight as vectors of ``ph.algebra(n)``, the inverse of `up`.
+
+        A ValueError, with the batch index, at infinity, and for vectors that are not points, with ``X² ≠ 0``.
+        """
+        P = require_value(self, X, "a point", (1,))
+        square, kind = P.norm_squared(), kind_of(P._data)
+        if kind.exact:
+            ok = square == 0
+        else:
+            ok = kind.xp.abs(square) <= kind.eps**0.5 * kind.xp.sum(P._data * P._data, axis=-1)
+        require(ok, P, "a point has X² = 0; of a sphere take center(X)")
+        return self._down(P)
+
+    def coordinates(self, X: Multivector) -> Any:
+        """Return the coordinates (..., n) of points: the components of `down`."""
+        return self.down(X).components
+
+    def _down(self, P: Multivector) -> Multivector:
+        """Return the position of a vector with any square."""
+        parts, kind = columns(P), kind_of(P._data)
+        weight = parts[-1] - parts[-2]
+        require(weight != 0, P, "the point is at infinity, without coordinates")
+        return self._space.vector(kind.stack([kind.divide(x, weight) for x in parts[:-2]]))
+
+    # --- flats
+
+    def line(self, point: Any, through: Any = None, *, direction: Any = None) -> Multivector:
+        """Return the line ``P∧d∧einf`` from `point` to `through`, or along `direction`, of norm 1."""
+        if (through is None) == (direction is None):
+            raise TypeError("a line needs a point, and either the point `through` or a `direction`")
+        start = self._position(point, "the point")
+        if direction is None:
+            given, what = self._position(through, "the point through") - start, "the way to the point through"
+        else:
+            given, what = direction, "the direction"
+        along = unit_in(self._space, given, what)
+        return self.up(start).wedge(self._embedded(along)).wedge(self.einf)
+
+    def plane(self, normal: Any, distance: Any = 0.0) -> Multivector:
+        """Return the hyperplane ``n·x = distance``, with the unit vector n along `normal`, of norm 1.
+
+        ``P∧E∧einf`` with the blade E of the plane, ``n∧E = I``: of the normal e3 it is ``e1∧e2``.
+        """
+        n = unit_in(self._space, normal, "the normal")
+        foot = self._space.scalar(distance) * n
+        return self.up(foot).wedge(self._embedded(n.right_complement())).wedge(self.einf)
+
+    # --- rounds
+
+    def point_pair(self, a: Any, b: Any) -> Multivector:
+        """Return the pair ``A∧B`` of two points."""
+        return self.up(self._position(a, "the first point")).wedge(
+            self.up(self._position(b, "the second point"))
+        )
+
+    def circle(self, center: Any, normal: Any, radius: Any) -> Multivector:
+        """Return circles of a center, a normal and a radius, in three dimensions.
+
+        Those through three points are ``A ^ B ^ C``.
+        ``(eo + ½ r² einf)∧E``, shifted to the center, with the unit blade E of its plane, ``n∧E = I``.
+        """
+        if self._n != 3:
+            raise TypeError(f"a circle with a normal exists in ph.cga(3) only, not in {self}")
+        n = unit_in(self._space, normal, "the normal")
+        return self._round(center, n.right_complement(), radius)
+
+    def sphere(self, center: Any, radius: Any) -> Multivector:
+        """Return spheres of a center and a radius, ``(eo + ½ r² einf)∧e123`` shifted; for n = 2 circles."""
+        return self._round(center, self._space.I, radius)
+
+    def _round(self, center: Any, blade: Multivector, radius: Any) -> Multivector:
+        r = as_coefficients(radius, "the radius")
+        kind = kind_of(r)
+        if not kind.exact:
+            kind.require(r > 0, "a radius must be positive; a sphere of radius 0 is a point, up(x)")
+        core = self._eo_like(r) + self.scalar(kind.divide(r * r, 2)) * self.einf
+        shift = self.translator(self._position(center, "the center"))
+        moved: Multivector = shift * core.wedge(self._embedded(blade)) * ~shift
+        return moved._part(1 << blade.grades[-1] + 1)
+
+    def _eo_like(self, data: Any) -> Multivector:
+        """Return eo with coefficients of the kind of `data`: exact ones stay exact."""
+        kind = kind_of(data)
+        zero = kind.zeros_like(data)
+        half = kind.divide(zero + 1, 2)
+        return self.vector(kind.stack([*[zero] * self._n, -half, half]))
+
+    # --- back
+
+    def center(self, X: Multivector) -> Multivector:
+        """Return the centers of spheres, circles and point pairs as vectors: those of ``X einf X``."""
+        X = self._require_round(X)
+        return self._down((X * self.einf * X).grade(1))
+
+    def squared_radius(self, X: Multivector) -> Any:
+        """Return r² of spheres, circles, point pairs and points, negative of an imaginary one.
+
+        An imaginary round is the intersection of two spheres that do not meet.
+        """
+        X = self._require_round(X)
+        k = X.grades[0]
+        square = (X * X).grade(0)
+        normal = self.einf.left_contraction(X)
+        other = (normal * normal).grade(0)
+        ratio = square / other * (-1) ** k
+        return ratio._data[..., 0][()]
+
+    def radius(self, X: Multivector) -> Any:
+        """Return the radii of spheres, circles and point pairs; a ValueError for imaginary ones."""
+        square = self.squared_radius(X)
+        kind = kind_of(as_coefficients(square, "the squared radius"))
+        if not kind.exact:
+            kind.require(square >= 0, "the round is imaginary, its squared_radius negative")
+        return kind.sqrt(square)
+
+    def points(self, pair: Multivector) -> tuple[Multivector, Multivector]:
+        """Return the positions of the points of point pairs as vectors, the inverse of `point_pair`."""
+        pair = require_value(self, pair, "a point pair", (2,))
+        center, radius = self.center(pair), self.radius(pair)
+        _, along = self.point_and_direction(pair.wedge(self.einf))
+        arm = self._space.scalar(radius) * along
+        return center - arm, center + arm
+
+    def point_and_direction(self, line: Multivector) -> tuple[Multivector, Multivector]:
+        """Return the point of lines nearest to the origin and the unit direction, as vectors."""
+        direction, moment = self._flat(require_value(self, line, "a line", (3,)))
+        return moment.right_contraction(direction), direction
+
+    def normal_and_distance(self, plane: Multivector) -> tuple[Multivector, Any]:
+        """Return the unit normal and the distance of hyperplanes, the inverse of `plane`."""
+        blade, moment = self._flat(require_value(self, plane, "a plane", (self.dimension - 1,)))
+        distance = moment.right_complement()._data[..., 0]
+        return blade.left_complement(), distance[()]
+
+    def _flat(self, X: Multivector) -> tuple[Multivector, Multivector]:
+        """Return E and ``x∧E`` of the flat ``P∧E∧einf`` in Euclidean space, with the unit blade E."""
+        kind = kind_of(X._data)
+        inner = self.einf.left_contraction(X)
+        blade = self._restricted(inner.right_contraction(self.eo))
+        size = blade.norm()
+        require(size != 0, X, "the value is not a line or a plane: it does not contain einf")
+        outside = X.wedge(self.einf)
+        if not kind.exact:
+            bound = kind.eps**0.5 * kind.xp.max(kind.xp.abs(X._data), axis=-1)
+            flat = kind.xp.max(kind.xp.abs(outside._data), axis=-1) <= bound
+            require(flat, X, "the value does not contain einf: for a round take X ^ einf")
+        rest = X - self.eo.wedge(self._embedded(blade)).wedge(self.einf)
+        moment = -self._restricted(rest.right_contraction(self.eo))
+        scale = self._space.scalar(size)
+        return blade / scale, moment / scale
+
+    def _require_round(self, X: Multivector) -> Multivector:
+        X = require_value(self, X, "the value")
+        held = X._held() or X._mask
+        if held.bit_count() > 1:
+            raise TypeError(f"a round has one grade, got the grades {X.grades}")
+        X = X._part(held)
+        inside = self.einf.left_contraction(X)
+        square, kind = (inside * inside).grade(0)._data[..., 0], kind_of(X._data)
+        if kind.exact:
+            ok = square != 0
+        else:
+            ok = kind.xp.abs(square) > 64 * kind.eps * kind.xp.sum(X._data * X._data, axis=-1)
+        require(ok, X, "the value is flat, without a center; see point_and_direction and normal_and_distance")
+        return X
+
+    # --- versors
+
+    def rotor(self, R: Multivector) -> Multivector:
+        """Return a rotor of ``ph.algebra(n)`` as an element of this algebra: it turns about the origin."""
+        return self._embedded(require_value(self._space, R, "a rotor"))
+
+    def translator(self, displacement: Any) -> Multivector:
+        """Return versors that shift by vectors t: ``1 − ½ t einf``."""
+        t = vector_in(self._space, displacement, "the displacement")
+        return 1 - self._embedded(t) * self.einf / 2
+
+    def dilator(self, factor: Any, center: Any = None) -> Multivector:
+        """Return versors that scale lengths by a positive factor f, about the origin or a center.
+
+        ``exp(½ ln f · eo∧einf) = ½ (√f + 1/√f) + ½ (√f − 1/√f) eo∧einf``.
+        """
+        f = as_coefficients(factor, "the factor")
+        kind = kind_of(f)
+        if not kind.exact:
+            kind.require(f > 0, "a dilation needs a positive factor")
+        root = kind.sqrt(f)
+        inverse = kind.divide(kind.zeros_like(f) + 1, root)
+        even, odd = kind.divide(root + inverse, 2), kind.divide(root - inverse, 2)
+        D = self.scalar(even) + self.scalar(odd) * (self.basis_vectors[-1] * self.basis_vectors[-2])
+        if center is None:
+            return D
+        shift = self.translator(self._position(center, "the center"))
+        return shift * D * ~shift
+
+    def motor(self, rotor: Rotor | RigidTransform | None = None, translation: Any = None) -> Multivector:
+        """Return the versor of ``R x ~R + x0`` for a rotor and a translation, or a `RigidTransform`."""
+        if isinstance(rotor, RigidTransform):
+            if translation is not None:
+                raise TypeError("a RigidTransform has a translation; omit the other")
+            return self.motor(rotor.rotor, rotor.translation)
+        turn = self.scalar(1.0) if rotor is None else self.rotor(rotor)
+        return turn if translation is None else self.translator(translation) * turn
+
+    # --- helpers
+
+    def _embedded(self, value: Multivector) -> Multivector:
+        """Return a value of Euclidean space in this algebra."""
+        return relabelled(value, self, range(self._n))
+
+    def _restricted(self, value: Multivector) -> Multivector:
+        """Return the Euclidean part of a value."""
+        return relabelled(value, self._space, [*range(self._n), None, None])
+
+    def _position(self, point: Any, what: str) -> Multivector:
+        if isinstance(point, Multivector) and point.algebra is self:
+            return self.down(point)
+        return vector_in(self._space, point, what)
+
+
+def cga(n: int = 3) -> CGA:
+    """Return the conformal algebra Cl(n + 1, 1) of n-dimensional space, the same object for the same n.
+
+    It has the generators of ``ph.algebra(n + 1, 1)`` and names for the null vectors, `CGA.eo` and `CGA.einf`.
+    n is 1 to 6.
+    """
+    return _cga(dimension_of(n, 6, "cga"))
+
+
+@functools.cache
+def _cga(n: int) -> CGA:
+    return CGA(n + 1, 1, 0)

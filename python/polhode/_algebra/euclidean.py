@@ -1,0 +1,72 @@
+"""Vectors of Euclidean space as arguments of plane-based and conformal algebras."""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING, Any
+
+from polhode._algebra.coefficients import as_coefficients, kind_of
+from polhode._algebra.grades import with_grades
+from polhode._algebra.multivector import Multivector
+
+if TYPE_CHECKING:
+    from polhode._algebra.algebra import Algebra
+
+_VECTOR = 0b10
+
+
+def vector_in(space: Algebra, x: Any, what: str) -> Multivector:
+    """Return a vector of Euclidean space from one, or from an array (..., n) of components."""
+    if not isinstance(x, Multivector):
+        data = as_coefficients(x, what)
+        if not data.shape or data.shape[-1] != space.dimension:
+            raise ValueError(
+                f"{what} needs {space.dimension} components in the last axis, got shape {tuple(data.shape)}"
+            )
+        return space.vector(data)
+    if x.algebra is not space:
+        raise TypeError(f"{what} must be a vector of {space} or an array, got a value of {x.algebra}")
+    if x._held() & ~_VECTOR:
+        raise TypeError(f"{what} must be a vector, got {x!r}, which has other grades")
+    return space.vector(with_grades(x, _VECTOR))
+
+
+def unit_in(space: Algebra, x: Any, what: str) -> Multivector:
+    """Return `vector_in` divided by its norm; a ValueError, with the batch index, for zero."""
+    try:
+        return vector_in(space, x, what).normalized()
+    except ValueError as error:
+        raise ValueError(f"{what} is not a direction: {error}") from None
+
+
+def columns(value: Multivector) -> list[Any]:
+    """Return the components of the grades held, one by one."""
+    return [value._data[..., k] for k in range(value._data.shape[-1])]
+
+
+def require(ok: Any, like: Multivector, message: str) -> None:
+    """Raise a ValueError with the first batch index where `ok` is known to be false."""
+    kind_of(like._data).require(ok, message)
+
+
+def require_value(algebra: Algebra, X: Any, what: str, grades: tuple[int, ...] | None = None) -> Multivector:
+    """Return a value of the algebra that holds only these grades; a TypeError for others."""
+    if not isinstance(X, Multivector) or X.algebra is not algebra:
+        got = f"a value of {X.algebra}" if isinstance(X, Multivector) else type(X).__name__
+        raise TypeError(f"{what} must be a value of {algebra}, got {got}")
+    if grades is None:
+        return X
+    mask = sum(1 << k for k in grades)
+    if X._held() & ~mask:
+        names = " or ".join(map(str, grades))
+        raise TypeError(f"{what} must be of grade {names} in {algebra}, got the grades {X.grades}")
+    return X if X._mask == mask else X._part(mask)
+
+
+def dimension_of(n: Any, most: int, name: str) -> int:
+    """Return the dimension of Euclidean space, a whole number from 1 to `most`."""
+    if not hasattr(n, "__index__") or isinstance(n, bool):
+        raise TypeError(f"{name} needs the dimension of space, as in {name}(3), got {n!r}")
+    if operator.index(n) not in range(1, most + 1):
+        raise ValueError(f"{name} needs a dimension from 1 to {most}, got {n}")
+    return operator.index(n)

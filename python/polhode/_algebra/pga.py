@@ -1,0 +1,221 @@
+"""`pga`: plane-based geometric algebra, with points, lines, planes and motors."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+from polhode._algebra.algebra import Algebra, algebra
+from polhode._algebra.coefficients import kind_of
+from polhode._algebra.euclidean import columns, dimension_of, require, require_value, unit_in, vector_in
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.relabel import relabelled
+from polhode._algebra.rotor import Rotor
+from polhode._algebra.transform import RigidTransform
+from polhode._algebra.versors import small
+from polhode._support.arrays import copied
+
+# The generators e0, e1, e2, e3 in Cl(3,0,1), whose null generator is e4; and back.
+_MOTORS = algebra(3, 0, 1)
+_TO_MOTORS, _FROM_MOTORS = (3, 0, 1, 2), (1, 2, 3, 0)
+
+
+class PGA(Algebra):
+    """The plane-based geometric algebra Cl(n, 0, 1) of n-dimensional Euclidean space, created by `pga`.
+
+    The null generator e0 comes first. Vectors are hyperplanes: ``a e1 + b e2 + c e3 + d e0`` is the plane
+    ``a x + b y + c z + d = 0``. Their wedge is the intersection, and ``A & B`` joins points:
+
+    - a plane with the unit normal n at the distance d is ``n − d e0``;
+    - a point is ``e123 + x e032 + y e013 + z e021``, of grade n; without e123 it is a direction;
+    - the line from P to Q is ``P & Q``; that through the origin along e1 is e23.
+
+    In three dimensions the basis is that of bivector.net and ganja.js: 1, e0, e1, e2, e3, e01, e02, e03, e12,
+    e31, e23, e021, e013, e032, e123, e0123. In any dimension the second half of the basis are the complements
+    of the first in reverse order. Motors move all of them: ``M >> X``.
+
+    Points, directions and normals are given as arrays (..., n) or vectors of ``ph.algebra(n)``, with leading
+    batch axes and any coefficients.
+    """
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return f"pga({self.dimension - 1})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return pga, (self.dimension - 1,)
+
+    def _key(self) -> Any:
+        return repr(self)
+
+    @property
+    def _space(self) -> Algebra:
+        """The algebra of Euclidean vectors."""
+        return algebra(self.dimension - 1)
+
+    @property
+    def e0(self) -> Multivector:
+        """The null generator, the hyperplane at infinity."""
+        return self.basis_vectors[0]
+
+    # --- points, planes and lines
+
+    def point(self, x: Any) -> Multivector:
+        """Return points at the positions x, of weight 1."""
+        v = vector_in(self._space, x, "the position")
+        zero = kind_of(v._data).zeros_like(v._data[..., 0])
+        return self._plane(zero + 1, v).right_complement()
+
+    def direction(self, x: Any) -> Multivector:
+        """Return points at infinity in the directions x; a motion turns, but does not shift them."""
+        v = vector_in(self._space, x, "the direction")
+        return self._plane(kind_of(v._data).zeros_like(v._data[..., 0]), v).right_complement()
+
+    def plane(self, normal: Any, distance: Any = 0.0) -> Multivector:
+        """Return the hyperplane ``n·x = distance``, with the unit vector n along `normal`.
+
+        It is ``n − distance e0``, with the distance from the origin in the sense of the normal, a number or
+        an array. In two dimensions it is a line. A ValueError for a normal of zero.
+        """
+        n = unit_in(self._space, normal, "the normal")
+        zero = kind_of(n._data).zeros_like(n._data[..., 0])
+        return self._plane(zero, n) - self.scalar(distance) * self.e0
+
+    def line(self, point: Any, through: Any = None, *, direction: Any = None) -> Multivector:
+        """Return the line from `point` to the point `through`, or along `direction`, of norm 1.
+
+        Points are positions, or points of this algebra. ``exp(−θ/2 L)`` of a line turns about it by θ in the
+        right-handed sense. A ValueError for two equal points and for a direction of zero.
+        """
+        if (through is None) == (direction is None):
+            raise TypeError("a line needs a point, and either the point `through` or a `direction`")
+        start = self._position(point, "the point")
+        if direction is None:
+            given, what = self._position(through, "the point through") - start, "the way to the point through"
+        else:
+            given, what = direction, "the direction"
+        along = unit_in(self._space, given, what)
+        return self.point(start).vee(self.direction(along))
+
+    # --- back
+
+    def coordinates(self, P: Multivector) -> Any:
+        """Return the coordinates (..., n) of points; a ValueError, with the batch index, at infinity."""
+        weight, *parts = columns(require_value(self, P, "a point", (self.dimension - 1,)).left_complement())
+        require(weight != 0, P, "the point is at infinity, without coordinates; it is a direction")
+        kind = kind_of(P._data)
+        return copied(kind.stack([kind.divide(x, weight) for x in parts]))
+
+    def down(self, P: Multivector) -> Multivector:
+        """Return the positions of points as vectors of ``ph.algebra(n)``, the inverse of `point`."""
+        return self._space.vector(self.coordinates(P))
+
+    def normal_and_distance(self, plane: Multivector) -> tuple[Multivector, Any]:
+        """Return the unit normal and the distance of hyperplanes, the inverse of `plane`."""
+        unit = self._unit(require_value(self, plane, "a plane", (1,)))
+        first, *normal = columns(unit)
+        return self._space.vector(kind_of(unit._data).stack(normal)), (-first)[()]
+
+    def point_and_direction(self, line: Multivector) -> tuple[Multivector, Multivector]:
+        """Return the point of lines nearest to the origin and the unit direction, as vectors."""
+        unit = self._unit(require_value(self, line, "a line", (self.dimension - 2,)))
+        _, *parts = columns(unit.wedge(self.e0).left_complement())
+        kind = kind_of(unit._data)
+        if self.dimension % 2:  # e0∧L = −L∧e0 for an odd number of planes
+            parts = [-x for x in parts]
+        along = self._space.vector(kind.stack([-x for x in parts]))
+        across = self._plane(kind.zeros_like(parts[0]), along)
+        return self.down(across.wedge(unit)), along
+
+    def normalized(self, X: Multivector) -> Multivector:
+        """Return planes, lines, points and motors of unit norm, with checks.
+
+        Points get the weight 1, planes and lines the norm 1, and motors M become ``M (M ~M)^(−1/2)``, with
+        the dual number ``M ~M``. A ValueError, with the batch index, for values at infinity, which have the
+        norm 0, and for a bivector that is not a line, such as a screw.
+        """
+        X = require_value(self, X, "the value")
+        held = X._held() or X._mask
+        if held.bit_count() > 1:
+            return self._unit_motor(X)
+        X = X._part(held)
+        if held == 1 << self.dimension - 1:
+            return self.point(self.coordinates(X))
+        return self._unit(X)
+
+    def _unit(self, X: Multivector) -> Multivector:
+        """Return planes and lines of norm 1."""
+        square = X.norm_squared()
+        require(square != 0, X, "the value has the norm 0: it is at infinity")
+        if X._mask == 0b100 and self.dimension > 3:
+            blade = small(X.wedge(X)._data, X)
+            require(blade, X, "X∧X is not 0: the bivector is not an intersection of two planes, but a screw")
+        return X / self.scalar(kind_of(X._data).sqrt(square))
+
+    def _unit_motor(self, M: Multivector) -> Multivector:
+        """Return ``M (M ~M)^(−1/2)``, where ``M ~M = a + b I`` and ``I² = 0``."""
+        product = M * ~M
+        square = product.grade(0)._data[..., 0]
+        require(square != 0, M, "the motor has the norm 0")
+        dual = product.grade(self.dimension) if self.dimension == 4 else product.grade(0) * 0
+        rest = product - product.grade(0) - dual
+        require(small(rest._data, M), M, "M ~M is not a number or a dual number: not a motor")
+        root = self.scalar(kind_of(M._data).sqrt(square))
+        return M / root - M * dual / (2 * self.scalar(square) * root)
+
+    # --- motors
+
+    def translator(self, displacement: Any) -> Multivector:
+        """Return motors that shift by vectors t: ``1 − ½ e0 t``."""
+        t = vector_in(self._space, displacement, "the displacement")
+        return 1 - self.e0 * self._plane(kind_of(t._data).zeros_like(t._data[..., 0]), t) / 2
+
+    def motor(self, rotor: Rotor | RigidTransform | None = None, translation: Any = None) -> Multivector:
+        """Return the motor ``M = (1 − ½ e0 x0) R`` of a rotor and a translation, or of a `RigidTransform`.
+
+        ``M >> X`` is ``R x ~R + x0`` for points. In three dimensions only; see `translator` for others.
+        """
+        self._require_3d("a motor of a rotor")
+        if isinstance(rotor, RigidTransform):
+            if translation is not None:
+                raise TypeError("a RigidTransform has a translation; omit the other")
+            move = rotor
+        else:
+            move = RigidTransform(rotor, (0.0, 0.0, 0.0) if translation is None else translation)
+        return relabelled(move.to_motor(), self, _FROM_MOTORS)
+
+    def transform(self, M: Multivector) -> RigidTransform:
+        """Return the `RigidTransform` of a motor, the inverse of `motor`, divided by its norm."""
+        self._require_3d("a RigidTransform")
+        motor = require_value(self, M, "a motor", (0, 2, 4))
+        return RigidTransform.from_motor(relabelled(motor, _MOTORS, _TO_MOTORS))
+
+    # --- helpers
+
+    def _require_3d(self, what: str) -> None:
+        if self.dimension != 4:
+            raise TypeError(f"{what} exists in ph.pga(3) only, not in {self}")
+
+    def _plane(self, first: Any, normal: Multivector) -> Multivector:
+        """Return the vector with this component of e0 and the others of `normal`."""
+        return self.vector(kind_of(normal._data).stack([first, *columns(normal)]))
+
+    def _position(self, point: Any, what: str) -> Multivector:
+        if isinstance(point, Multivector) and point.algebra is self:
+            return self.down(point)
+        return vector_in(self._space, point, what)
+
+
+def pga(n: int = 3) -> PGA:
+    """Return the plane-based algebra Cl(n, 0, 1) of n-dimensional space, the same object for the same n.
+
+    Its null generator is e0 and comes first; ``ph.algebra(n, 0, 1)`` is the same algebra with the null
+    generator last. n is 1 to 7.
+    """
+    return _pga(dimension_of(n, 7, "pga"))
+
+
+@functools.cache
+def _pga(n: int) -> PGA:
+    return PGA(n, 0, 1, True)

@@ -1,0 +1,47 @@
+"""Values of one algebra as values of another that has the same generators under other names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode._algebra.blade_names import generators_of
+from polhode._algebra.coefficients import kind_of
+from polhode._algebra.multivector import Multivector
+from polhode._support.arrays import is_float
+
+if TYPE_CHECKING:
+    from polhode._algebra.algebra import Algebra
+
+
+def relabelled(value: Multivector, target: Algebra, places: Sequence[int | None]) -> Multivector:
+    """Return the value with generator i of its algebra replaced by generator ``places[i]`` of the target.
+
+    Basis elements with a generator that has no place are dropped, as are grades that the target lacks.
+    """
+    source, data = value.algebra, value._data
+    mask = value._mask & target._all or 1
+    wanted = target._indices(mask)
+    where = {bits: (index, sign) for index, (bits, sign) in enumerate(target._blades())}
+    columns: dict[int, tuple[int, int]] = {}
+    for k, element in enumerate(source._indices(value._mask)):
+        moved = [places[i] for i in generators_of(*source._blades()[element])]
+        found = [place for place in moved if place is not None]
+        if len(found) < len(moved):
+            continue
+        swaps = sum(a > b for i, a in enumerate(found) for b in found[i + 1 :])
+        index, sign = where[sum(1 << place for place in found)]
+        columns[wanted.index(index)] = k, -sign if swaps % 2 else sign
+    if is_float(data):
+        rows = np.zeros((*data.shape[:-1], len(wanted)), dtype=data.dtype)
+        for column, (k, sign) in columns.items():
+            rows[..., column] = sign * data[..., k]
+        return Multivector._of(rows, mask, target)
+    kind = kind_of(data)
+    zero = kind.zeros_like(data[..., 0])
+    parts = [zero] * len(wanted)
+    for column, (k, sign) in columns.items():
+        parts[column] = data[..., k] if sign > 0 else -data[..., k]
+    return Multivector._of(kind.stack(parts), mask, target)

@@ -156,7 +156,7 @@ def test_the_page_draws_them(opened):
     rows = page.page.locator("[data-value]")
     rows.first.wait_for()
     assert rows.evaluate_all("all => all.map(row => row.dataset.value)") == ["A", "p", "S"]
-    drawn = page.page.locator(".drawing canvas").get_attribute("aria-label")
+    drawn = page.page.locator(".drawing canvas[aria-label]").get_attribute("aria-label")
     assert drawn.startswith("Drawing of: a, a vector; A, a point; p, a plane; S, a sphere.")
 
 

@@ -30,9 +30,9 @@ def view(
         - A `Scene`, or the path of a scene file.
         - A `Trajectory` of one body, or the path of a netCDF file of one.
         - A `FreeMotion`, `LagrangeTop`, `DampedTop` or `LarmorSphere`.
-        - A `Multivector`, a list of them, or a dict of them by name. The algebra page draws vectors, bivectors,
-          trivectors and rotors of 3-d space, whose formulas can be changed, and the points, lines, planes,
-          spheres, circles and motors of `pga` and `cga`.
+        - A `Multivector`, a list of them, or a dict of them by name. The algebra page draws those of 3-d
+          space, as formulas that can be changed there, and the points, lines, planes, spheres, circles and
+          motors of `pga` and `cga`.
         - A `Body` or an `Inertia`; with `state`, and `torque` and `force` as for `polhode.simulate`.
     duration
         Duration in s, for bodies and closed forms; None for 20 turns at the initial rate.

@@ -1,4 +1,4 @@
-"""Documents of values: formulas for those of 3-d space, shapes for those of `polhode.pga` and `polhode.cga`."""
+"""Documents of values: formulas for those of 3-d space, shapes for those of `pga` and `cga`."""
 
 from __future__ import annotations
 
@@ -15,8 +15,11 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.pga import PGA, pga
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
+from polhode._support.arrays import is_float
 
 Shape = dict[str, Any]
+# What a value is, and what is drawn of it.
+_Reader = Callable[[Any, Multivector], tuple[str, list[Shape]]]
 
 # The page draws more only slowly, and lists of formulas that are longer cannot be read.
 _MOST_SHAPES, _MOST_LINES = 1000, 24
@@ -59,13 +62,14 @@ def _named(x: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _formulas(name: str, value: Multivector) -> list[str]:
-    """Return the lines of a value; the elements of a batch a are named a1, a2, …"""
-    value = value.map(float)
+    """Return the lines of a value; the elements of a batch are named a1, a2 and so on."""
+    if not is_float(value._data):
+        value = value.map(float if value._data.dtype == object else np.asarray)
     if value.shape == ():
         return [_line(name, value)]
     if math.prod(value.shape) > _MOST_LINES:
         raise ValueError(
-            f"{name or 'the batch'} has shape {value.shape}: at most {_MOST_LINES} values of 3-d space are shown"
+            f"{name or 'the batch'} has shape {value.shape}: at most {_MOST_LINES} values of Cl(3) are shown"
         )
     elements = value.reshape(-1)
     return [_line(name and f"{name}{k + 1}", elements[k]) for k in range(elements.shape[0])]
@@ -86,7 +90,8 @@ def _given(name: str, value: Any) -> dict[str, Any]:
         raise TypeError(f"cannot show {name}, of type {type(value).__name__}, among values")
     if value.algebra is not pga(3) and value.algebra is not cga(3):
         raise TypeError(
-            f"cannot show {name}, a value of {value.algebra}: the page draws values of Cl(3), ph.pga(3) and ph.cga(3)"
+            f"cannot show {name}, a value of {value.algebra}: the page draws values of Cl(3), ph.pga(3) and "
+            "ph.cga(3)"
         )
     if (size := math.prod(value.shape)) > _MOST_SHAPES:
         raise ValueError(f"{name} has shape {value.shape}: at most {_MOST_SHAPES} values are shown")
@@ -103,10 +108,9 @@ def _shapes(X: Multivector) -> tuple[str, list[Shape]]:
     if not np.isfinite(X.components).all():
         raise ValueError(f"cannot show the value {X!r}, which is not finite")
     X = _without_rounding(X)
-    if len(X.grades) != 1:
-        return _motor(space, X) if isinstance(space, PGA) else ("multivector", [])
-    one_of = _PROJECTIVE if isinstance(space, PGA) else _CONFORMAL
-    return one_of[X.grades[0]](space, X) if X.grades[0] in one_of else ("multivector", [])
+    if isinstance(space, PGA):
+        return _PROJECTIVE.get(X.grades, _motor)(space, X)
+    return _CONFORMAL.get(X.grades, _other)(space, X)
 
 
 def _without_rounding(X: Multivector) -> Multivector:
@@ -114,6 +118,10 @@ def _without_rounding(X: Multivector) -> Multivector:
     least = _TOLERANCE * float(np.max(np.abs(X.components), initial=0.0))
     held = [k for k in X.grades if np.max(np.abs(X.grade(k).components)) > least]
     return X.grade(*(held or X.grades[:1]))
+
+
+def _other(space: Any, X: Multivector) -> tuple[str, list[Shape]]:
+    return "multivector", []
 
 
 def _numbers(x: Any) -> list[float]:
@@ -155,7 +163,7 @@ def _projective_point(space: PGA, X: Multivector) -> tuple[str, list[Shape]]:
     return "direction", [{"kind": "direction", "along": [x / size for x in along]}] if size else []
 
 
-def _motor(space: PGA, M: Multivector) -> tuple[str, list[Shape]]:
+def _motor(space: Any, M: Multivector) -> tuple[str, list[Shape]]:
     """A motor as a rotation about an axis and a translation along it."""
     if any(k % 2 for k in M.grades):
         return "multivector", []
@@ -191,7 +199,7 @@ def _point_pair(space: CGA, X: Multivector) -> tuple[str, list[Shape]]:
     return "point pair", [{"kind": "point", "at": _numbers(at)} for at in space.points(X)]
 
 
-def _round_or_flat(name: str, flat: Callable[..., tuple[str, list[Shape]]]) -> Callable[..., Any]:
+def _round_or_flat(name: str, flat: _Reader) -> _Reader:
     """Return the reader of a grade whose values are circles or lines, or spheres or planes."""
 
     def shapes(space: CGA, X: Multivector) -> tuple[str, list[Shape]]:
@@ -208,10 +216,14 @@ def _round_or_flat(name: str, flat: Callable[..., tuple[str, list[Shape]]]) -> C
     return shapes
 
 
-_PROJECTIVE = {1: _projective_plane, 2: _projective_line, 3: _projective_point, 0: _motor}
-_CONFORMAL = {
-    1: _conformal_vector,
-    2: _point_pair,
-    3: _round_or_flat("circle", _line_through),
-    4: _round_or_flat("sphere", _plane),
+_PROJECTIVE: dict[tuple[int, ...], _Reader] = {
+    (1,): _projective_plane,
+    (2,): _projective_line,
+    (3,): _projective_point,
+}
+_CONFORMAL: dict[tuple[int, ...], _Reader] = {
+    (1,): _conformal_vector,
+    (2,): _point_pair,
+    (3,): _round_or_flat("circle", _line_through),
+    (4,): _round_or_flat("sphere", _plane),
 }

@@ -128,7 +128,7 @@ def test_imaginary_rounds_are_named():
 def test_a_batch_is_drawn_together():
     places = np.random.default_rng(0).normal(size=(2, 5, 3))
     (entry,) = document({"cloud": P.point(places)})["values"]
-    assert (entry["kind"], entry["text"]) == ("10 of kind point", "shape (2, 5)")
+    assert (entry["kind"], entry["text"]) == ("10 × point", "shape (2, 5)")
     np.testing.assert_allclose([shape["at"] for shape in entry["shapes"]], places.reshape(-1, 3), atol=1e-12)
 
 

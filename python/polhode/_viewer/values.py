@@ -97,7 +97,7 @@ def _given(name: str, value: Any) -> dict[str, Any]:
         raise ValueError(f"{name} has shape {value.shape}: at most {_MOST_SHAPES} values are shown")
     found = [_shapes(value[index]) for index in np.ndindex(value.shape)]
     kinds = sorted({kind for kind, _ in found})
-    kind = " or ".join(kinds) if value.shape == () else f"{size} of kind {', '.join(kinds)}"
+    kind = " or ".join(kinds) if value.shape == () else f"{size} × {' or '.join(kinds)}"
     text = f"{value:.4g}" if value.shape == () else f"shape {value.shape}"
     return {"name": name, "kind": kind, "text": text, "shapes": [shape for _, all in found for shape in all]}
 

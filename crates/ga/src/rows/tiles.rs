@@ -119,10 +119,15 @@ impl Tiles {
                 tile::<P, FLIPS, FUSED, W>(xs, ys, pair.signs, flips, &mut sums);
             }
             let coset = pairs[0].out;
-            for (l, (sum, &component)) in sums.iter().zip(&self.cosets[coset]).enumerate() {
-                // Adding 0 makes −0 to 0.
-                out[component] =
-                    if FLIPS { Lane(sum.0.map(|x| flipped(x, self.flips[coset][l]) + 0.0)) } else { *sum };
+            for (l, &component) in self.cosets[coset].iter().enumerate() {
+                out[component] = sums[l];
+                if FLIPS {
+                    let mask = self.flips[coset][l];
+                    for x in &mut out[component].0 {
+                        // Adding 0 makes −0 to 0.
+                        *x = flipped(*x, mask) + 0.0;
+                    }
+                }
             }
         }
     }

@@ -69,7 +69,7 @@ _CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
     "rotor": rotors,
 }
 _FRAMES = ("body", "space")
-_KINDS = ("linear", "cubic")
+_KINDS = tuple(next(x.words for x in TORQUES["tabulated"].arguments if x.name == "kind"))
 
 
 @dataclass(frozen=True, repr=False)
@@ -318,8 +318,10 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
     frame
         The axes of their components, ``"body"`` or ``"space"``.
     kind
-        ``"linear"``, or ``"cubic"`` for the cubic spline with "not a knot" ends, which is a parabola for
-        three rows.
+        As in SciPy's ``interp1d``: ``"linear"``; ``"cubic"`` for the cubic spline with "not a knot" ends,
+        which is a parabola for three rows; or ``"previous"``, held from each time to the next, as a computer
+        that controls a satellite does. Then the torque jumps at the times, the steps of a run end there, and
+        the last row only ends the table.
     """
     when, rows = as_floats(times, "times"), as_bivectors(torques, "torques")
     if when.ndim != 1 or rows.shape != (when.size, 3):

@@ -1,4 +1,4 @@
-"""Torques that a table holds from each time to the next: steps end at the jumps, on their own side of each."""
+"""Torques that a table holds from each time to the next: steps end at the jumps, each on its own side."""
 
 import numpy as np
 import pytest
@@ -77,7 +77,9 @@ def test_about_one_axis_it_is_the_closed_form(backwards):
         return float(np.sum(0.5 * (speed(knots[1:]) + speed(knots[:-1])) * np.diff(knots)))
 
     omega = rate + speed(when) - speed(begin)
-    turned = np.array([rate * (t - begin) + angle(t) - angle(begin) - speed(begin) * (t - begin) for t in when])
+    turned = np.array(
+        [rate * (t - begin) + angle(t) - angle(begin) - speed(begin) * (t - begin) for t in when]
+    )
     np.testing.assert_allclose(motion.omega_body.components[:, 2], omega, atol=20 * EPS, rtol=0)
     expected = ph.Rotor.from_rotation_vector(np.stack([0 * turned, 0 * turned, turned], axis=1))
     assert float(np.max((motion.rotor - expected).norm())) <= 50 * EPS

@@ -23,6 +23,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of
 from polhode._mechanics.laws import Sum, finite, function_of, law_of_formula, shown
+from polhode._mechanics.orbits import DipoleField, KeplerOrbit, dipole_field
 from polhode._mechanics.parameters import (
     bivectors,
     common,
@@ -35,16 +36,19 @@ from polhode._mechanics.parameters import (
 )
 from polhode._mechanics.pivot import HOLDING, about_pivot
 from polhode._mechanics.registry import TORQUES
+from polhode._mechanics.wheels import wheel_arguments
 from polhode._support.arrays import Shape, as_float, as_floats
 
 if TYPE_CHECKING:
     from polhode._mechanics.state import State
 
 __all__ = [
+    "KeplerOrbit",
     "Torque",
     "constant_body",
     "constant_space",
     "damping",
+    "dipole_field",
     "formula",
     "function",
     "gravity",
@@ -56,6 +60,7 @@ __all__ = [
     "pd_control",
     "quadratic_damping",
     "radiation_pressure",
+    "reaction_wheels",
     "tabulated",
     "torsion_spring",
     "viscous_damping",
@@ -69,7 +74,7 @@ _CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
     "rotor": rotors,
 }
 _FRAMES = ("body", "space")
-_KINDS = ("linear", "cubic")
+_KINDS = tuple(next(x.words for x in TORQUES["tabulated"].arguments if x.name == "kind"))
 
 
 @dataclass(frozen=True, repr=False)
@@ -98,7 +103,8 @@ class Torque(Sum):
         """Return the torque T in body axes at a single state and time: ``I(Ω_B') − Ω_B × I(Ω_B) = T``.
 
         This is the right side of handout eq. (4.21) in body axes, in N m; for a `gyrostat` it is the
-        reaction of the wheel to being turned. The inertia is about the centre of mass, or about the fixed
+        reaction of the wheel to being turned, for `reaction_wheels` their torque on a body whose inertia is
+        without their moments about their axes. The inertia is about the centre of mass, or about the fixed
         point if a law holds the body; from a `Body` the right one is taken. The time t is in s, by default
         that of the state.
         """
@@ -179,22 +185,46 @@ def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0
     Parameters
     ----------
     rate
-        The mean motion n in rad/s.
+        The mean motion n in rad/s; or a `KeplerOrbit`, without the other arguments.
     eccentricity
         e, at least 0 and below 1.
     mean_anomaly
         M0 in rad, that at time 0; the periapsis lies on e1.
     """
+    if isinstance(rate, KeplerOrbit):
+        rate, eccentricity, mean_anomaly = rate.rate, rate.eccentricity, rate.mean_anomaly
     return _law("gravity_gradient", rate, eccentricity, mean_anomaly)
 
 
-def magnetic(dipole: Any, field: Any) -> Torque:
-    """Return the torque on a dipole of the body in a field that is constant in space.
+def magnetic(dipole: Any, field: Any, orbit: KeplerOrbit | None = None) -> Torque:
+    """Return the torque on a dipole of the body in a magnetic field, constant in space or along an orbit.
 
-    ``V = −m·(~R B R)``, with the axial torque ``m x ~R B R`` in body axes. The dipole m is a vector or (3,)
-    in body axes in A m², the field B one in space in T.
+    ``V = −m·(~R B R)``, with the axial torque ``m x ~R B R`` in body axes.
+
+    Parameters
+    ----------
+    dipole
+        m, a vector or (..., 3) in body axes in A m²; along an orbit a single one.
+    field
+        B, a vector or (..., 3) in space in T; with an orbit `dipole_field`, or a function ``f(t, position)``
+        of the time in s and of the position relative to the planet, a vector in m, that returns B.
+    orbit
+        The `KeplerOrbit` along which the field is met. The energy of a motion is then without V, which
+        depends on time.
     """
-    return _law("magnetic", dipole, field)
+    if orbit is None:
+        if callable(field) and not isinstance(field, Multivector):
+            raise TypeError(
+                "a field that is a function needs an orbit; give orbit=ph.torque.KeplerOrbit(...)"
+            )
+        return _law("magnetic", dipole, field)
+    if not isinstance(orbit, KeplerOrbit):
+        raise TypeError(f"orbit must be a KeplerOrbit, got {type(orbit).__name__}")
+    own = vectors(dipole, "dipole")
+    if not isinstance(own, tuple):
+        raise ValueError(f"along an orbit the dipole must be a single vector, got batch shape {own.shape}")
+    met = field.moment if isinstance(field, DipoleField) else function_of(field, "t and position")
+    return _native_law("magnetic_on_orbit", own, orbit._numbers, met)
 
 
 def larmor(b: Any) -> Torque:
@@ -292,6 +322,60 @@ def gyrostat(h: Any) -> Torque:
     return _law("gyrostat", h)
 
 
+def reaction_wheels(
+    axes: Any,
+    inertias: Any,
+    torques: Any = 0.0,
+    *,
+    times: Any = None,
+    speeds: Any = 0.0,
+    omega_body: Any = None,
+    max_torque: Any = np.inf,
+    max_speed: Any = np.inf,
+) -> Torque:
+    """Return the reaction of k wheels with motors, whose axes are fixed in the body.
+
+    A motor that accelerates its wheel with the torque u turns the body by −u about the axis. With the moment
+    J of a wheel about its axis a and its speed Ω relative to the body, its momentum ``H = J (Ω + a·ω)`` about
+    its axis changes as ``H' = u``. The inertia of the body includes the wheels, as for `gyrostat`; the
+    momentum of all is ``L = R ((I − Σ J a aᵀ) ω + Σ H a) ~R``. Motions have the speeds as
+    ``trajectory.wheel_speed``.
+
+    The torques depend on time alone, so that H is piecewise linear in time and exact, also where a motor
+    or a wheel reaches its limit. ``dop853``, the method by default, carries L: without other torques L is
+    constant to rounding. For ``rk4`` and ``midpoint`` it is as accurate as the method. `Stepper` takes
+    commands at each step, for torques that depend on the state.
+
+    Parameters
+    ----------
+    axes
+        The axes in body axes, vectors or (k, 3); their size is ignored.
+    inertias
+        J in kg m², (k,), or one for all.
+    torques
+        The commanded torques u in N m: (k,), or one for all, for ever; or with `times` rows (n, k), held from
+        each time to the next, the last for ever. Before the first time the motors are off.
+    times
+        In s, (n,), increasing; by default the time 0.
+    speeds, omega_body
+        The speeds Ω in rad/s, (k,), or one for all, at the first time, and the angular velocity of the body
+        to which they are relative, a bivector or (3,); by default that of a body at rest.
+    max_torque
+        The largest torque of each motor in N m, (k,), or one for all: a command beyond it is cut.
+    max_speed
+        The largest speed in space ``|Ω + a·ω|`` in rad/s, (k,), or one for all: a motor exerts no torque
+        beyond it. The speed relative to the body differs from it by the rate of the body about the axis.
+
+    Raises
+    ------
+    ValueError
+        For invalid numbers, and in `simulate` for wheels with larger moments than the body, and together with
+        `damping`, `larmor` and formulas of L or ``I(…)``.
+    """
+    given = wheel_arguments(axes, inertias, torques, times, speeds, omega_body, max_torque, max_speed)
+    return _native_law("reaction_wheels", *given)
+
+
 # --- given values
 
 
@@ -318,8 +402,10 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
     frame
         The axes of their components, ``"body"`` or ``"space"``.
     kind
-        ``"linear"``, or ``"cubic"`` for the cubic spline with "not a knot" ends, which is a parabola for
-        three rows.
+        As in SciPy's ``interp1d``: ``"linear"``; ``"cubic"`` for the cubic spline with "not a knot" ends,
+        which is a parabola for three rows; or ``"previous"``, held from each time to the next, as a computer
+        that controls a satellite does. Then the torque jumps at the times, the steps of a run end there, and
+        the last row only ends the table.
     """
     when, rows = as_floats(times, "times"), as_bivectors(torques, "torques")
     if when.ndim != 1 or rows.shape != (when.size, 3):
@@ -414,6 +500,12 @@ def _shown(law: _native.Law) -> str:
     if law.name == "tabulated":
         times, _, frame, kind = law.arguments
         return f"tabulated({len(times)} rows, {times[0]:.6g} s to {times[-1]:.6g} s, {frame=}, {kind=})"
+    if law.name == "reaction_wheels":
+        return f"reaction_wheels({len(law.arguments[0])} wheels, {len(law.arguments[6])} rows of torques)"
+    if law.name == "magnetic_on_orbit":
+        dipole, orbit, met = law.arguments
+        field = DipoleField(met) if isinstance(met, tuple) else met
+        return shown("magnetic", [dipole, field], {"orbit": KeplerOrbit(*orbit)})
     if law.name == "gravity":
         g, mass, center, pivot = law.arguments
         return shown("gravity", [], {"mass": mass, "center_of_mass": center, "g": g, "pivot": pivot})

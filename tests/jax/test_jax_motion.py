@@ -30,6 +30,7 @@ ATTITUDE = {
     "tabulated": ph.torque.tabulated([-1, 1.5, 3, 3.5, 5], ROWS),
     "spline": ph.torque.tabulated([-1, 1.5, 3, 3.5, 5], ROWS, "space", "cubic"),
     "parabola": ph.torque.tabulated([-1, 1.5, 5], ROWS[:3], "body", "cubic"),
+    "held": ph.torque.tabulated([-1, 1.5, 3, 3.5, 5], ROWS, "space", "previous"),
     "formula": ph.torque.formula(
         "-c ∧ (~R e3 R) + k t I(B)", c=0.3 * ph.e1 + 2 * ph.e3, k=0.1, B=ph.I * ph.e2
     ),
@@ -133,6 +134,15 @@ def test_a_motion_starts_at_the_time_of_the_state(method, name):
     known = ph.jax.simulate(INERTIA, R0, OMEGA, TIMES[3:], law, method, steps=20, start_time=0.25)
     for a, b in zip(later(0.25), known, strict=True):
         assert np.abs(a - b).max() < 4 * COUNT * EPS
+
+
+@pytest.mark.parametrize("method", ["rk4", "strang"])
+def test_steps_end_at_the_jumps_of_a_held_torque(method):
+    # Both sides of the start; 1.5, 3 and 3.5 lie between output times.
+    law = ATTITUDE["held"] + ATTITUDE["damping"]
+    expected = ph.simulate(INERTIA, ph.State(R0, OMEGA), TIMES, law, method=method, step=STEP)
+    found = ph.jax.simulate(INERTIA, R0, OMEGA, TIMES, law, method, step=STEP)
+    assert apart(found, expected) < 4 * COUNT
 
 
 @pytest.mark.slow

@@ -48,6 +48,9 @@ LAWS = {
     'frame = "space", kind = "cubic" }': ph.torque.tabulated(
         [0, 1, 2, 3], [[0, 0, 1], [1, 0, 0], [0, 1, 0], [0, 0, 0]], "space", "cubic"
     ),
+    'tabulated = { kind = "previous", times = [0, 1, 2], torques = [[0, 0, 1], [1, 0, 0], [0, 0, 0]] }': (
+        ph.torque.tabulated([0, 1, 2], [[0, 0, 1], [1, 0, 0], [0, 0, 0]], kind="previous")
+    ),
     "heavy = [1, 2, 3]": ph.torque.heavy([1, 2, 3]),
     'torque_space = "-L"': ph.torque.formula("-L", frame="space"),
 }

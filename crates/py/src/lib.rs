@@ -41,7 +41,7 @@ mod _native {
     #[pymodule_export]
     use crate::mechanics::closed_forms::{DampedTop, LagrangeTop, LarmorSphere, symmetric_top};
     #[pymodule_export]
-    use crate::mechanics::torque::{Law, orbit_directions, torque_at};
+    use crate::mechanics::torque::{Law, dipole_fields, orbit_directions, orbit_positions, torque_at};
 
     #[pymodule_export]
     use crate::formula::Formula;

@@ -144,6 +144,11 @@ class Ensemble(Results):
         return math.prod(self.shape)
 
     @property
+    def wheels(self) -> tuple[_native.Law, ...]:
+        """The laws of wheels with motors."""
+        return tuple(law for law in self.laws if law.name == "reaction_wheels")
+
+    @property
     def bytes(self) -> int:
         """Memory for the results and for the computation."""
         return _bytes(self.bodies, len(self.times), bool(self.forces))
@@ -196,6 +201,8 @@ class Ensemble(Results):
             progress,
         )
         trajectory = self.trajectory(arrays, summary)
+        if self.wheels:
+            trajectory = replace(trajectory, _wheels=self.wheels)
         warn_of(trajectory.certificate)
         return trajectory
 

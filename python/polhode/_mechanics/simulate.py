@@ -158,7 +158,8 @@ def simulate(
         ensemble.rtol,
         ensemble.limits,
     )
-    trajectory = Trajectory._of(motion, inertia, [event.name for event in wanted], problem)
+    names = [event.name for event in wanted]
+    trajectory = Trajectory._of(motion, inertia, names, problem, ensemble.wheels)
     warn_of(trajectory.certificate)
     return trajectory
 

@@ -13,9 +13,10 @@ from polhode._algebra.constructors import as_bivectors, bivector, vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.ensemble import check_state
+from polhode._mechanics.parameters import check_finite
 from polhode._mechanics.simulate import _ensemble
 from polhode._mechanics.state import State
-from polhode._support.arrays import Array, Shape, as_float
+from polhode._support.arrays import Array, Shape, as_float, as_floats
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -122,6 +123,7 @@ class Stepper:
         dt: float,
         torque: Multivector | ArrayLike | None = None,
         frame: Literal["body", "space"] = "body",
+        wheel_torque: ArrayLike | None = None,
     ) -> State:
         """Step by dt and return the state.
 
@@ -134,8 +136,13 @@ class Stepper:
             acts besides the laws of the stepper. None for no torque.
         frame
             Axes of its components, with which it turns: ``"body"`` or ``"space"``.
+        wheel_torque
+            Torques commanded from now on to the motors of `polhode.torque.reaction_wheels`, instead of those
+            of the law: (..., k) in N m, for all bodies or for each. None lets the former command stand.
         """
         core, seconds, in_space = self._core, _seconds(dt), _in_space(frame)
+        if wheel_torque is not None:
+            core.command(self._commands(wheel_torque))
         spin = core.step_once(seconds, torque, in_space)
         if spin is None or self._still is None:
             if spin is None:
@@ -143,8 +150,13 @@ class Stepper:
             return self.state
         return State._of(*spin, *self._still, core.time)
 
+    @property
+    def wheel_speed(self) -> Array:
+        """Speeds of the reaction wheels relative to their bodies now, (..., k) in rad/s."""
+        return self._core.wheel_speeds()
+
     def reset(self, state: State) -> None:
-        """Set the state of all bodies, and with it the time."""
+        """Set the state of all bodies, and with it the time; reaction wheels follow their law again."""
         check_state(state)
         shape = state.shape
         if np.broadcast_shapes(shape, self.shape) != self.shape:
@@ -167,6 +179,20 @@ class Stepper:
         if not self._core.moves:
             positions, velocities = self._core.centers()
             self._still = (vector(positions), vector(velocities))
+
+    def _commands(self, torques: Any) -> Array:
+        """Return a row of commands for all bodies, or one for each."""
+        count, rows = self._core.wheels, as_floats(torques, "wheel_torque")
+        if not count:
+            raise ValueError("the stepper has no wheels to command; give it a law ph.torque.reaction_wheels")
+        check_finite(np.atleast_1d(rows), "wheel_torque")
+        shape = (count,) if rows.ndim < 2 else (*self.shape, count)
+        try:
+            return np.ascontiguousarray(np.broadcast_to(rows, shape))
+        except ValueError:
+            raise ValueError(
+                f"wheel_torque must be of shape {(*self.shape, count)} or ({count},), got {rows.shape}"
+            ) from None
 
     def _rows(self, torque: Any) -> Array:
         rows = as_bivectors(torque, "the torque")

@@ -73,6 +73,8 @@ class Trajectory:
     _motion: _native.Motion | None = field(default=None, repr=False)
     # Of a batch without forces: positions and velocities are computed on access.
     _drift: Drift | None = field(default=None, repr=False)
+    # Wheels with motors, shared by all bodies.
+    _wheels: tuple[_native.Law, ...] = field(default=(), repr=False)
     # Of one body: the scene or problem that was solved.
     _origin: Scene | Problem | None = field(default=None, repr=False)
 
@@ -90,7 +92,11 @@ class Trajectory:
 
     @staticmethod
     def _of(
-        motion: _native.Motion, inertia: Inertia, names: Sequence[str], origin: Scene | Problem
+        motion: _native.Motion,
+        inertia: Inertia,
+        names: Sequence[str],
+        origin: Scene | Problem,
+        wheels: tuple[_native.Law, ...] = (),
     ) -> Trajectory:
         which, rising, points = motion.events()
         happened = _Points.of(points)
@@ -103,6 +109,7 @@ class Trajectory:
             Certificate(**motion.certificate()),
             tuple(events),
             _motion=motion,
+            _wheels=wheels,
             _origin=origin,
         )
 
@@ -131,6 +138,27 @@ class Trajectory:
         Those of wheels are included, as in `momentum_space`: ``I(Ω_B)`` is the part of the body.
         """
         return (~self.rotor)(self.momentum_space)
+
+    @property
+    def wheel_speed(self) -> Array:
+        """Speeds Ω of the reaction wheels relative to the body, (n, k) in rad/s, in the order of the laws.
+
+        Without `polhode.torque.reaction_wheels`, and for a motion read from a file, k is 0.
+        """
+        return self._of_wheels(1)
+
+    @property
+    def wheel_momentum(self) -> Array:
+        """Momenta ``H = J (Ω + a·ω)`` of the reaction wheels about their axes, (n, k) in kg m²/s."""
+        return self._of_wheels(0)
+
+    def _of_wheels(self, which: int) -> Array:
+        omegas = np.ascontiguousarray(self.omega_body._data)
+        shape = omegas.shape[:-1]
+        times = np.ascontiguousarray(np.broadcast_to(self.time, shape).ravel())
+        found = [law.wheels(times, omegas.reshape(-1, 3)) for law in self._wheels]
+        parts = [numbers[which].reshape(*shape, -1) for numbers in found if numbers is not None]
+        return np.concatenate([np.zeros((*shape, 0)), *parts], axis=-1)
 
     def __len__(self) -> int:
         if not self.shape:

@@ -114,6 +114,8 @@ def _fields(laws: Iterable[Any], entries: Mapping[str, Entry], table: str) -> di
             raise UnwritableError(
                 "Python callables cannot be written to a scene file; use a formula, as of ph.torque.formula"
             )
+        elif name in ("reaction_wheels", "magnetic_on_orbit"):
+            raise UnwritableError(f"{table}.{name} cannot be written to a scene file; keep the motion itself")
         else:
             raise UnwritableError(f"{table}.{name} cannot be written to a scene file; use {table}.formula")
     return fields

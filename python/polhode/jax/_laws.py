@@ -110,6 +110,10 @@ class Law:
         """Return the same law in body axes turned by a rotor: ``x' = ~F x F``."""
         return self
 
+    def within(self, middle: Array) -> Law:
+        """Return the law as it acts in a step with this middle; a law that jumps in time is held."""
+        return self
+
     def value(self, body: Gyrostat, phase: Phase) -> Three:
         """Return the torque in principal axes."""
         raise NotImplementedError
@@ -310,6 +314,10 @@ class Torque(Sum):
 
     def in_axes(self, frame: Four) -> Torque:
         return Torque(tuple(law.in_axes(frame) for law in self.laws))
+
+    def within(self, middle: Array) -> Torque:
+        """Return the torque as it acts in a step with this middle."""
+        return Torque(tuple(law.within(middle) for law in self.laws))
 
     def wheel(self) -> Three | None:
         """Return the total momentum of the wheels; None without one."""

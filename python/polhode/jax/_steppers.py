@@ -9,6 +9,7 @@ where that order is odd. Renaming is exact.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -158,12 +159,13 @@ class Splitting:
     def step(self, fixed: Three | None, phase: Phase, h: Array) -> Phase:
         """Take a step of length h, then correct the rounding of |R| and of a constant L."""
         start = phase.time
+        acting = self.torque.within(start + 0.5 * h)
         if fixed is not None:
             phase = self._turn_about_momentum(phase, h)
             phase = self._stages(phase, h, lambda phase, _, drift: self._turn_about_axes(phase, drift))
         else:
-            phase = self._stages(phase, h, self._kick_and_drift)
-            phase = self._kick(phase, self.stages[0][0] * h)
+            phase = self._stages(phase, h, partial(self._kick_and_drift, acting))
+            phase = self._kick(acting, phase, self.stages[0][0] * h)
         phase = Phase(renormalized(phase.rotor), phase.momentum, start + h)
         return phase if fixed is None else _restored(phase, fixed)
 
@@ -177,14 +179,14 @@ class Splitting:
 
         return lax.fori_loop(0, len(self.stages), one, phase)  # type: ignore[no-any-return]
 
-    def _kick_and_drift(self, phase: Phase, kick: Array, drift: Array) -> Phase:
-        phase = self._turn_about_momentum(self._kick(phase, kick), drift)
+    def _kick_and_drift(self, acting: Torque, phase: Phase, kick: Array, drift: Array) -> Phase:
+        phase = self._turn_about_momentum(self._kick(acting, phase, kick), drift)
         phase = self._turn_about_axes(phase, drift)
         return phase._replace(time=phase.time + drift)
 
-    def _kick(self, phase: Phase, h: Array) -> Phase:
+    def _kick(self, acting: Torque, phase: Phase, h: Array) -> Phase:
         """``m' = N − g (m − h)`` for a time: ``(m − h) e^(−gt) + N (1 − e^(−gt))/g``."""
-        momentum, torque, impulse = phase.momentum, self.torque.value(self.body, phase), h
+        momentum, torque, impulse = phase.momentum, acting.value(self.body, phase), h
         if self.damping is not None:
             decay = -self.damping * h
             ratio = _expm1_ratio(decay)
@@ -295,18 +297,19 @@ class RungeKutta:
         """Take a step of length h."""
         t = point.time
         state = (*point.rotor, *point.spin)
-        k1 = self._slope(state, t)
-        k2 = self._slope(_moved(state, k1, 0.5 * h), t + 0.5 * h)
-        k3 = self._slope(_moved(state, k2, 0.5 * h), t + 0.5 * h)
-        k4 = self._slope(_moved(state, k3, h), t + h)
+        acting = self.torque.within(t + 0.5 * h)
+        k1 = self._slope(acting, state, t)
+        k2 = self._slope(acting, _moved(state, k1, 0.5 * h), t + 0.5 * h)
+        k3 = self._slope(acting, _moved(state, k2, 0.5 * h), t + 0.5 * h)
+        k4 = self._slope(acting, _moved(state, k3, h), t + h)
         mean = tuple((a + d) + 2.0 * (b + c) for a, b, c, d in zip(k1, k2, k3, k4, strict=True))
         s, x, y, z, p, q, r = _moved(state, mean, h / 6.0)
         return Point(normalized((s, x, y, z)), (p, q, r), t + h)
 
-    def _slope(self, state: Seven, time: Array) -> Seven:
+    def _slope(self, acting: Torque, state: Seven, time: Array) -> Seven:
         s, x, y, z, p, q, r = state
         rotor, omega = (s, x, y, z), (p, q, r)
-        torque = self.torque.exerted(self.body, Phase(rotor, self.body.momentum(omega), time))
+        torque = acting.exerted(self.body, Phase(rotor, self.body.momentum(omega), time))
         return (*rotor_rate(rotor, omega), *self.body.rate(omega, torque))
 
 

@@ -14,12 +14,16 @@ from polhode.jax._library import Array, jnp, lax
 
 @pytree
 class Table(Law):
-    """Rows of torques and of the slopes of their spline; NaN outside the times."""
+    """Rows of torques and of the slopes of their spline; NaN outside the times.
+
+    Rows that are `held` from each time to the next jump there: the row of a step is that of its middle.
+    """
 
     torques: Array
     slopes: Array | None
     times: tuple[float, ...] = static()
     frame: str = static()
+    held: bool = static(default=False)
 
     def in_axes(self, frame: Four) -> Law:
         if self.frame == "space":
@@ -29,9 +33,13 @@ class Table(Law):
         slopes = None if self.slopes is None else joined(turned(back, split(self.slopes)))
         return replace(self, torques=torques, slopes=slopes)
 
+    def within(self, middle: Array) -> Law:
+        if not self.held:
+            return self
+        return _Row(self._at(middle), self.frame)
+
     def value(self, body: Gyrostat, phase: Phase) -> Three:
-        torque = split(self._at(phase.time))
-        return torque if self.frame == "body" else turned(reverse(phase.rotor), torque)
+        return _in_body(split(self._at(phase.time)), self.frame, phase)
 
     def _at(self, time: Array) -> Array:
         times = jnp.asarray(self.times, time.dtype)
@@ -41,6 +49,9 @@ class Table(Law):
         inside = (time >= first - rounding) & (time <= last + rounding)
         time = jnp.clip(time, first, last)
         i = jnp.clip(jnp.searchsorted(times, time, side="right"), 1, len(self.times) - 1) - 1
+        if self.held:
+            row = self.torques[jnp.where(time >= last, len(self.times) - 1, i)]
+            return jnp.where(inside[..., None], row, jnp.nan)
         h = times[i + 1] - times[i]
         x = ((time - times[i]) / h)[..., None]
         a, b = self.torques[i], self.torques[i + 1]
@@ -53,6 +64,21 @@ class Table(Law):
             p, q = self.slopes[i] * h - steep, self.slopes[i + 1] * h - steep
             line = line + (p * (1.0 - x) - q * x) * (x * (1.0 - x))
         return jnp.where(inside[..., None], line, jnp.nan)
+
+
+@pytree
+class _Row(Law):
+    """A row of a table, held over a step."""
+
+    torque: Array
+    frame: str = static()
+
+    def value(self, body: Gyrostat, phase: Phase) -> Three:
+        return _in_body(split(self.torque), self.frame, phase)
+
+
+def _in_body(torque: Three, frame: str, phase: Phase) -> Three:
+    return torque if frame == "body" else turned(reverse(phase.rotor), torque)
 
 
 def spline_slopes(times: Any, torques: Array) -> Array:

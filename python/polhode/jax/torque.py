@@ -98,13 +98,14 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
     """Return a torque interpolated in a table, as `polhode.torque.tabulated`.
 
     The times (n,) are constants, the torques (n, 3) may be traced. Outside the times the torque is NaN. Steps
-    end at the times unless the output times are traced.
+    end at the times unless the output times are traced; then a step across a jump of ``kind="previous"``
+    takes the torque of its middle.
     """
     when, table = as_floats(times, "times"), as_array(torques)
     # Raises for wrong times, frame and kind.
     native.tabulated(when, np.zeros((*table.shape[:-1], 3)), frame, kind)
     slopes = spline_slopes(when, table) if kind == "cubic" and when.size > 2 else None
-    return Torque((Table(table, slopes, tuple(when.tolist()), frame),))
+    return Torque((Table(table, slopes, tuple(when.tolist()), frame, held=kind == "previous"),))
 
 
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
@@ -156,6 +157,8 @@ def _of_native(law: Any) -> Torque:
         return formula(text, frame=frame, **dict(values))
     if law.name == "gravity":
         return heavy(law.weight_moments().reshape(*law.shape, 3))
+    if law.name not in __all__:
+        raise TypeError(f"JAX has no law {law.name}; give a function of t, rotor and omega_body in jax.numpy")
     torque: Torque = globals()[law.name](*law.arguments)
     return torque
 

@@ -99,6 +99,25 @@ impl Stepper {
         self.advance(py, dt, numbers(&torques)?.as_chunks().0, in_space)
     }
 
+    /// The number of wheels with motors of each body.
+    #[getter]
+    fn wheels(&self) -> usize {
+        self.stepper.wheels()
+    }
+
+    /// Commands the motors of all wheels from now on, (k,) for all bodies or (n, k).
+    fn command(&mut self, torques: Rows<'_>) -> PyResult<()> {
+        self.stepper.command(numbers(&torques)?);
+        Ok(())
+    }
+
+    /// The speeds of all wheels relative to their bodies now, (…, k).
+    fn wheel_speeds<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let speeds = self.rows(py, self.stepper.wheels())?;
+        speeds.readwrite().as_slice_mut()?.copy_from_slice(&self.stepper.wheel_speeds());
+        Ok(speeds)
+    }
+
     #[getter]
     fn time(&self) -> f64 {
         self.stepper.time()

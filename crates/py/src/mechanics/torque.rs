@@ -4,16 +4,19 @@ use super::bodies::{Inertia, rotor};
 use super::columns::{Arguments, Batch, Column};
 use super::law_value::{
     Callback, Known, LawValue, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
+    vector, vector_of,
 };
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::support::facts::dict;
-use polhode_ga::Bivector;
 use polhode_ga::formula::{Given, Input, canonical};
+use polhode_ga::{Bivector, Vector};
 use polhode_rigid::body::weight_moment;
 use polhode_rigid::describe::law_facts;
 use polhode_rigid::laws::formula::{Formula, Purpose};
 use polhode_rigid::laws::registry::{Entry, Kernel, torque};
-use polhode_rigid::laws::torque::{Axes, Kind, Orbit, Table, Torque, total, wheel};
+use polhode_rigid::laws::torque::{
+    Axes, KeplerOrbit, Kind, Orbit, Table, Torque, Wheel, Wheels, dipole_field, on_orbit, total, wheel,
+};
 use polhode_rigid::state::phase::{Gyrostat, Phase};
 use polhode_rigid::state::point::Function;
 use pyo3::prelude::*;
@@ -73,6 +76,22 @@ impl Law {
             .map(|torque| if let Torque::Heavy(c) = torque { Some(c.0) } else { None })
             .collect();
         moments.map(|rows| table(py, rows.into_iter())).transpose()
+    }
+
+    /// The momenta (n, k) of wheels about their axes at times (n,), and their speeds relative to the body at angular
+    /// velocities (n, 3); None for other laws.
+    fn wheels<'py>(
+        &self,
+        py: Python<'py>,
+        times: Rows<'py>,
+        omegas: Rows<'py>,
+    ) -> PyResult<Option<[Array<'py>; 2]>> {
+        let [Torque::Wheels(wheels)] = &self.torques[..] else { return Ok(None) };
+        let (times, omegas) = (numbers(&times)?, numbers(&omegas)?.as_chunks::<3>().0);
+        let momenta = times.iter().flat_map(|&time| wheels.momenta(time)).collect();
+        let each = times.iter().zip(omegas);
+        let speeds = each.flat_map(|(&time, omega)| wheels.speeds(time, Bivector(*omega))).collect();
+        Ok(Some([line(py, momenta), line(py, speeds)]))
     }
 
     /// Its name in scenes and its formula or numbers as text, for a single body.
@@ -140,6 +159,8 @@ fn laws(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult
     let given = Arguments::new(arguments, batches)?;
     let laws = match (name, torque(name)) {
         ("gravity", _) => gravity(&given)?,
+        ("magnetic_on_orbit", _) => vec![magnetic_on_orbit(arguments, raised)?],
+        ("reaction_wheels", _) => vec![reaction_wheels(arguments)?],
         ("formula", _) => formulas(&given, values)?,
         ("function", _) => vec![function(sole(arguments)?, raised)],
         (_, Some(Entry { kernel: Kernel::Table, .. })) => vec![tabulated(arguments)?],
@@ -173,9 +194,69 @@ fn gravity(given: &Arguments<'_, '_>) -> PyResult<Vec<Torque>> {
 
 fn tabulated(arguments: &Bound<'_, PyTuple>) -> PyResult<Torque> {
     let (times, rows, frame, kind): (_, Vec<[f64; 3]>, String, String) = arguments.extract()?;
-    let kind = if kind == "cubic" { Kind::Cubic } else { Kind::Linear };
+    let kind = Kind::from_name(&kind).unwrap_or(Kind::Linear);
     let rows = rows.into_iter().map(Bivector).collect();
     Table::new(times, rows, axes(&frame), kind).map(|table| Torque::Tabulated(Arc::new(table))).map_err(bad)
+}
+
+/// Wheels by their axes, moments, limits of torque and of speed, and speeds relative to an angular velocity of the body,
+/// with times and rows of commands.
+fn reaction_wheels(arguments: &Bound<'_, PyTuple>) -> PyResult<Torque> {
+    type Given = (Vec<[f64; 3]>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, [f64; 3], Vec<f64>, Vec<Vec<f64>>);
+    let (axes, inertias, max_torques, max_speeds, speeds, omega, times, rows): Given = arguments.extract()?;
+    let wheel = |k: usize| Wheel {
+        axis: Vector(axes[k]) / Vector(axes[k]).norm(),
+        inertia: inertias[k],
+        max_torque: max_torques[k],
+        max_speed: max_speeds[k],
+    };
+    let wheels = (0..axes.len()).map(wheel).collect();
+    let wheels = Wheels::new(wheels, &speeds, Bivector(omega), &times, &rows);
+    wheels.map(|wheels| Torque::Wheels(Arc::new(wheels))).map_err(bad)
+}
+
+/// A dipole of the body in a field along an orbit: the dipole, the orbit, and either the moment of a dipole at its focus
+/// or a function of time and position.
+fn magnetic_on_orbit(arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<Torque> {
+    type Given<'py> = ([f64; 3], (f64, f64, f64, f64), Bound<'py, PyAny>);
+    let (dipole, orbit, field): Given<'_> = arguments.extract()?;
+    let (orbit, dipole) = (orbit_of(orbit)?, Vector(dipole));
+    if let Ok(moment) = field.extract::<[f64; 3]>() {
+        let field = move |_: f64, place: Vector| Ok(dipole_field(Vector(moment), place));
+        return Ok(Torque::Function(on_orbit(dipole, orbit, field)));
+    }
+    let callback = Callback { call: field.unbind(), raised: raised.clone(), what: "field" };
+    Ok(Torque::Function(on_orbit(dipole, orbit, move |time, place| {
+        callback.at(time, |py| (time, vector_of(py, place)?).into_pyobject(py), vector)
+    })))
+}
+
+/// An orbit from its semi-major axis, eccentricity, mean anomaly and gravitational parameter.
+fn orbit_of((axis, eccentricity, anomaly, mu): (f64, f64, f64, f64)) -> PyResult<KeplerOrbit> {
+    KeplerOrbit::new(axis, eccentricity, anomaly, mu).map_err(bad)
+}
+
+/// The mean motion of an orbit in rad/s, and its positions, rows (n, 3), at times (n,).
+#[pyfunction]
+pub(crate) fn orbit_positions<'py>(
+    py: Python<'py>,
+    orbit: (f64, f64, f64, f64),
+    times: Rows<'py>,
+) -> PyResult<(f64, Array<'py>)> {
+    let orbit = orbit_of(orbit)?;
+    let places = table(py, numbers(&times)?.iter().map(|&time| orbit.position(time).0))?;
+    Ok((orbit.rate(), places))
+}
+
+/// The field of a dipole, rows (n, 3) in T, at positions (n, 3).
+#[pyfunction]
+pub(crate) fn dipole_fields<'py>(
+    py: Python<'py>,
+    moment: Rows<'py>,
+    places: Rows<'py>,
+) -> PyResult<Array<'py>> {
+    let moment = Vector(one(&moment)?);
+    table(py, numbers(&places)?.as_chunks::<3>().0.iter().map(|place| dipole_field(moment, Vector(*place)).0))
 }
 
 fn function(call: Py<PyAny>, raised: &Raised) -> Torque {

@@ -15,7 +15,7 @@ use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::ensemble::{Ensemble, Start};
 use polhode_rigid::laws::registry::{Entry, TABLE};
-use polhode_rigid::laws::torque::{Axes, Kind, Torque};
+use polhode_rigid::laws::torque::{Axes, Torque};
 use polhode_rigid::run::Setup;
 use polhode_rigid::scene::Push;
 use polhode_rigid::{Diagnostic, TriangleMesh, body, scene};
@@ -191,7 +191,7 @@ pub(crate) fn named(py: Python<'_>, torque: Torque) -> PyResult<Py<Law>> {
         Torque::Tabulated(table) => {
             let times = PyTuple::new(py, table.times())?;
             let rows = PyTuple::new(py, table.torques().iter().map(|Bivector([x, y, z])| (*x, *y, *z)))?;
-            let kind = if table.kind == Kind::Cubic { "cubic" } else { "linear" };
+            let kind = table.kind.name();
             (TABLE, (times, rows, axes(table.axes), kind).into_pyobject(py)?)
         }
         Torque::Formula(law) => {

@@ -129,10 +129,10 @@ struct Orbits<const W: usize> {
     places: [[f64; W]; 3],
 }
 
-/// A table with its last value.
+/// A table with its last value, at a time of a step with this middle.
 struct CachedTable<'t> {
     table: &'t Table,
-    time: f64,
+    at: [f64; 2],
     torque: [f64; 3],
 }
 
@@ -190,7 +190,7 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
                 let same =
                     |law: &&Torque| matches!(law, Torque::Tabulated(other) if Arc::ptr_eq(table, other));
                 if each.iter().all(same) {
-                    Law::Tabulated(CachedTable { table, time: f64::NAN, torque: [f64::NAN; 3] })
+                    Law::Tabulated(CachedTable { table, at: [f64::NAN; 2], torque: [f64::NAN; 3] })
                 } else {
                     Law::Other(each)
                 }
@@ -202,7 +202,7 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
                 });
                 formulas.map_or(Law::Other(each), |formulas| Law::Formula(Box::new(formulas)))
             }
-            Torque::Function(_) => Law::Other(each),
+            Torque::Function(_) | Torque::Wheels(_) => Law::Other(each),
         };
         vec![law]
     }
@@ -299,13 +299,14 @@ fn place(orbit: &Orbit, time: f64) -> [f64; 3] {
 }
 
 impl CachedTable<'_> {
-    /// The torques at the times of all bodies, NaN where the table has none.
-    fn at<const W: usize, const F: bool>(&mut self, times: &[f64; W]) -> Three<W, F> {
+    /// The torques at the places of all bodies, NaN where the table has none.
+    fn at<const W: usize, const F: bool>(&mut self, place: &Place<W, F>) -> Three<W, F> {
         let mut torques = [Lanes::ZERO; 3];
         for l in 0..W {
-            if times[l] != self.time {
-                self.time = times[l];
-                self.torque = self.table.at(times[l]).map_or([f64::NAN; 3], |torque| torque.0);
+            let at = [place.time.0[l], place.middle.0[l]];
+            if at != self.at {
+                self.at = at;
+                self.torque = self.table.within(at[0], at[1]).map_or([f64::NAN; 3], |torque| torque.0);
             }
             for k in 0..3 {
                 torques[k].0[l] = self.torque[k];
@@ -353,7 +354,7 @@ fn lane_by_lane<const W: usize, const F: bool>(
         }
         let momentum = body.momentum(Bivector(at.omega.map(|lanes| lanes.0[l])));
         let phase = Phase { rotor: Rotor::from_unit_components(rotor), momentum, time: at.time.0[l] };
-        each[l].value(body, &phase).map_or([f64::NAN; 3], |torque| torque.0)
+        each[l].value_within(body, &phase, at.middle.0[l]).map_or([f64::NAN; 3], |torque| torque.0)
     })
 }
 
@@ -399,7 +400,7 @@ impl<const W: usize, const F: bool> Work for Term<'_, '_, W, F> {
                 cross(&momentum, &seen(&at.rotor, b))
             }
             Law::Tabulated(cached) => {
-                let torque = cached.at(&at.time.0);
+                let torque = cached.at(at);
                 if cached.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
             }
             Law::Formula(formulas) => formulas.torque(at),

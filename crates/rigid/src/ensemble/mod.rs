@@ -164,6 +164,8 @@ impl Ensemble {
         // A function is called for one body at a time.
         let called = |law: &Rows<Torque>| !equal && matches!(law.of(0), Torque::Function(_));
         let moved = self.forces.iter().any(|force| !matches!(force, Force::Constant(_)));
-        !moved && !self.laws.iter().any(|law| apart(law) || called(law))
+        // Only steps of single bodies carry the momentum of wheels with motors.
+        let driven = |law: &Rows<Torque>| matches!(law.of(0), Torque::Wheels(_));
+        !moved && !self.laws.iter().any(|law| apart(law) || called(law) || driven(law))
     }
 }

@@ -14,9 +14,10 @@
 //! - Heavy bodies of two shapes have an integral of the fourth and of the third degree: S. Kovalevskaya,
 //!   Acta Math. 12 (1889) 177; D. N. Goryachev, Mat. Sb. 21 (1900) 431, and S. A. Chaplygin (1901).
 
+use super::motors::driven;
 use super::torque::{E3, Torque};
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::Vector;
+use polhode_ga::{Bivector, Vector};
 
 /// Moments, directions and components count as equal, parallel and zero within this of their size.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -63,7 +64,9 @@ impl Conserved {
         let acting: Vec<&Torque> = torques.iter().filter(|t| acts(t)).collect();
         let keeps_size = acting.iter().all(|t| matches!(t, Torque::Larmor(_)));
         let mut found = Vec::new();
-        if acting.iter().all(|t| is_conservative(t, body)) {
+        let motors = |t: &Torque| if let Torque::Wheels(wheels) = t { Some(wheels.is_idle()) } else { None };
+        let motors: Vec<bool> = torques.iter().filter_map(motors).collect();
+        if acting.iter().all(|t| is_conservative(t, body)) && motors.iter().all(|idle| *idle) {
             found.push(Conserved::Energy);
         }
         if keeps_size {
@@ -71,6 +74,9 @@ impl Conserved {
         }
         if let (false, Some(axis)) = (acting.is_empty(), shared_axis(&acting)) {
             found.push(Conserved::AxialAngularMomentum(axis));
+        }
+        if !motors.is_empty() {
+            return found;
         }
         let wheel = body.wheel != Default::default();
         if (wheel || !acting.is_empty())
@@ -103,10 +109,10 @@ impl Conserved {
 
     /// Its value, in principal axes.
     pub fn value(self, body: &Gyrostat, torques: &[Torque], state: &Phase) -> f64 {
-        let about = |axis: Vector| state.rotor.apply_bivector(state.momentum).dual().dot(axis);
+        let about = |axis: Vector| state.rotor.apply_bivector(momentum(torques, state)).dual().dot(axis);
         match self {
             Conserved::Energy => energy(body, torques, state),
-            Conserved::AngularMomentum => state.momentum.norm(),
+            Conserved::AngularMomentum => momentum(torques, state).norm(),
             Conserved::AxialAngularMomentum(axis) => about(axis),
             Conserved::SpinAngularMomentum(axis) => state.momentum.dual().dot(axis),
             Conserved::Kovalevskaya(plane) => {
@@ -140,10 +146,11 @@ impl Conserved {
         let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
         // `T <= T0 + range`: `|ω|² i <= 2T` of the slowest turn for an energy, `|I(ω)|² <= 2 i T` of the
         // heaviest.
-        let momentum = start.momentum.norm() + (2.0 * largest * range).sqrt();
+        let size = momentum(torques, start).norm();
+        let momentum = size + (2.0 * largest * range).sqrt();
         match self {
             Conserved::Energy => kinetic + torques.iter().map(|t| t.size(body)).sum::<f64>(),
-            Conserved::AngularMomentum => start.momentum.norm(),
+            Conserved::AngularMomentum => size,
             Conserved::AxialAngularMomentum(_) | Conserved::SpinAngularMomentum(_) => momentum,
             Conserved::Kovalevskaya(plane) => plane.square_rate(body, kinetic + range).powi(2),
             Conserved::GoryachevChaplygin(plane) => plane.square_rate(body, kinetic + range).powf(1.5),
@@ -151,6 +158,14 @@ impl Conserved {
                 kinetic + torques.iter().map(|t| t.size(body)).sum::<f64>() + n.abs() * momentum
             }
         }
+    }
+}
+
+/// The momentum in principal axes, that of all wheels included.
+pub(crate) fn momentum(torques: &[Torque], state: &Phase) -> Bivector {
+    match driven(torques, state.time) {
+        Some(driven) => state.momentum + driven,
+        None => state.momentum,
     }
 }
 
@@ -163,7 +178,7 @@ pub fn energy(body: &Gyrostat, torques: &[Torque], state: &Phase) -> f64 {
 fn acts(torque: &Torque) -> bool {
     let nothing = Vector::default();
     match torque {
-        Torque::Wheel(_) => false,
+        Torque::Wheel(_) | Torque::Wheels(_) => false,
         Torque::Heavy(c) | Torque::Larmor(c) => *c != nothing,
         Torque::ConstantBody(torque) | Torque::ConstantSpace(torque) => torque.dual() != nothing,
         Torque::Magnetic { dipole, field } => *dipole != nothing && *field != nothing,

@@ -1,6 +1,7 @@
 //! Torques and accelerations for steppers: of bodies in lanes, or of one body.
 
 use super::force::Translation;
+use super::motors::driven;
 use super::torque::{Torque, total_torque};
 use crate::error::SimulateError;
 use crate::error::TorqueError;
@@ -18,6 +19,8 @@ pub(crate) struct Place<const W: usize, const F: bool> {
     pub omega: [Lanes<W, F>; 3],
     /// In s.
     pub time: Lanes<W, F>,
+    /// The middle of the step, in s, on whose side of a jump the laws are taken.
+    pub middle: Lanes<W, F>,
 }
 
 /// Torques and accelerations of bodies in lanes.
@@ -31,6 +34,12 @@ pub(crate) trait Forcing<const W: usize, const F: bool> {
     /// The torque in principal axes, without damping `−g I(Ω)` and the reaction of a wheel.
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
 
+    /// The momentum of all wheels in principal axes, from that of those without motors.
+    #[inline(always)]
+    fn wheel(&self, steady: &[Lanes<W, F>; 3], _: &Lanes<W, F>) -> [Lanes<W, F>; 3] {
+        *steady
+    }
+
     /// The acceleration in space of a centre of mass with this position and velocity; zero by default.
     #[inline(always)]
     fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
@@ -43,6 +52,8 @@ pub(crate) struct BodyForcing<'a> {
     body: &'a Gyrostat,
     torques: &'a [Torque],
     translation: Option<&'a Translation>,
+    /// Wheels with motors, whose momentum the steps carry.
+    wheels: &'a [Torque],
     failure: Option<SimulateError>,
 }
 
@@ -53,7 +64,12 @@ impl<'a> BodyForcing<'a> {
         torques: &'a [Torque],
         translation: Option<&'a Translation>,
     ) -> BodyForcing<'a> {
-        BodyForcing { body, torques, translation, failure: None }
+        BodyForcing { body, torques, translation, wheels: &[], failure: None }
+    }
+
+    /// The same with wheels, whose momentum the steps carry, instead of their torque on the body.
+    pub fn with_wheels(self, wheels: &'a [Torque]) -> BodyForcing<'a> {
+        BodyForcing { wheels, ..self }
     }
 
     /// The first failure, if there was one.
@@ -83,8 +99,15 @@ impl Forcing<1, false> for BodyForcing<'_> {
         if self.torques.is_empty() || self.failure.is_some() {
             return [One::ZERO; 3];
         }
-        let torque = total_torque(self.torques, self.body, &self.phase(at));
+        let torque = total_torque(self.torques, self.body, &self.phase(at), at.middle.0[0]);
         self.noted(torque.map(|torque| torque.0))
+    }
+
+    fn wheel(&self, steady: &[One; 3], time: &One) -> [One; 3] {
+        match driven(self.wheels, time.0[0]) {
+            Some(driven) => One::each((Bivector(One::alone(*steady)) + driven).0),
+            None => *steady,
+        }
     }
 
     fn acceleration(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {

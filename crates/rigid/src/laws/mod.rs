@@ -5,5 +5,6 @@ pub mod event;
 pub mod force;
 pub(crate) mod forcing;
 pub mod formula;
+pub(crate) mod motors;
 pub mod registry;
 pub mod torque;

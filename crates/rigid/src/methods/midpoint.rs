@@ -111,7 +111,7 @@ impl Midpoint {
             let root = Rotor::from_unit_components([(1.0 + secant) / size, x, y, z]);
             let middle = Phase { rotor: state.rotor * root, momentum: mean, time: state.time + 0.5 * h };
             let damping = self.body.carried(omega) * -self.damping;
-            let torque = total_torque(&self.torques, &self.body, &middle)? + damping;
+            let torque = total_torque(&self.torques, &self.body, &middle, middle.time)? + damping;
             // N_∥ + sec N_⊥ with (1 − sec)/x² = −1/(1 + sec).
             let along = half * (half.dual().dot(torque.dual()) / (1.0 + secant));
             residual = residual - (torque * secant - along) * (0.5 * h);

@@ -52,23 +52,24 @@ impl MoserVeselov {
     /// One step of length `h`, which may be negative. An error where `h|Ω|` is too large.
     pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
         let end = state.time + h;
-        self.kick(state, 0.5 * h)?;
+        self.kick(state, state.time + 0.5 * h, 0.5 * h)?;
         self.drift(state, h)?;
         state.time = end;
-        self.kick(state, 0.5 * h)?;
+        self.kick(state, end - 0.5 * h, 0.5 * h)?;
         if let Some(fixed) = self.fixed {
             restore_momentum(state, fixed);
         }
         Ok(())
     }
 
-    fn kick(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
+    /// A kick in a step with this middle.
+    fn kick(&self, state: &mut Phase, middle: f64, h: f64) -> Result<(), SimulateError> {
         if self.torques.is_empty() {
             return Ok(());
         }
         let mut acting = BodyForcing::new(&self.body, &self.torques, None);
         let mut spin = Spin::alone(state, Bivector::default());
-        self.kicks.kick(&mut acting, &mut spin, state.time, h);
+        self.kicks.kick(&mut acting, &mut spin, [state.time, middle], h);
         state.momentum = spin.one_momentum();
         acting.finish()
     }

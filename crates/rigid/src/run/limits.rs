@@ -74,13 +74,17 @@ impl StepBounds {
             peaks.map(at).fold(law.size_at(body, start), f64::max)
         };
         let torque: f64 = torques.iter().enumerate().map(size).sum();
+        // Rounding of the momentum of wheels is 1e-12 of this rate, as for a gyrostat.
+        let motors = |law: &Torque| if let Torque::Wheels(wheels) = law { wheels.sizes()[1] } else { 0.0 };
+        let wheels: f64 = torques.iter().map(motors).sum();
+        let smallest = body.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
         let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
         StepBounds {
             breaks,
             is_smooth: samples.iter().flatten().all(|sampled| sampled.stops.is_empty()),
             longest: options.max_step.unwrap_or(f64::INFINITY),
             limit: Limit { steps: options.most_steps(), reports_stiffness: options.may_change_method() },
-            least_rate: (torque / largest).sqrt(),
+            least_rate: (torque / largest).sqrt().max(1e-4 * wheels / smallest),
         }
     }
 }

@@ -14,9 +14,11 @@ pub(crate) mod sweep;
 
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
-use crate::laws::conserved::energy;
-use crate::laws::event::Event;
+use crate::laws::conserved::{energy, momentum};
+use crate::laws::event::{Event, Quantity};
 use crate::laws::force::{Force, Translation};
+use crate::laws::formula::Formula;
+use crate::laws::motors::{carrier, driven};
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::step_control::Limit;
 use crate::methods::{Method, fastest_rate};
@@ -81,6 +83,7 @@ pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
 
 /// A body, its angular velocity and its torques must be valid.
 pub(crate) fn check_body(body: &Gyrostat, omega: Bivector, torques: &[Torque]) -> Result<(), SimulateError> {
+    check_motors(body, torques)?;
     check_moments(body.moments)?;
     if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
         return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
@@ -99,12 +102,38 @@ pub(crate) fn check_body(body: &Gyrostat, omega: Bivector, torques: &[Torque]) -
     Ok(())
 }
 
+/// Wheels with motors must be lighter than the body, and other laws must not need the inertia with the wheels.
+fn check_motors(body: &Gyrostat, torques: &[Torque]) -> Result<(), SimulateError> {
+    if !torques.iter().any(|law| matches!(law, Torque::Wheels(_))) {
+        return Ok(());
+    }
+    let unfit = |reason| Err(SimulateError::Unfit { method: "reaction_wheels", reason });
+    if body.moments.iter().any(|moment| *moment <= 0.0) {
+        return unfit(
+            "have larger moments about their axes than the body about the same axes, but the inertia of the body \
+             includes its wheels; check the units",
+        );
+    }
+    let unclear = |law: &Torque| {
+        matches!(law, Torque::Damping(_) | Torque::Larmor(_))
+            || law.formula().is_some_and(Formula::needs_inertia)
+    };
+    if torques.iter().any(unclear) {
+        return unfit(NO_MOMENTUM);
+    }
+    Ok(())
+}
+
+const NO_MOMENTUM: &str = "cannot be combined with damping, larmor and formulas of L or I(…), whose momentum has parts of \
+                           the wheels; use viscous_damping, and Ω in formulas";
+
 impl Problem {
     /// A body with its rotor (body axes to space) and its angular velocity and torques in body axes. The
     /// inertia is about the centre of mass, or about the fixed point if there is one.
     pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector, torques: &[Torque]) -> Problem {
+        let (inertia, torques) = carrier(inertia, torques);
         let frame = inertia.principal_frame();
-        let torques: Vec<Torque> = torques.iter().map(|t| t.clone().in_axes(frame)).collect();
+        let torques: Vec<Torque> = torques.into_iter().map(|t| t.in_axes(frame)).collect();
         Problem {
             frame,
             body: Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) },
@@ -358,12 +387,23 @@ impl Problem {
     fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
         options.check(times)?;
         check_start_time(self.time)?;
+        let motors = self.torques.iter().any(|law| matches!(law, Torque::Wheels(_)));
+        let events = options.events.iter().filter_map(|event| match &event.quantity {
+            Quantity::Formula(formula) => Some(formula),
+            _ => None,
+        });
+        let forces = self.translation.iter().flat_map(|translation| &translation.forces);
+        let forces =
+            forces.filter_map(|force| if let Force::Formula(formula) = force { Some(formula) } else { None });
+        if motors && events.chain(forces).any(Formula::needs_inertia) {
+            return Err(SimulateError::Unfit { method: "reaction_wheels", reason: NO_MOMENTUM });
+        }
         check_body(&self.body, self.omega, &self.torques)
     }
 
     fn start(&self) -> Carried {
         let phase = Phase { rotor: self.rotor, momentum: self.body.momentum(self.omega), time: self.time };
-        Carried::new(phase, self.center)
+        Carried::new(phase, self.center).with_wheels(driven(&self.torques, self.time))
     }
 
     /// In body axes.
@@ -373,7 +413,7 @@ impl Problem {
             all.times.push(phase.time);
             all.rotors.push(phase.rotor * self.frame.reverse());
             all.omegas.push(self.frame.apply_bivector(self.body.omega(phase.momentum)));
-            all.momenta_space.push(phase.rotor.apply_bivector(phase.momentum));
+            all.momenta_space.push(phase.rotor.apply_bivector(momentum(&self.torques, phase)));
             all.energies.push(energy(&self.body, &self.torques, phase));
             all.centers.push(*center);
         }

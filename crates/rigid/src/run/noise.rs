@@ -57,7 +57,7 @@ impl Noise {
             1.0 + sign * self.size
         };
         let mut each = |v: [f64; 3]| v.map(|x| x * factor());
-        let mut momentum = each(if self.in_space { at.momentum_space.0 } else { at.phase.momentum.0 });
+        let momentum = each(if self.in_space { at.momentum_space.0 } else { at.phase.momentum.0 });
         let center = Center {
             position: Vector(each(at.center.position.0)),
             velocity: Vector(each(at.center.velocity.0)),
@@ -67,9 +67,9 @@ impl Noise {
         let rotor = Rotor::from_unit_components(rotor.map(|x| x / norm));
         let momentum_space = Bivector(momentum);
         if self.in_space {
-            momentum = rotor.reverse().apply_bivector(momentum_space).0;
-            let phase = Phase { rotor, momentum: Bivector(momentum), time: at.phase.time };
-            return Carried { phase, momentum_space, center, lost: Bivector::default() };
+            let momentum = rotor.reverse().apply_bivector(momentum_space) - at.driven;
+            let phase = Phase { rotor, momentum, time: at.phase.time };
+            return Carried { phase, momentum_space, driven: at.driven, center, lost: Bivector::default() };
         }
         Carried::new(Phase { rotor, momentum: Bivector(momentum), time: at.phase.time }, center)
     }

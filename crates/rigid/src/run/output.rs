@@ -1,6 +1,6 @@
 //! Output arrays of one body.
 
-use crate::laws::conserved::energy;
+use crate::laws::conserved::{energy, momentum};
 use crate::laws::torque::Torque;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
@@ -25,7 +25,7 @@ impl BodyOutput<'_> {
         phase: &Phase,
         center: &Center,
     ) {
-        let momentum = phase.rotor.apply_bivector(phase.momentum);
+        let momentum = phase.rotor.apply_bivector(momentum(torques, phase));
         self.rotors[4 * index..][..4].copy_from_slice(&(phase.rotor * frame.reverse()).components());
         let omega = frame.apply_bivector(body.omega(phase.momentum));
         self.omegas[3 * index..][..3].copy_from_slice(&omega.0);

@@ -110,9 +110,9 @@ fn is_predicted(values: &[Bivector], allowed: f64) -> bool {
 const CHECKED_STEPS: usize = 256;
 const INSIDE: usize = 12;
 
-/// Whether a law depends on time in an unknown way; tables have their own stops.
+/// Whether a law depends on time in an unknown way; tables and wheels have their own stops.
 fn is_to_be_sampled(law: &Torque) -> bool {
-    !law.is_autonomous() && !matches!(law, Torque::Tabulated(_))
+    !law.is_autonomous() && !matches!(law, Torque::Tabulated(_) | Torque::Wheels(_))
 }
 
 /// The warning for an aliased law.

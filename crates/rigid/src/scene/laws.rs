@@ -181,9 +181,9 @@ fn tabulated(reader: &mut Reader, value: &Value, entry: &Entry<Torque>) -> Optio
     let mut word = |name, words: &[&'static str]| {
         reader.optional(table, name, |reader, value| reader.word(value, name, words))
     };
-    let (frame, kind) = (word("frame", &["body", "space"]), word("kind", &["linear", "cubic"]));
+    let (frame, kind) = (word("frame", &["body", "space"]), word("kind", Kind::NAMES));
     let axes = if frame? == Some("space") { Axes::Space } else { Axes::Body };
-    let kind = if kind? == Some("cubic") { Kind::Cubic } else { Kind::Linear };
+    let kind = kind?.and_then(Kind::from_name).unwrap_or(Kind::Linear);
     let rows: Vec<Bivector> = torques?;
     placed(reader, value, torque::Table::new(times?, rows, axes, kind))
         .map(|table| Torque::Tabulated(Arc::new(table)))

@@ -2,6 +2,7 @@
 
 use super::{Member, Steps};
 use crate::error::SimulateError;
+use crate::laws::motors::driven;
 use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::run::engine::Engine;
@@ -23,12 +24,17 @@ impl Alone {
         Alone { at: Carried::new(start, Center::default()) }
     }
 
-    pub fn reset(&mut self, phase: Phase, center: Center) {
-        self.at = Carried::new(phase, center);
+    pub fn reset(&mut self, member: &Member, phase: Phase, center: Center) {
+        self.at = Carried::new(phase, center).with_wheels(driven(&member.torques, phase.time));
     }
 
     pub fn center(&self) -> Center {
         self.at.center
+    }
+
+    /// The angular velocity in principal axes.
+    pub fn principal_omega(&self, member: &Member) -> Bivector {
+        member.gyrostat.omega(self.at.phase.momentum)
     }
 
     /// Rotor (body axes to space) and angular velocity in body axes.
@@ -40,29 +46,31 @@ impl Alone {
         (rotor * member.frame.reverse(), member.frame.apply_bivector(omega))
     }
 
-    /// The state after equal steps under a held torque.
+    /// The state after equal steps, pieces of a step of the caller, under a held torque.
     pub fn stepped(
         &self,
         method: Method,
         member: &Member,
         held: Option<Torque>,
-        steps: &Steps,
+        pieces: &[Steps],
     ) -> Result<Alone, SimulateError> {
         let mut torques = member.torques.clone();
         torques.extend(held);
         let translation = member.translation.clone();
         let engine = Engine::new(method, member.gyrostat, &torques, translation, &self.at.phase)?;
         let mut at = self.at;
-        for k in 0..steps.count {
-            let (from, h) = steps.nth(k);
-            at.phase.time = from;
-            let (next, error) = engine.step(&at, h, 0.0)?;
-            if error.is_nan() || !is_finite(&next) {
-                return Err(SimulateError::Diverged { time: from + h });
+        for steps in pieces {
+            for k in 0..steps.count {
+                let (from, h) = steps.nth(k);
+                at.phase.time = from;
+                let (next, error) = engine.step(&at, h, 0.0)?;
+                if error.is_nan() || !is_finite(&next) {
+                    return Err(SimulateError::Diverged { time: from + h });
+                }
+                at = next;
             }
-            at = next;
+            at.phase.time = steps.to;
         }
-        at.phase.time = steps.from + steps.dt;
         Ok(Alone { at })
     }
 }

@@ -9,8 +9,10 @@ mod lanes;
 use crate::ensemble::{Ensemble, Start};
 use crate::error::SimulateError;
 use crate::laws::force::{Force, Translation};
-use crate::laws::torque::{Axes, Torque, wheel};
+use crate::laws::motors::carrier;
+use crate::laws::torque::{Axes, Torque, Wheels, wheel};
 use crate::methods::Method;
+use crate::methods::step_control::next_stop;
 use crate::run::check_body;
 use crate::run::engine::Engine;
 use crate::state::center::Center;
@@ -18,6 +20,7 @@ use crate::state::phase::{Gyrostat, Phase};
 use alone::Alone;
 use lanes::Groups;
 use polhode_ga::{Bivector, Rotor, Vector};
+use std::sync::Arc;
 
 /// The largest turn in a step of the method, in rad. Beyond it no method has its order.
 const LARGEST_TURN: f64 = 1.0;
@@ -48,6 +51,8 @@ struct Member {
     frame: Rotor,
     gyrostat: Gyrostat,
     torques: Vec<Torque>,
+    /// Those without commands of the caller.
+    given: Vec<Torque>,
     center: Center,
     /// Of constant forces.
     acceleration: Vector,
@@ -66,6 +71,8 @@ pub struct Stepper {
     bodies: Bodies,
     method: Method,
     longest: f64,
+    /// Ascending times at which a law jumps: steps of the method end there.
+    jumps: Vec<f64>,
     time: f64,
     moves: bool,
 }
@@ -87,13 +94,15 @@ impl Stepper {
                 .map_err(|error| (body, error))?;
         }
         let moved = members.iter().any(|member| member.translation.is_some());
-        let in_lanes = count > 1 && method == Method::Classical && !moved;
+        let driven = members.iter().any(|member| member.wheels().next().is_some());
+        let in_lanes = count > 1 && method == Method::Classical && !moved && !driven;
         let bodies = if in_lanes {
             Bodies::Lanes(lanes::groups(&members))
         } else {
             Bodies::Alone(members.iter().map(Alone::new).collect())
         };
-        let mut stepper = Stepper { members, bodies, method, longest, time: 0.0, moves: false };
+        let (jumps, time, moves) = (Vec::new(), 0.0, false);
+        let mut stepper = Stepper { members, bodies, method, longest, jumps, time, moves };
         stepper.reset(&ensemble.starts);
         Ok(stepper)
     }
@@ -103,12 +112,56 @@ impl Stepper {
         self.time = starts.first().map_or(0.0, |start| start.time);
         for (body, (member, start)) in self.members.iter_mut().zip(starts).enumerate() {
             member.center = start.center;
+            if member.wheels().next().is_some() {
+                member.torques.clone_from(&member.given);
+            }
             match &mut self.bodies {
-                Bodies::Alone(bodies) => bodies[body].reset(member.phase(start), start.center),
+                Bodies::Alone(bodies) => bodies[body].reset(member, member.phase(start), start.center),
                 Bodies::Lanes(groups) => groups.reset(body, &member.phase(start)),
             }
         }
         self.moves = self.members.iter().any(Member::moves);
+        self.find_jumps();
+    }
+
+    fn find_jumps(&mut self) {
+        let laws = self.members.iter().flat_map(|member| &member.torques);
+        self.jumps = laws.flat_map(Torque::jumps).copied().collect();
+        self.jumps.sort_by(f64::total_cmp);
+        self.jumps.dedup();
+    }
+
+    /// The number of wheels with motors of each body.
+    pub fn wheels(&self) -> usize {
+        self.members.first().map_or(0, |member| member.wheels().map(Wheels::count).sum())
+    }
+
+    /// Commands the motors of all wheels from now on: a row of torques in N m for all bodies, or one for each.
+    pub fn command(&mut self, torques: &[f64]) {
+        let count = self.wheels();
+        let shared = torques.len() == count;
+        for (body, member) in self.members.iter_mut().enumerate() {
+            let mut row = if shared { torques } else { &torques[body * count..][..count] };
+            for law in &mut member.torques {
+                if let Torque::Wheels(wheels) = law {
+                    let (own, rest) = row.split_at(wheels.count());
+                    *law = Torque::Wheels(Arc::new(wheels.commanded(self.time, own)));
+                    row = rest;
+                }
+            }
+        }
+        self.find_jumps();
+    }
+
+    /// The speeds of all wheels with motors relative to their bodies, in rad/s, body by body.
+    pub fn wheel_speeds(&self) -> Vec<f64> {
+        let Bodies::Alone(bodies) = &self.bodies else { return Vec::new() };
+        let mut speeds = Vec::new();
+        for (body, member) in bodies.iter().zip(&self.members) {
+            let omega = body.principal_omega(member);
+            speeds.extend(member.wheels().flat_map(|wheels| wheels.speeds(self.time, omega)));
+        }
+        speeds
     }
 
     /// The number of bodies.
@@ -128,22 +181,21 @@ impl Stepper {
 
     /// One step of length `dt` in s, which may be negative. On an error no state has changed.
     pub fn step(&mut self, dt: f64, held: Held<'_>) -> Result<(), Failed> {
-        // A dt of k longest steps, up to rounding, has k steps.
-        let count = (dt.abs() / self.longest * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0) as u64;
-        let h = dt / count as f64;
-        self.check_turns(h)?;
-        let steps = Steps { from: self.time, dt, count };
+        let pieces = self.pieces(dt);
+        for piece in &pieces {
+            self.check_turns(piece.dt / piece.count as f64)?;
+        }
         match &mut self.bodies {
             Bodies::Alone(bodies) => {
                 let mut after = Vec::with_capacity(bodies.len());
                 for (number, (body, member)) in bodies.iter().zip(&self.members).enumerate() {
                     let torque = member.held(held, number);
-                    let next = body.stepped(self.method, member, torque, &steps);
+                    let next = body.stepped(self.method, member, torque, &pieces);
                     after.push(next.map_err(|error| (number, error))?);
                 }
                 *bodies = after;
             }
-            Bodies::Lanes(groups) => groups.step(&self.members, held, &steps),
+            Bodies::Lanes(groups) => pieces.iter().for_each(|steps| groups.step(&self.members, held, steps)),
         }
         let moving = if self.moves { &mut self.members[..] } else { &mut [] };
         for (number, member) in moving.iter_mut().enumerate() {
@@ -154,6 +206,22 @@ impl Stepper {
         }
         self.time += dt;
         Ok(())
+    }
+
+    /// A step of length `dt` in pieces of equal steps, which end where a law jumps.
+    fn pieces(&self, dt: f64) -> Vec<Steps> {
+        let (from, to) = (self.time, self.time + dt);
+        let mut pieces = Vec::with_capacity(1);
+        let mut begin = from;
+        while begin != to || pieces.is_empty() {
+            let end = next_stop(&self.jumps, begin, to);
+            let dt = if (begin, end) == (from, to) { dt } else { end - begin };
+            // A dt of k longest steps, up to rounding, has k steps.
+            let count = (dt.abs() / self.longest * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0) as u64;
+            pieces.push(Steps { from: begin, to: end, dt, count });
+            begin = end;
+        }
+        pieces
     }
 
     /// Writes rotors (body axes to space) and angular velocities in body axes.
@@ -195,10 +263,11 @@ impl Stepper {
     }
 }
 
-/// Equal steps from a time on.
+/// Equal steps from one time to another, dt later.
 #[derive(Clone, Copy, Debug)]
 struct Steps {
     from: f64,
+    to: f64,
     dt: f64,
     count: u64,
 }
@@ -208,22 +277,25 @@ impl Steps {
     #[inline(always)]
     fn nth(&self, k: u64) -> (f64, f64) {
         let time = |k: u64| {
-            if k == self.count {
-                self.from + self.dt
-            } else {
-                self.from + self.dt * (k as f64 / self.count as f64)
-            }
+            if k == self.count { self.to } else { self.from + self.dt * (k as f64 / self.count as f64) }
         };
         (time(k), time(k + 1) - time(k))
     }
 }
 
 impl Member {
+    /// Its wheels with motors.
+    fn wheels(&self) -> impl Iterator<Item = &Wheels> {
+        self.torques
+            .iter()
+            .filter_map(|law| if let Torque::Wheels(wheels) = law { Some(&**wheels) } else { None })
+    }
+
     fn new(ensemble: &Ensemble, body: usize) -> Result<Member, SimulateError> {
-        let inertia = ensemble.inertias.of(body);
+        let laws: Vec<Torque> = ensemble.laws.iter().map(|law| law.of(body).clone()).collect();
+        let (inertia, laws) = carrier(ensemble.inertias.of(body), &laws);
         let frame = inertia.principal_frame();
-        let torques: Vec<Torque> =
-            ensemble.laws.iter().map(|law| law.of(body).clone().in_axes(frame)).collect();
+        let torques: Vec<Torque> = laws.into_iter().map(|law| law.in_axes(frame)).collect();
         let mass = *ensemble.masses.of(body);
         let steady = ensemble.forces.iter().try_fold(Vector::default(), |sum, force| match force {
             Force::Constant(f) => Some(sum + *f),
@@ -240,6 +312,7 @@ impl Member {
         Ok(Member {
             frame,
             gyrostat: Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) },
+            given: torques.clone(),
             torques,
             center: Center::default(),
             acceleration,

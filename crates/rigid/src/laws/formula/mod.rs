@@ -300,6 +300,11 @@ impl Formula {
         Formula { frame: self.frame * frame, ..self }
     }
 
+    /// Whether it needs the inertia or a momentum.
+    pub(crate) fn needs_inertia(&self) -> bool {
+        self.needs(|motion| matches!(motion, Motion::Inertia | Motion::MomentumBody | Motion::MomentumSpace))
+    }
+
     pub(crate) fn needs(&self, what: impl Fn(Motion) -> bool) -> bool {
         self.sources.iter().any(|source| matches!(source, Source::Motion(motion) if what(*motion)))
     }

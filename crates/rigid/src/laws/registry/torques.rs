@@ -3,7 +3,7 @@
 use super::Shape::{Bivectors, Gains as Factors, Numbers, Scalar, Vector as Components, Word};
 use super::{Argument, Entry, Kernel, Limit, Shape, TABLE, argument, pure, three};
 use crate::error::TorqueError;
-use crate::laws::torque::{Gains, Orbit, Torque};
+use crate::laws::torque::{Gains, Kind, Orbit, Torque};
 use crate::units::Quantity;
 use polhode_ga::{Bivector, Rotor, Vector};
 
@@ -86,7 +86,7 @@ pub static TORQUES: [Entry<Torque>; 14] = [
             argument("times", "times", Quantity::Time, Numbers),
             argument("torques", "torques", Quantity::Torque, Bivectors),
             argument("frame", "frame", Quantity::Torque, Word(&["body", "space"])).or(&[]),
-            argument("kind", "kind", Quantity::Torque, Word(&["linear", "cubic"])).or(&[]),
+            argument("kind", "kind", Quantity::Torque, Word(Kind::NAMES)).or(&[]),
         ],
         kernel: Kernel::Table,
     },

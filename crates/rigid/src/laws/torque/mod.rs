@@ -4,6 +4,7 @@ mod gains;
 pub(crate) mod lanes;
 mod orbit;
 mod table;
+mod wheels;
 
 pub use super::formula::Axes;
 use super::formula::{Formula, Motion};
@@ -13,11 +14,12 @@ use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::{Function, Point};
 pub use gains::Gains;
 use lanes::{gradient, quadratic, seen};
-pub use orbit::Orbit;
+pub use orbit::{KeplerOrbit, Orbit, dipole_field, on_orbit};
 use polhode_ga::simd::lanes::One;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::sync::Arc;
 pub use table::{Kind, Table};
+pub use wheels::{Wheel, Wheels};
 
 pub(crate) const E3: Vector = Vector([0.0, 0.0, 1.0]);
 
@@ -59,6 +61,8 @@ pub enum Torque {
     /// A wheel inside the body with this constant momentum relative to it, kg m²/s: a part of the body
     /// ([`Gyrostat`]), not a torque.
     Wheel(Bivector),
+    /// The reaction of wheels with motors.
+    Wheels(Arc<Wheels>),
     /// `−kp Θ − kd Ω`, with `R = target exp(−½Θ)`, `|Θ| <= π`.
     Control {
         /// kp, in N m.
@@ -113,6 +117,7 @@ impl Torque {
             Torque::Heavy(c) => Torque::Heavy(back.apply(c)),
             Torque::ConstantBody(n) => Torque::ConstantBody(back.apply_bivector(n)),
             Torque::Wheel(h) => Torque::Wheel(back.apply_bivector(h)),
+            Torque::Wheels(wheels) => Torque::Wheels(Arc::new(wheels.turned(back))),
             Torque::ViscousDamping(d) => Torque::ViscousDamping(d.in_axes(frame)),
             Torque::Magnetic { dipole, field } => Torque::Magnetic { dipole: back.apply(dipole), field },
             Torque::TorsionSpring { stiffness, rest } => {
@@ -159,6 +164,7 @@ impl Torque {
             | Torque::ViscousDamping(_)
             | Torque::Control { .. }
             | Torque::Larmor(_)
+            | Torque::Wheels(_)
             | Torque::Function(_) => Dependence::Rate,
             Torque::Formula(_) | Torque::Registered(_) => match self.needs(Motion::is_rate) {
                 true => Dependence::Rate,
@@ -183,14 +189,26 @@ impl Torque {
     /// Whether the torque does not depend on time explicitly.
     pub fn is_autonomous(&self) -> bool {
         match self {
-            Torque::GravityGradient(_) | Torque::Tabulated(_) | Torque::Function(_) => false,
+            Torque::GravityGradient(_) | Torque::Tabulated(_) | Torque::Wheels(_) | Torque::Function(_) => {
+                false
+            }
             _ => !self.needs(|motion| motion == Motion::Time),
         }
     }
 
     /// The torque in principal axes, without the part `−g I(Ω)` ([`Torque::damping_rate`]) and that of a
-    /// wheel.
+    /// wheel. At a jump in time, that after it.
     pub fn value(&self, body: &Gyrostat, state: &Phase) -> Result<Bivector, TorqueError> {
+        self.value_within(body, state, state.time)
+    }
+
+    /// The torque at a stage of a step whose middle is given, in s: at a jump, that on the side of the middle.
+    pub(crate) fn value_within(
+        &self,
+        body: &Gyrostat,
+        state: &Phase,
+        middle: f64,
+    ) -> Result<Bivector, TorqueError> {
         let rotor = state.rotor;
         let r = One::each(rotor.components());
         let from_space = |b: Bivector| Bivector(One::alone(seen(&r, &One::each(b.0))));
@@ -210,6 +228,7 @@ impl Torque {
                 let omega = One::each(body.omega(state.momentum).0);
                 Bivector(One::alone(quadratic(One::all(*k), &omega)))
             }
+            Torque::Wheels(wheels) => wheels.reaction(body.omega(state.momentum), state.time, middle),
             Torque::ViscousDamping(d) => -d.times(body.omega(state.momentum)),
             Torque::Magnetic { dipole, field } => dipole.wedge(from_space(field.undual()).dual()),
             Torque::TorsionSpring { stiffness, rest } => turn_from(*rest, rotor) * -stiffness,
@@ -219,7 +238,7 @@ impl Torque {
             }
             Torque::Larmor(b) => state.momentum.dual().wedge(from_space(b.undual()).dual()),
             Torque::Tabulated(table) => {
-                let torque = table.at(state.time)?;
+                let torque = table.within(state.time, middle)?;
                 match table.axes {
                     Axes::Body => torque,
                     Axes::Space => from_space(torque),
@@ -268,6 +287,7 @@ impl Torque {
             Torque::TorsionSpring { stiffness, .. } => stiffness.abs() * std::f64::consts::PI,
             Torque::Control { stiffness, .. } => stiffness.bound() * std::f64::consts::PI,
             Torque::Tabulated(table) => table.largest(),
+            Torque::Wheels(wheels) => wheels.sizes()[0],
             Torque::Registered(law) => law.size,
             Torque::Damping(_)
             | Torque::QuadraticDamping(_)
@@ -284,7 +304,7 @@ impl Torque {
         self.size(body).max(self.value(body, state).map_or(0.0, |torque| torque.norm()))
     }
 
-    /// The potential energy in J, of a law that has one.
+    /// The potential energy in J, of a law that has one; of wheels with motors the energy of their rotation.
     pub fn potential(&self, body: &Gyrostat, state: &Phase) -> Option<f64> {
         let back = state.rotor.reverse();
         match self {
@@ -294,6 +314,7 @@ impl Torque {
                 Some(0.5 * stiffness * turn_from(*rest, state.rotor).norm_squared())
             }
             Torque::Wheel(_) => Some(0.0),
+            Torque::Wheels(wheels) => Some(wheels.energy(state.time)),
             Torque::Registered(law) => {
                 let at = Point { body, mass: f64::NAN, phase: state, center: &Center::default() };
                 law.potential.as_ref()?.value(&at).ok()?.components().first().copied()
@@ -317,7 +338,20 @@ impl Torque {
 
     /// Times at which the law is not smooth, in increasing order: steps end there.
     pub fn breaks(&self) -> &[f64] {
-        if let Torque::Tabulated(table) = self { table.times() } else { &[] }
+        match self {
+            Torque::Tabulated(table) => table.times(),
+            Torque::Wheels(wheels) => wheels.breaks(),
+            _ => &[],
+        }
+    }
+
+    /// Those of the breaks at which it jumps.
+    pub fn jumps(&self) -> &[f64] {
+        match self {
+            Torque::Tabulated(table) => table.jumps(),
+            Torque::Wheels(wheels) => wheels.breaks(),
+            _ => &[],
+        }
     }
 }
 
@@ -331,16 +365,17 @@ pub fn turn_from(rest: Rotor, rotor: Rotor) -> Bivector {
     Bivector(One::alone(lanes::turn_from(&rest, &rotor)))
 }
 
-/// The sum of all laws at a state, without damping and wheels.
+/// The sum of all laws at a stage of a step whose middle is given, without damping and wheels.
 pub(crate) fn total_torque(
     torques: &[Torque],
     body: &Gyrostat,
     state: &Phase,
+    middle: f64,
 ) -> Result<Bivector, SimulateError> {
     let mut total = Bivector::default();
     for law in torques {
         let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
-        total += law.value(body, state).map_err(failed)?;
+        total += law.value_within(body, state, middle).map_err(failed)?;
     }
     Ok(total)
 }

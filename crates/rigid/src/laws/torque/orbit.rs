@@ -2,7 +2,8 @@
 
 use crate::error::TorqueError;
 use crate::numerics::double_double::DoubleDouble;
-use polhode_ga::Vector;
+use crate::state::point::{Function, Seen};
+use polhode_ga::{Bivector, Vector};
 use std::f64::consts::{PI, TAU};
 
 /// An orbit in the plane e1e2 of space, from e1 towards e2, with the periapsis on e1.
@@ -59,6 +60,12 @@ impl Orbit {
     /// long orbit; with `v = 2 sin²(E/2) = 1 − cos E` they are `(1−e) + e v` and `(1−e) − v`, whose `1 − e`
     /// is exact there.
     pub fn place(&self, time: f64) -> (Vector, f64) {
+        let (direction, distance) = self.at(time);
+        (direction, 1.0 / (distance * distance * distance))
+    }
+
+    /// The direction u, and `r/a`.
+    fn at(&self, time: f64) -> (Vector, f64) {
         let (e, mean) = (self.eccentricity, self.mean_anomaly(time));
         if e == 0.0 {
             let (sin, cos) = sin_cos(mean);
@@ -69,7 +76,7 @@ impl Orbit {
         let distance = (1.0 - e) + e * versine;
         let along = (1.0 - e) - versine;
         let across = ((1.0 - e) * (1.0 + e)).sqrt() * anomaly.sin();
-        (Vector([along / distance, across / distance, 0.0]), 1.0 / (distance * distance * distance))
+        (Vector([along / distance, across / distance, 0.0]), distance)
     }
 
     /// `(a/r)³` at the periapsis.
@@ -81,6 +88,59 @@ impl Orbit {
     fn mean_anomaly(&self, time: f64) -> DoubleDouble {
         DoubleDouble::two_product(self.rate, time) + self.anomaly.into()
     }
+}
+
+/// An orbit with its size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeplerOrbit {
+    orbit: Orbit,
+    axis: f64,
+}
+
+impl KeplerOrbit {
+    /// An orbit with its semi-major axis in m about a centre with this gravitational parameter in m³/s².
+    pub fn new(axis: f64, eccentricity: f64, anomaly: f64, mu: f64) -> Result<KeplerOrbit, TorqueError> {
+        for (name, value) in [("semi_major_axis", axis), ("mu", mu)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(TorqueError(format!("{name} is {value}; it must be positive and finite")));
+            }
+        }
+        let orbit = Orbit::new((mu / axis).sqrt() / axis, eccentricity, anomaly)?;
+        Ok(KeplerOrbit { orbit, axis })
+    }
+
+    /// The mean motion `√(μ/a³)`, in rad/s.
+    pub fn rate(&self) -> f64 {
+        self.orbit.rate
+    }
+
+    /// The position relative to the centre, in m.
+    pub fn position(&self, time: f64) -> Vector {
+        let (direction, distance) = self.orbit.at(time);
+        direction * (self.axis * distance)
+    }
+}
+
+/// The torque `m∧(~R B R)` on a dipole m of the body in A m², in body axes, in a field B in space in T, a function of time
+/// and of the position on an orbit.
+pub fn on_orbit(
+    dipole: Vector,
+    orbit: KeplerOrbit,
+    field: impl Fn(f64, Vector) -> Result<Vector, TorqueError> + Send + Sync + 'static,
+) -> Function<Bivector> {
+    Function::new(move |seen: &Seen| {
+        let field = field(seen.time, orbit.position(seen.time))?;
+        Ok(dipole.wedge(seen.rotor.reverse().apply(field)))
+    })
+}
+
+/// The field of a dipole M in A m² at the origin: `μ0/4π (3 (M·u) u − M)/r³` at `x = r u`, in T.
+pub fn dipole_field(moment: Vector, place: Vector) -> Vector {
+    /// `μ0/4π` in T m/A.
+    const STRENGTH: f64 = 1e-7;
+    let distance = place.norm();
+    let u = place / distance;
+    (u * (3.0 * moment.dot(u)) - moment) * (STRENGTH / (distance * distance * distance))
 }
 
 /// An angle without its whole turns, in [−π, π].

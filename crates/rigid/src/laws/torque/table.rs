@@ -11,6 +11,27 @@ pub enum Kind {
     Linear,
     /// By the cubic spline with "not a knot" ends; the parabola through three rows, the line through two.
     Cubic,
+    /// Held from each time to the next, where it jumps; the last row ends the table.
+    Previous,
+}
+
+impl Kind {
+    /// The names of all kinds, the default first.
+    pub const NAMES: &[&str] = &["linear", "cubic", "previous"];
+
+    /// The kind of this name.
+    pub fn from_name(name: &str) -> Option<Kind> {
+        [Kind::Linear, Kind::Cubic, Kind::Previous].into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Linear => "linear",
+            Kind::Cubic => "cubic",
+            Kind::Previous => "previous",
+        }
+    }
 }
 
 /// Torques at increasing times, interpolated by polynomials of degree 3 at most.
@@ -61,8 +82,14 @@ impl Table {
         Ok(Table { axes, kind, times, torques, slopes })
     }
 
-    /// The torque at a time between the first and the last.
+    /// The torque at a time between the first and the last; at a jump, that after it.
     pub fn at(&self, time: f64) -> Result<Bivector, TorqueError> {
+        self.within(time, time)
+    }
+
+    /// The torque at a time of a step whose middle is given. A step ends at a jump at the latest: there, and a rounding
+    /// beyond, the torque is that of its middle.
+    pub(crate) fn within(&self, time: f64, middle: f64) -> Result<Bivector, TorqueError> {
         let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
         // A step to the last time may end a rounding after it.
         let rounding = 4.0 * f64::EPSILON * first.abs().max(last.abs());
@@ -70,6 +97,10 @@ impl Table {
             return Err(TorqueError(format!(
                 "the table of torques spans {first} s to {last} s; add rows for all times of the simulation"
             )));
+        }
+        if self.kind == Kind::Previous {
+            let row = self.times.partition_point(|t| *t <= middle).max(1) - 1;
+            return Ok(self.torques[row]);
         }
         let time = time.clamp(first, last);
         let i = self.times.partition_point(|t| *t <= time).clamp(1, self.times.len() - 1) - 1;
@@ -88,6 +119,11 @@ impl Table {
     /// The times of the rows.
     pub fn times(&self) -> &[f64] {
         &self.times
+    }
+
+    /// The times at which the torque jumps.
+    pub(crate) fn jumps(&self) -> &[f64] {
+        if self.kind == Kind::Previous { &self.times } else { &[] }
     }
 
     /// The torques at the times.

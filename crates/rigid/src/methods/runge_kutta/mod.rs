@@ -24,6 +24,7 @@ use super::classical::{Bodies, renormalize};
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
 use crate::laws::forcing::{BodyForcing, Forcing, Place};
+use crate::laws::motors::driven;
 use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
@@ -54,6 +55,7 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     let nothing = Lanes::all(f64::NAN);
     let mut slopes = [Change([Lanes::ZERO; N]); STAGES];
     let mut widest = Lanes::ZERO;
+    let middle = h.times_plus(Lanes::all(0.5), from.time);
     for stage in 0..STAGES {
         let change = Change::combined(ROWS[stage], &slopes, h);
         let turned = change.part(0);
@@ -63,7 +65,7 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
             return (*from, nothing);
         }
         let dt = Lanes::all(NODES[stage]) * h;
-        slopes[stage] = change.slope(bodies, forcing, from, square, dt);
+        slopes[stage] = change.slope(bodies, forcing, from, square, (dt, middle));
     }
     let change = Change::combined(WEIGHTS, &slopes, h);
     let mut to = change.moved(from, h);
@@ -145,7 +147,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         to
     }
 
-    /// σ' and L' at `from` changed by σ, whose square is given, and ΔL.
+    /// σ' and L' at `from` changed by σ, whose square is given, and ΔL, a time dt later; the middle is that of the step.
     #[inline(always)]
     fn slope<E: Forcing<W, F>>(
         &self,
@@ -153,7 +155,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         forcing: &mut E,
         from: &Points<W, F>,
         square: Lanes<W, F>,
-        dt: Lanes<W, F>,
+        (dt, middle): (Lanes<W, F>, Lanes<W, F>),
     ) -> Self {
         let turned = self.part(0);
         let (turn, cotangent) = exponential(&turned, square);
@@ -161,8 +163,9 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         let at = self.moved(from, dt);
         let axes = matrix(&rotor);
         let momentum = mapped_back(&axes, &at.momentum);
-        let omega = bodies.omega(&momentum);
-        let place = Place { rotor, omega, time: at.time };
+        let wheel = forcing.wheel(&bodies.wheel, &at.time);
+        let omega = bodies.omega_beside(&momentum, &wheel);
+        let place = Place { rotor, omega, time: at.time, middle };
         let omega = mapped(&axes, &omega);
         let first = cross(&turned, &omega);
         let second = cross(&turned, &first);
@@ -174,7 +177,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         if E::ACTS {
             let mut torque = forcing.torque(&place);
             for k in 0..3 {
-                let carried = momentum[k] - bodies.wheel[k];
+                let carried = momentum[k] - wheel[k];
                 torque[k] = bodies.damping.times_from(carried, torque[k]);
             }
             slope[3..6].copy_from_slice(&mapped(&axes, &torque));
@@ -244,7 +247,9 @@ fn norm<const W: usize, const F: bool>(a: &[Lanes<W, F>; 3]) -> Lanes<W, F> {
 #[derive(Clone, Debug)]
 pub struct RungeKutta {
     body: Gyrostat,
+    /// All laws but the wheels with motors: their momentum is carried with that of the body.
     torques: Vec<Torque>,
+    wheels: Vec<Torque>,
     translation: Option<Translation>,
     alone: Bodies<1, false>,
 }
@@ -253,7 +258,8 @@ impl RungeKutta {
     /// Moments must be positive; torques and forces in principal axes. Without a translation the centre of mass stays.
     pub fn new(body: Gyrostat, torques: Vec<Torque>, translation: Option<Translation>) -> RungeKutta {
         let alone = Bodies::new([(body, damping_rate(&torques))]);
-        RungeKutta { body, torques, translation, alone }
+        let (wheels, torques) = torques.into_iter().partition(|law| matches!(law, Torque::Wheels(_)));
+        RungeKutta { body, torques, wheels, translation, alone }
     }
 
     /// One step of length `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
@@ -262,13 +268,18 @@ impl RungeKutta {
         let fastest = Lanes([fastest.max(self.body.least_rate())]);
         let mut at = Points::NONE;
         at.set(0, from);
-        let mut acting = BodyForcing::new(&self.body, &self.torques, self.translation.as_ref());
+        let mut acting =
+            BodyForcing::new(&self.body, &self.torques, self.translation.as_ref()).with_wheels(&self.wheels);
         let (alone, h) = (&self.alone, One::each([h])[0]);
         let (to, error) = match self.translation {
             None => step::<6, 1, false, _>(alone, &mut acting, &at, h, fastest),
             Some(_) => step::<12, 1, false, _>(alone, &mut acting, &at, h, fastest),
         };
         acting.finish()?;
-        Ok((to.get(0), error.0[0]))
+        let mut to = to.get(0);
+        if let Some(driven) = driven(&self.wheels, to.phase.time) {
+            (to.driven, to.phase.momentum) = (driven, to.phase.momentum - driven);
+        }
+        Ok((to, error.0[0]))
     }
 }

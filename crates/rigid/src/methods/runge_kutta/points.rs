@@ -63,7 +63,8 @@ impl<const W: usize, const F: bool> Points<W, F> {
         let momentum = rotor.reverse().apply_bivector(momentum_space);
         let center = Center { position: Vector([c[0], c[1], c[2]]), velocity: Vector([c[3], c[4], c[5]]) };
         let lost = Bivector([0, 1, 2].map(|k| self.lost[k].0[l]));
-        Carried { phase: Phase { rotor, momentum, time: self.time.0[l] }, momentum_space, center, lost }
+        let phase = Phase { rotor, momentum, time: self.time.0[l] };
+        Carried { phase, momentum_space, driven: Bivector::default(), center, lost }
     }
 
     /// Whether all is finite in a lane.

@@ -65,13 +65,13 @@ impl Splitting {
         let mut spin = Spin::alone(state, *lost);
         let (stages, last) = &self.stages;
         if self.exact_drift {
-            let mut time = state.time;
+            let (mut time, middle) = (state.time, state.time + 0.5 * h);
             for &(kick, drift) in stages {
-                self.turns.kick(&mut acting, &mut spin, time, kick * h);
+                self.turns.kick(&mut acting, &mut spin, [time, middle], kick * h);
                 self.drift(&mut spin, drift * h);
                 time += drift * h;
             }
-            self.turns.kick(&mut acting, &mut spin, time, last * h);
+            self.turns.kick(&mut acting, &mut spin, [time, middle], last * h);
             self.turns.finish(&mut spin);
         } else {
             self.turns.step((stages, *last), &mut acting, &mut spin, state.time, h);

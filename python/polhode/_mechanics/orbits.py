@@ -1,0 +1,93 @@
+"""`KeplerOrbit` and the field of a dipole: what a satellite meets along its way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.constructors import as_vectors, vector
+from polhode._algebra.multivector import Multivector
+from polhode._mechanics.laws import number
+from polhode._mechanics.parameters import vectors
+from polhode._support.arrays import as_floats
+
+
+@dataclass(frozen=True)
+class KeplerOrbit:
+    """A Kepler orbit in the plane e1e2 of space, from e1 towards e2, with the periapsis on e1.
+
+    Space axes are those of the orbit: give directions such as that of a planet's axis in them.
+
+    Parameters
+    ----------
+    semi_major_axis
+        a in m.
+    eccentricity
+        e, at least 0 and below 1.
+    mean_anomaly
+        The mean anomaly at time 0, in rad.
+    mu
+        The gravitational parameter of the planet in m³/s², by default that of the Earth.
+    """
+
+    semi_major_axis: float
+    eccentricity: float = 0.0
+    mean_anomaly: float = 0.0
+    mu: float = 3.986004418e14
+
+    def __post_init__(self) -> None:
+        for name in ("semi_major_axis", "eccentricity", "mean_anomaly", "mu"):
+            object.__setattr__(self, name, number(getattr(self, name), name))
+        _native.orbit_positions(self._numbers, np.zeros(0))
+
+    @property
+    def rate(self) -> float:
+        """The mean motion ``√(μ/a³)``, in rad/s."""
+        return _native.orbit_positions(self._numbers, np.zeros(0))[0]
+
+    @property
+    def period(self) -> float:
+        """The time of a turn, in s."""
+        return 2 * np.pi / self.rate
+
+    def position(self, t: Any) -> Multivector:
+        """Return the position relative to the planet at times (...), vectors in m."""
+        times = as_floats(t, "t")
+        _, rows = _native.orbit_positions(self._numbers, np.ascontiguousarray(times.ravel()))
+        return vector(rows.reshape(*times.shape, 3))
+
+    @property
+    def _numbers(self) -> tuple[float, float, float, float]:
+        return self.semi_major_axis, self.eccentricity, self.mean_anomaly, self.mu
+
+
+@dataclass(frozen=True)
+class DipoleField:
+    """The magnetic field of a planet's dipole; `moment` are the components in space in A m²."""
+
+    moment: tuple[float, ...]
+
+    def __repr__(self) -> str:
+        return f"dipole_field({list(self.moment)})"
+
+    def __call__(self, t: float, position: Any) -> Multivector:
+        """Return the field in T at positions (..., 3) in m relative to the planet; t does not matter."""
+        places = as_vectors(position, "position")
+        rows = np.ascontiguousarray(places.reshape(-1, 3))
+        fields = _native.dipole_fields(np.array(self.moment), rows)
+        return vector(fields.reshape(places.shape))
+
+
+def dipole_field(moment: Any) -> DipoleField:
+    """Return the field of a dipole M at the centre of a planet, for `magnetic` along an orbit.
+
+    ``B(x) = μ0/4π (3 (M·u) u − M)/r³`` at ``x = r u``, in T. M is a vector or (3,) in space in A m²; that of
+    the Earth is about 7.7e22 A m² and points to the south.
+    """
+    given = vectors(moment, "moment")
+    if not isinstance(given, tuple):
+        raise ValueError(f"moment must be a single vector, got batch shape {given.shape}")
+    return DipoleField(given)

@@ -204,8 +204,11 @@ def evaluated(text: str, program: _native.Program, known: Given) -> Any:
     kind = program.value_type
     if kind is not None:
         data = [x._data if isinstance(x, Multivector) else x for x in inputs]
-        if all(map(is_float, data)):
-            return _run(program, kind, data)
+        # In other algebras single precision is rounded after each step, as by the operators.
+        if all(map(is_float, data)) and (known.algebra is _G3 or all(x.dtype == np.float64 for x in data)):
+            value = _run(program, kind, data, known.algebra)
+            if value is not None:
+                return value
     walk = Walk(text, steps_of(program), inputs, known.algebra)
     if len(program.results[0]) == 1:
         return walk.last()
@@ -214,14 +217,18 @@ def evaluated(text: str, program: _native.Program, known: Given) -> Any:
     return agreement(walk, program)
 
 
-def _run(program: _native.Program, kind: tuple[int, int, bool], data: list[Any]) -> Multivector:
+def _run(
+    program: _native.Program, kind: tuple[int, int, bool], data: list[Any], algebra: Any
+) -> Multivector | None:
+    """Return the value by the compiled core; None if a row has no value in another algebra than 3-d space."""
     mask, size, unit = kind
     dtypes, shapes = {x.dtype for x in data}, {x.shape[:-1] for x in data}
     dtype = dtypes.pop() if len(dtypes) == 1 else np.dtype(np.float64)  # the higher of two precisions
     batch = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
     out = new((*batch, size), dtype)
-    program.run([rows(x.astype(dtype, copy=False), batch) for x in data], out)
-    return Rotor._from_rows(out) if unit else Multivector._of(out, mask)
+    if not program.run([rows(x.astype(dtype, copy=False), batch) for x in data], out):
+        return None
+    return Rotor._from_rows(out) if unit else Multivector._of(out, mask, algebra)
 
 
 def described(text: str, steps: list[Step], names: list[str]) -> list[str]:

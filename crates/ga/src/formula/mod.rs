@@ -35,6 +35,7 @@ pub use print::Style;
 pub use run::RowError;
 pub use run::side_by_side::Beside;
 pub use run::single::Runner;
+pub use run::general::RowRunner;
 pub use run::steps::Given;
 pub use syntax::names::{Definition, Meaning, Names, Type};
 pub use syntax::number::Number;

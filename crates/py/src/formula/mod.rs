@@ -12,8 +12,8 @@ use crate::support::arrays::bad;
 use crate::support::face::CALL_FORMULA;
 use calls::Calls;
 use polhode_ga::formula::{
-    Kind, Meaning, Names, Node, Runner, Space, Style, Tree, Type, canonical, compile, define, heading, parse,
-    types,
+    Kind, Meaning, Names, Node, RowRunner, Runner, Space, Style, Tree, Type, canonical, compile, define,
+    heading, parse, types,
 };
 use polhode_ga::product::Grades;
 use program::{Place, Program, characters, error};
@@ -188,7 +188,9 @@ impl Formula {
         let order: Option<Vec<usize>> = program.inputs.iter().map(|input| place(&input.name)).collect();
         let order = order.ok_or_else(|| bad("the program needs a value that was not given"))?;
         let runner = Runner::new(&program);
-        Ok(Program { program, order, text: self.text.clone(), runner })
+        let table = &algebra.get().table;
+        let rows = if runner.is_none() { RowRunner::new(&program, table) } else { None };
+        Ok(Program { program, order, text: self.text.clone(), runner, rows })
     }
 
     /// A node, whose types come next.

@@ -6,7 +6,7 @@ use crate::support::face::FORMULA_ERROR;
 use crate::support::text::byte;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;
-use polhode_ga::formula::{self, Given, InputKind, Op, RowError, Runner, Span, Type, term_size};
+use polhode_ga::formula::{self, Given, InputKind, Op, RowError, RowRunner, Runner, Span, Type, term_size};
 use polhode_ga::rows::product::Element;
 use polhode_ga::table::G3;
 use pyo3::prelude::*;
@@ -24,6 +24,8 @@ pub(crate) struct Program {
     pub(crate) text: String,
     /// In 3-d space.
     pub(crate) runner: Option<Runner>,
+    /// In other algebras, if it has no functions.
+    pub(crate) rows: Option<RowRunner>,
 }
 
 /// Rows between checks for signals.
@@ -59,13 +61,16 @@ impl Program {
         self.program.results.clone()
     }
 
-    /// The grades of the value as bits, its number of components, and whether it is a rotor; None for an
-    /// equation and for other algebras.
+    /// The grades of the value as bits, its number of components, and whether it is a rotor; None for what `run` does not
+    /// evaluate: an equation, and functions in other algebras than 3-d space.
     #[getter]
     fn value_type(&self) -> Option<(u16, usize, bool)> {
-        self.runner.as_ref()?;
         let ty = self.ty()?;
-        Some((ty.grades.0, ty.grades.indices(&G3).len(), ty.unit))
+        let size = match (&self.runner, &self.rows) {
+            (Some(_), _) => ty.grades.indices(&G3).len(),
+            (None, rows) => rows.as_ref()?.size_of_result(),
+        };
+        Some((ty.grades.0, size, ty.unit))
     }
 
     /// The steps.
@@ -98,17 +103,22 @@ impl Program {
     }
 
     /// Fills `out`, of the batch shape and the components of the value, from inputs that are arrays of one row
-    /// or of all. All hold float64, or float32.
+    /// or of all. All hold float64, or in 3-d space float32. False if some row may have no value, in another algebra.
     fn run<'py>(
         &self,
         py: Python<'py>,
         inputs: Vec<Bound<'py, PyAny>>,
         out: &Bound<'py, PyAny>,
-    ) -> PyResult<()> {
-        if out.cast::<PyArrayDyn<f32>>().is_ok() {
-            return self.fill::<f32>(py, &inputs, out);
+    ) -> PyResult<bool> {
+        if let Some(rows) = &self.rows {
+            return fill_any(py, rows, &inputs, out);
         }
-        self.fill::<f64>(py, &inputs, out)
+        if out.cast::<PyArrayDyn<f32>>().is_ok() {
+            self.fill::<f32>(py, &inputs, out)?;
+        } else {
+            self.fill::<f64>(py, &inputs, out)?;
+        }
+        Ok(true)
     }
 }
 
@@ -182,6 +192,34 @@ impl Program {
         let message = format!("{}{}", place(found.row, batch), found.error);
         error(py, &self.text, &formula::Error { message, span: self.program.steps[found.step].span })
     }
+}
+
+/// Fills rows of a formula of another algebra than 3-d space; false if some row may have no value.
+fn fill_any(
+    py: Python<'_>,
+    runner: &RowRunner,
+    inputs: &[Bound<'_, PyAny>],
+    out: &Bound<'_, PyAny>,
+) -> PyResult<bool> {
+    let mut out: RowsToFill<'_, f64> = out.extract()?;
+    let out = numbers_to_fill(&mut out)?;
+    let inputs: Vec<Rows<'_, f64>> = inputs.iter().map(|input| input.extract()).collect::<Result<_, _>>()?;
+    let data: Vec<&[f64]> = inputs.iter().map(numbers).collect::<PyResult<_>>()?;
+    let count = out.len() / runner.size_of_result();
+    let fits = |(x, size): (&&[f64], &usize)| x.len() == *size || x.len() == count * size;
+    let whole = out.len() == count * runner.size_of_result();
+    if !whole || data.len() != runner.sizes().len() || !data.iter().zip(runner.sizes()).all(fits) {
+        return Err(bad("the arrays do not fit the program"));
+    }
+    let threads = threads(count.saturating_mul(runner.weight()) / 16)?;
+    for first in (0..count).step_by(PIECE) {
+        let piece = first..count.min(first + PIECE);
+        if !py.detach(|| runner.run(threads, &data, &mut *out, piece)) {
+            return Ok(false);
+        }
+        py.check_signals()?;
+    }
+    Ok(true)
 }
 
 /// The name of an operation, and its constant, input or power.

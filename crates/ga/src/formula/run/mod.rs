@@ -1,5 +1,6 @@
 //! Programs over many rows: each block of rows runs through all steps before the next block.
 
+pub(crate) mod general;
 pub(crate) mod schedule;
 pub(crate) mod side_by_side;
 pub(crate) mod single;

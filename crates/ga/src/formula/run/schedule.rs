@@ -41,11 +41,11 @@ impl Schedule {
 
 /// Lanes that are in use.
 #[derive(Default)]
-struct Lanes(Vec<bool>);
+pub(super) struct Lanes(Vec<bool>);
 
 impl Lanes {
     /// The first `count` adjacent free lanes.
-    fn take(&mut self, size: usize) -> Range<usize> {
+    pub fn take(&mut self, size: usize) -> Range<usize> {
         let mut first = 0;
         while let Some(taken) = self.0.iter().skip(first).take(size).rposition(|&taken| taken) {
             first += taken + 1;
@@ -55,8 +55,13 @@ impl Lanes {
         first..first + size
     }
 
-    fn free(&mut self, lanes: Range<usize>) {
+    pub fn free(&mut self, lanes: Range<usize>) {
         self.0[lanes].fill(false);
+    }
+
+    /// The number of lanes that were ever in use.
+    pub fn count(&self) -> usize {
+        self.0.len()
     }
 }
 
@@ -125,7 +130,7 @@ impl Runner {
             }
         }
         schedule.results = self.results.iter().map(|&id| places[id].start).collect();
-        schedule.lanes = lanes.0.len();
+        schedule.lanes = lanes.count();
         Ok(schedule)
     }
 
@@ -152,7 +157,7 @@ impl Runner {
 }
 
 /// The lanes of two operands to read, and others to write.
-fn apart<'a, const W: usize>(
+pub(super) fn apart<'a, const W: usize>(
     lanes: &'a mut [Lane<W>],
     [a, b]: &[Range<usize>; 2],
     to: &Range<usize>,

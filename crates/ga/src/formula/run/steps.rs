@@ -351,7 +351,7 @@ impl<const W: usize> Kernel<W> for Selection {
 }
 
 /// Each component over the one of a scalar.
-struct Divide;
+pub(crate) struct Divide;
 
 impl<const W: usize> Kernel<W> for Divide {
     #[inline(always)]

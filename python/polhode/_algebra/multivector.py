@@ -18,6 +18,7 @@ from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
 from polhode._algebra import subspaces as _subspaces
 from polhode._algebra import symbols as _symbols
+from polhode._algebra import ufuncs as _ufuncs
 from polhode._algebra import versors as _versors
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.native import joins
@@ -53,7 +54,7 @@ class Multivector(_native.Multivector):
     """
 
     __slots__ = ()
-    __array_ufunc__ = None  # NumPy arrays defer to this class in mixed operations
+    __array_ufunc__ = _ufuncs.Override()
     __sympy__ = False  # and so do SymPy expressions, without converting it
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
 

@@ -1,5 +1,6 @@
 """Values in Python: abs, format, np.asarray, components by name, several grades, versors that act."""
 
+import pickle
 from fractions import Fraction
 
 import jax
@@ -284,3 +285,28 @@ def test_a_multivector_is_not_a_law():
         ph.simulate(body, state, [1.0], torque=e1 ^ e2)
     with pytest.raises(TypeError, match="expected a function"):
         ph.torque.function(e1 ^ e2)
+
+
+@pytest.mark.parametrize("kind", [ph.Multivector, ph.Rotor, ph.Algebra, ph.LinearMap])
+def test_methods_have_the_names_they_are_called_by(kind):
+    aliases = {"conjugate": "conj"}
+    for name in dir(kind):
+        member = getattr(kind, name)
+        if not name.startswith("_") and callable(member):
+            assert member.__name__ == aliases.get(name, name)
+            assert member.__doc__
+
+
+def test_bound_methods_can_be_pickled():
+    values = ph.vector(np.arange(6.0).reshape(2, 3))
+    for name in ("sum", "mean", "norm", "dual", "conj"):
+        method = pickle.loads(pickle.dumps(getattr(values, name)))
+        assert np.all(method() == getattr(values, name)())
+
+
+def test_the_package_lists_public_names_only():
+    assert not [name for name in dir(ph) if name.startswith("_") and name != "__version__"]
+    assert set(ph.__all__) == {name for name in dir(ph) if not name.startswith("_")} - {"jax"}
+    for module in (ph.torque, ph.force, ph.event):
+        listed = {name for name in dir(module) if not name.startswith("_")}
+        assert listed == set(module.__all__)

@@ -266,15 +266,14 @@ def test_values_are_given_by_keyword_or_mapping():
 
 def test_invalid_values_are_named():
     f = ph.formula("a")
-    with pytest.raises(TypeError, match="a is an array of complex128"):
-        f(a=np.array([1j]))
+    with pytest.raises(TypeError, match="a is an array of bool"):
+        f(a=np.array([True]))
     with pytest.raises(TypeError, match="must be strings, got 1"):
         f({1: e1})
     for value, remedy in [
         ([1.0, 2.0, 3.0], "ph.vector"),
         (lambda x: x, "linear maps"),
         ("e1", "a multivector, a linear map"),
-        (1j, "a multivector"),
         (True, "a multivector"),
         (None, "a multivector"),
     ]:

@@ -126,7 +126,7 @@ class Algebra(_native.Algebra):
         return Multivector._of(numbers, mask, self)
 
     def _single(self, x: Any, what: str, grade: int, dtype: Any) -> Multivector:
-        data = as_coefficients(x, what, dtype)
+        data = as_coefficients(x, what, dtype, complex_too=True)
         return Multivector._of(duplicate(data)[..., None], 1 << grade, self)
 
     def _of_grade(self, components: Any, what: str, k: int, dtype: Any, copy: bool) -> Multivector:
@@ -141,7 +141,7 @@ class Algebra(_native.Algebra):
             value = Multivector._of_numbers(components, mask)
             if value is not None:
                 return value
-        data = as_coefficients(components, what, dtype)
+        data = as_coefficients(components, what, dtype, complex_too=True)
         if not data.shape or data.shape[-1] != size:
             raise ValueError(
                 f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}"

@@ -12,7 +12,7 @@ from polhode import _generic, _native
 from polhode._algebra.coefficients import kind_of
 from polhode._algebra.functions import require_in_range
 from polhode._algebra.grades import over_grades
-from polhode._support.arrays import is_float
+from polhode._support.arrays import is_complex
 
 if TYPE_CHECKING:
     from polhode._algebra.algebra import Algebra
@@ -96,14 +96,15 @@ def _pair(name: str, value: Multivector, sign: int) -> Pair:
     kind = kind_of(value._data)
     if kind.exact:
         return _exact(name, value, sign)
-    single = is_float(value._data) and value.dtype == np.float32
-    given = value.astype(float) if single else value
+    single = {np.dtype(np.float32): np.float64, np.dtype(np.complex64): np.complex128}
+    wide = single.get(value.dtype) if isinstance(value._data, np.ndarray) else None
+    given = value.astype(wide) if wide else value
     kind.require_finite([given._data[..., k] for k in range(given._data.shape[-1])])
     with np.errstate(all="ignore"):
-        squares = _squares(value.algebra, value._mask)
+        squares = None if is_complex(value._data) else _squares(value.algebra, value._mask)
         pair = _series(kind, given, sign) if squares is None else _closed(kind, given, sign, squares)
-    if single:
-        pair = (pair[0].astype(np.float32), pair[1].astype(np.float32))
+    if wide:
+        pair = (pair[0].astype(value.dtype), pair[1].astype(value.dtype))
     for part in pair:
         require_in_range(name, part, value)
     return pair

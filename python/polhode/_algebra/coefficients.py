@@ -9,23 +9,25 @@ from typing import Any
 import numpy as np
 
 from polhode import _generic, _native
-from polhode._support.arrays import as_floats, is_float, leaves, refuse_multivectors
+from polhode._support.arrays import as_floats, is_complex, is_float, leaves, refuse_multivectors
 from polhode._support.extras import register_pytree
 
+_COMPLEX = (np.dtype(np.complex128), np.dtype(np.complex64))
 _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
 
 
-def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
+def as_coefficients(values: Any, what: str, dtype: Any = None, *, complex_too: bool = False) -> Any:
     """Convert values to an array of coefficients, of floats if these are exact.
 
     NumPy's float32 and float64 are unchanged. Other real numbers become float64, but integers that float64
     cannot hold stay exact, as do arrays of objects, fractions and expressions. Arrays of other libraries are
-    unchanged. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
+    unchanged. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers. Complex numbers
+    raise a TypeError unless the caller takes them, with `complex_too`.
     """
     if isinstance(values, _native.Multivector):
         raise TypeError(f"{what} must be real numbers, got a multivector; pass its .components")
     if dtype is not None:
-        return _converted(values, what, dtype)
+        return _converted(values, what, dtype, complex_too)
     if isinstance(values, np.ndarray) and hasattr(values, "mask"):
         raise TypeError(f"{what} is a masked array; fill it or pass its compressed values")
     if is_float(values):
@@ -50,6 +52,8 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
         return _exact(array, what)
     if array.dtype.kind in "iu" and not _fits_floats(array):
         return _exact(array.astype(object), what)
+    if complex_too and is_complex(array):
+        return array if array.dtype == np.complex64 else array.astype(np.complex128, copy=False)
     return array if is_float(array) else as_floats(array, what)
 
 
@@ -109,17 +113,21 @@ def scalars(value: Any, like: Any) -> Any:
     floating = like is not None and like.dtype != object
     if type(value) in (int, float) and floating:
         number = as_floats(value, "scalar")[np.newaxis]
-        return number.astype(like.dtype) if is_float(like) else number  # float32 stays float32
+        ours = is_float(like) or is_complex(like)
+        return number.astype(np.finfo(like.dtype).dtype) if ours else number  # float32 stays float32
+    if isinstance(value, complex):
+        single = isinstance(like, np.ndarray) and like.dtype in (np.float32, np.complex64)
+        return np.array([value], np.complex64 if single and type(value) is complex else np.complex128)
     if type(value) is int and like is not None and like.dtype == object:
         return np.array([value], dtype=object)  # exact, even if a float could hold it, such as 2**60
     if isinstance(value, np.ndarray | np.number):
-        if value.dtype.kind not in "iufO":
+        if value.dtype.kind not in "iufcO":
             return None
         if value.dtype.kind in "iu" and floating:  # rounded, not exact
             return as_floats(value, "scalar")[..., None]
     elif not isinstance(value, Real) and foreign_kind(value) is None:
         return None
-    return as_coefficients(value, "scalar")[..., None]
+    return as_coefficients(value, "scalar", complex_too=True)[..., None]
 
 
 def number_like(value: Any, what: str, like: Any) -> Any:
@@ -172,16 +180,18 @@ def _fits_floats(array: Any) -> bool:
     return all(int(float(x)) == x for x in map(int, array.flat))
 
 
-def _converted(values: Any, what: str, dtype: Any) -> Any:
-    given = as_coefficients(values, what)
+def _converted(values: Any, what: str, dtype: Any, complex_too: bool) -> Any:
+    given = as_coefficients(values, what, complex_too=True)
     if not isinstance(given, np.ndarray):
         return _converted_foreign(given, what, dtype)
     wanted = np.dtype(dtype)
+    if is_complex(given) and wanted.kind != "c":
+        raise TypeError(f"{what} must be real, got {given.dtype}; take .real or .imag of the value")
     if wanted.kind == "O":
         # Whole floats become integers, so that results stay exact.
         return kind_of(np.empty(0, dtype=object)).asarray(given)
-    if wanted not in (np.float64, np.float32):
-        raise TypeError(f"coefficients are float64, float32 or object, got dtype {wanted}")
+    if wanted not in (np.float64, np.float32) and not (complex_too and wanted in _COMPLEX):
+        raise TypeError(f"coefficients are float64, float32, complex128, complex64 or object, got {wanted}")
     try:
         return given.astype(wanted, copy=False)
     except (TypeError, OverflowError) as error:

@@ -9,6 +9,7 @@ import numpy as np
 from polhode._algebra.coefficients import common, namespace
 from polhode._algebra.grades import over_grades
 from polhode._algebra.products import coerced, common_algebra
+from polhode._support.arrays import is_complex
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -54,7 +55,8 @@ def is_close(a: Multivector, other: Any, rtol: float = 1e-9, atol: float = 0.0) 
 
 
 def _length(xp: Any, x: Any) -> Any:
-    return xp.sqrt(xp.sum(x * x, axis=-1))
+    size = np.abs(x) if is_complex(x) else x
+    return xp.sqrt(xp.sum(size * size, axis=-1))
 
 
 def _same_grades(a: Multivector, b: Multivector) -> tuple[Any, Any]:

@@ -27,10 +27,10 @@ def scalar(a: Any, *, dtype: Any = None) -> Multivector:
 def vector(xyz: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
     """Vectors ``x e1 + y e2 + z e3`` from an array (..., 3).
 
-    Real numbers become float64, float32 is kept; fractions, SymPy expressions, integers beyond 2⁵³ and
-    arrays of objects stay exact; arrays of JAX and other libraries keep their type. `dtype` converts
-    (``np.float32``, ``float``, or ``object`` for exact integers). ``copy=False`` makes a read-only view of
-    floats in C order.
+    Real numbers become float64, complex ones complex128, float32 and complex64 are kept; fractions, SymPy
+    expressions, integers beyond 2⁵³ and arrays of objects stay exact; arrays of JAX and other libraries keep
+    their type. `dtype` converts (``np.float32``, ``float``, ``complex``, or ``object`` for exact integers).
+    ``copy=False`` makes a read-only view of floats in C order.
     """
     return _G3.vector(xyz, dtype=dtype, copy=copy)
 
@@ -89,7 +89,10 @@ def split(x: Multivector, blade: Multivector) -> tuple[Multivector, Multivector]
 
 
 def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
-    """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2)."""
+    """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2).
+
+    M has real coefficients: with complex ones, I and i would have the same matrix.
+    """
     value = coerced(M)
     if value is None:
         raise TypeError(f"to_pauli needs a multivector, got {type(M).__name__}")

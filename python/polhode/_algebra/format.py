@@ -118,12 +118,24 @@ def _sign_and_size(x: Any) -> tuple[bool, str]:
     """Return the sign and magnitude of a number or an expression; a sum is bracketed."""
     if isinstance(x, float | np.floating):
         return bool(x < 0), _digits(abs(float(x)))
+    if isinstance(x, complex | np.complexfloating):
+        return _complex(complex(x), "{}{}{}j", _digits)
     text = str(x)
     if is_symbolic(x):  # whole powers are x^2 and x^-2 in formulas
         text = re.sub(r"\*\*(?:(\d+)(?![.\d])|\((-\d+)\))", r"^\1\2", text)
     if " " in text:
         return False, f"({text})"
     return text.startswith("-"), text.lstrip("+-")
+
+
+def _complex(x: complex, form: str, write: Callable[[float], str]) -> tuple[bool, str]:
+    """Return the sign and magnitude of a real or imaginary number; other complex ones in brackets."""
+    if x.imag == 0:
+        return bool(x.real < 0), write(abs(x.real))
+    if x.real == 0:
+        return bool(x.imag < 0), form.format("", "", write(abs(x.imag)))
+    signs = "-" if x.real < 0 else "", "-" if x.imag < 0 else "+"
+    return False, "(" + form.format(signs[0] + write(abs(x.real)), signs[1], write(abs(x.imag))) + ")"
 
 
 def _digits(x: float) -> str:
@@ -142,6 +154,8 @@ def _in_format(spec: str) -> _Notation:
 
     def coefficient(x: Any) -> tuple[bool, str]:
         try:
+            if isinstance(x, complex | np.complexfloating):
+                return _complex(complex(x), "{}{}{}j", lambda part: format(part, unsigned))
             number = x if isinstance(x, int | float | np.floating) else float(x)
         except TypeError:
             raise TypeError(f"the format {spec!r} needs numbers, got the component {x}; use str") from None
@@ -160,6 +174,9 @@ def _sign_and_latex(x: Any) -> tuple[bool, str]:
     """Return the sign and magnitude in LaTeX; a sum is bracketed."""
     if is_symbolic(x):
         return _symbolic_latex(x)
+    if isinstance(x, complex | np.complexfloating):
+        negative, size = _complex(complex(x), "{}{}{} i", lambda part: _sign_and_latex(part)[1])
+        return negative, rf"\left{size[:-1]}\right)" if size.startswith("(") else size
     negative, size = _sign_and_size(x)
     if isinstance(x, Fraction) and x.denominator != 1:
         return negative, rf"\frac{{{abs(x.numerator)}}}{{{x.denominator}}}"

@@ -139,7 +139,7 @@ def _require_volume(square: Multivector, frame: list[Multivector]) -> None:
         zero = np.frompyfunc(_generic.exact.is_zero, 1, 1)(data)
         ok: Any = np.logical_not(np.asarray(zero, dtype=bool))
     else:
-        lengths = [kind.xp.sum(b._data * b._data, axis=-1) for b in frame]
+        lengths = [kind.xp.sum(kind.squared(b._data), axis=-1) for b in frame]
         # Rounding of the volume is some eps of the product of lengths, so of its square eps².
         ok = kind.abs(data) > (64 * kind.eps) ** 2 * functools.reduce(operator.mul, lengths)
         if not kind.is_concrete(ok):

@@ -11,7 +11,7 @@ from polhode import _generic, _native
 from polhode._algebra import grades as _parts
 from polhode._algebra.coefficients import common, kind_of, taken
 from polhode._algebra.products import coerced
-from polhode._support.arrays import Array, at_index, first_index, is_float, mapped, new
+from polhode._support.arrays import Array, at_index, first_index, is_complex, is_float, mapped, new
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -64,18 +64,22 @@ def power(value: Multivector, n: Any) -> Multivector:
 
 def as_precise(value: Multivector, like: Multivector) -> Multivector:
     """Convert a value of float64 to single precision if the other has it."""
-    if like._is_one:
+    if like._is_one or not isinstance(like._data, np.ndarray):
         return value
-    return value.astype(np.float32) if is_float(like._data) and like._data.dtype == np.float32 else value
+    return value.astype(np.float32) if like._data.dtype in (np.float32, np.complex64) else value
 
 
 def norm_squared(value: Multivector) -> Any:
-    """Return ``⟨A ~A⟩``, of the batch shape; in 3-d space the sum of the squared components."""
+    """Return ``⟨A ~A⟩``, of the batch shape; in 3-d space the sum of the squared components.
+
+    Of complex coefficients the real ``⟨A ~A*⟩``, with the complex conjugate: squared magnitudes. For the
+    complex number without it see ``A.scalar_product(~A)``.
+    """
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
-    if is_float(data):
+    if is_float(data) or is_complex(data):
         with np.errstate(over="ignore"):
             counted, signs = _counted(data, signs)
-            return (np.square(counted) * signs).sum(axis=-1)[()]
+            return (kind_of(counted).squared(counted) * signs).sum(axis=-1)[()]
     square = value.scalar_product(~value)._data[..., 0]
     return square[()] if isinstance(square, np.ndarray) else square
 
@@ -83,12 +87,12 @@ def norm_squared(value: Multivector) -> Any:
 def norm(value: Multivector) -> Any:
     """Return ``√⟨A ~A⟩`` without intermediate overflow: a float, or an array of the batch shape.
 
-    Where squares may be negative, ``√abs⟨A ~A⟩``. The norm has no derivative at zero; JAX gives 0 there. Use
-    `norm_squared` to differentiate the square.
+    Where squares may be negative, ``√abs⟨A ~A⟩``. Of complex coefficients, the norm of their magnitudes. The
+    norm has no derivative at zero; JAX gives 0 there. Use `norm_squared` to differentiate the square.
     """
     if value._is_one:
         return np.float64(value._norm_of_one())
-    data, signs = value._data, value.algebra._reverse_squares(value._mask)
+    data, signs = _real(value._data), value.algebra._reverse_squares(value._mask)
     if not is_float(data):
         kind = kind_of(data)
         return _generic.functions.norm(kind, data) if min(signs) > 0 else kind.sqrt(abs(norm_squared(value)))
@@ -96,6 +100,11 @@ def norm(value: Multivector) -> Any:
         return mapped(_native.norm, data)[..., 0][()]
     unit, size = _unit_and_size(data, signs)
     return (size * unit)[..., 0][()]
+
+
+def _real(data: Any) -> Any:
+    """Return complex components as their magnitudes."""
+    return np.abs(data) if is_complex(data) else data
 
 
 def _counted(data: Array, signs: Signs) -> tuple[Array, Signs]:
@@ -119,12 +128,12 @@ def _unit_and_size(data: Array, signs: Signs) -> tuple[Array, Array]:
 def normalized(value: Multivector) -> Multivector:
     """Return ``A/|A|``; a ValueError for zero and non-finite values."""
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
-    if not is_float(data):
+    if not is_float(data) and not is_complex(data):
         if min(signs) > 0:
             return value._like(_generic.functions.normalized(kind_of(data), data))
         return value / coerced(norm(value), value)
     # Scaling by the largest component first keeps subnormal values accurate.
-    unit, size = _unit_and_size(data, signs)
+    unit, size = _unit_and_size(_real(data), signs)
     # Where squares cancel, a size below this is rounding.
     usable = np.isfinite(data).all(axis=-1) & (size > 8 * np.finfo(data.dtype).eps)[..., 0]
     _require(usable, "has no direction (norm {})", value)
@@ -141,7 +150,7 @@ def _require(ok: Any, what: str, value: Multivector) -> None:
 
 def require_in_range(name: str, result: Multivector, value: Multivector) -> None:
     """Raise a ValueError, with the batch index, where a function of the value overflows."""
-    if is_float(result._data):
+    if is_float(result._data) or is_complex(result._data):
         _require_finite(name, result._data, value)
     else:
         _generic.numeric.require_in_range(kind_of(result._data), result._data)
@@ -163,7 +172,7 @@ def function(name: str, value: Multivector) -> Multivector:
 
         result = mapped(native, _parts.over_grades(value, algebra._all))
         _require_finite(name, result, value)
-    elif algebra.signature == (3, 0, 0):
+    elif algebra.signature == (3, 0, 0) and not is_complex(data):
         result, mask = getattr(_generic.functions, name)(kind_of(data), data, value._mask)
     else:
         result, mask = _generic_function(name, value)
@@ -171,9 +180,14 @@ def function(name: str, value: Multivector) -> Multivector:
 
 
 def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
-    """Return the inverse or the exponential of generic coefficients in another algebra than G3."""
+    """Return the inverse or the exponential of complex coefficients, or generic ones outside 3-d space."""
     algebra = value.algebra
     if name not in ("inverse", "exp"):
+        if is_complex(value._data):
+            raise TypeError(
+                f"{name} of complex coefficients is not available, only exp and inverse; a value without an "
+                "imaginary part has the one of its .real"
+            )
         raise TypeError(
             f"{name} in {algebra} needs NumPy floats, got {type(value._data).__name__} of {value.dtype}; "
             "convert exact numbers with .astype(float), other arrays with np.asarray(A.components)"
@@ -190,13 +204,14 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
 
 
 def exp(value: Multivector) -> Multivector:
-    """Return ``exp A``; a rotor if A is a bivector of 3-d space."""
+    """Return ``exp A``; a rotor if A is a real bivector of 3-d space."""
     data, in_space = value._data, value.algebra.signature == (3, 0, 0)
     if value._mask == _BIVECTOR and in_space and is_float(data):
         rotors = new((*value.shape, 4), data.dtype)
         _native.rotor_exp(data, rotors)
         return _native.Rotor._from_rows(rotors)
     result = function("exp", value)
-    if result._mask == _EVEN and in_space and not value._held() & ~_BIVECTOR:
+    real_rotor = result._mask == _EVEN and in_space and not is_complex(data)
+    if real_rotor and not value._held() & ~_BIVECTOR:
         return _native.Rotor._from_rows(result._data)
     return result

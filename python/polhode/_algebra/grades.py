@@ -104,7 +104,7 @@ def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
     changed = np.frompyfunc(f, 1, 1)(data) if data.dtype == object else f(data)
     if getattr(changed, "shape", None) != data.shape:
         raise TypeError(f"the function must return one component for each, got {type(changed).__name__}")
-    changed = as_coefficients(changed, "what the function returns")
+    changed = as_coefficients(changed, "what the function returns", complex_too=True)
     own = duplicate(changed)  # f may keep its array
     return _native.Multivector._of(own, value._mask, value.algebra)
 

@@ -2,39 +2,46 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.constructors import bivector, e1, e2, e3, pure, scalar, trivector, vector
+from polhode._algebra import decompositions as _decompositions
+from polhode._algebra.algebra import Algebra
+from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.constructors import e1, pure
+from polhode._algebra.grades import with_grades
 from polhode._algebra.multivector import Multivector
-from polhode._support.arrays import Array, Shape, as_floats, at_index, first_index, frozen
+from polhode._algebra.outermorphism import compound, outermorphism, times
+from polhode._support.arrays import Array, Shape, as_floats, at_index, batch_shape, first_index, frozen
 
 _NAMES = {1: "vectors", 2: "bivectors"}
-
-# Relative asymmetry that may be rounding: a sum or product of matrices rounds a few dozen times.
-_ROUNDING = 64 * np.finfo(float).eps
+_G3 = e1.algebra
 
 
 class LinearMap:
     """A linear map F of vectors to vectors or of bivectors to bivectors, or an array of them. Immutable.
 
-    A map of vectors (`grade` 1) acts on every multivector, as the outermorphism
+    A map of vectors (`grade` 1) acts on every multivector of its algebra, as the outermorphism
     ``F(a∧b) = F(a)∧F(b)``, ``F(1) = 1``, ``F(I) = det F · I``. One of bivectors (`grade` 2) acts on bivectors
     only; the inertia of a body (handout eq. 4.18) is one.
 
-    ``F*G`` applies G first; if one of them maps bivectors, so does the product. An outermorphism is not
-    linear in F, ``(F + G)(a∧b)`` is not ``F(a∧b) + G(a∧b)``, so maps have no sum: add their matrices.
+    ``F*G`` and ``F @ G`` apply G first; in 3-d space a product of a map of vectors and one of bivectors maps
+    bivectors. ``F + G`` and ``2*F`` are sums and multiples of the maps of vectors (or bivectors), whose
+    outermorphism is not the sum: ``(F + G)(a) = F(a) + G(a)`` for vectors a, but not for ``a∧b``. An array
+    scales as a batch.
 
-    Created by `from_matrix` and `from_function`.
+    Created by `from_matrix`, `from_function` and `identity`.
     """
 
-    __slots__ = ("_grade", "_matrix")
+    __slots__ = ("_algebra", "_grade", "_matrix")
+    _algebra: Algebra
     _grade: int
     _matrix: Array
-    __array_ufunc__ = None  # an array times a map is an error, not an array of errors
+    __array_ufunc__ = None  # NumPy arrays defer to this class
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
 
     def __init__(self, *_: object) -> None:
@@ -43,37 +50,61 @@ class LinearMap:
     # --- constructors
 
     @staticmethod
-    def from_matrix(m: Any, grade: int = 1) -> LinearMap:
-        """From matrices (..., 3, 3) whose columns are the images of e1, e2, e3, or of e2e3, e3e1, e1e2."""
+    def from_matrix(m: Any, grade: int = 1, *, algebra: Algebra | None = None) -> LinearMap:
+        """From matrices whose columns are the images of the basis vectors, or for grade 2 basis bivectors.
+
+        Of shape (..., 3, 3) over e1, e2, e3, or over e2e3, e3e1, e1e2; in another `algebra` (..., K, K) over
+        its K basis elements of the grade.
+        """
+        own, size = _space(algebra, grade)
         matrix = np.array(as_floats(m, "the matrix of a linear map"))
-        if matrix.shape[-2:] != (3, 3):
-            raise ValueError(f"the matrix of a linear map must have shape (..., 3, 3), got {matrix.shape}")
+        if matrix.shape[-2:] != (size, size):
+            of = "" if own is _G3 else f" of {_NAMES[grade]} of {own}"
+            raise ValueError(
+                f"the matrix of a linear map{of} must have shape (..., {size}, {size}), got {matrix.shape}"
+            )
         if not np.isfinite(matrix).all():
             index = first_index(~np.isfinite(matrix))
             raise ValueError(f"matrix entry {index} of a linear map must be finite, got {matrix[index]}")
         self = object.__new__(LinearMap)
-        self._matrix, self._grade = frozen(matrix), _checked(grade)
+        self._matrix, self._grade, self._algebra = frozen(matrix), grade, own
         return self
 
     @staticmethod
-    def from_function(f: Callable[[Multivector], Multivector], grade: int = 1) -> LinearMap:
+    def from_function(
+        f: Callable[[Multivector], Multivector], grade: int = 1, *, algebra: Algebra | None = None
+    ) -> LinearMap:
         """From a function on vectors, or for grade 2 on bivectors: a rotor, ``lambda a: a.project(plane)``.
 
-        It is called with the three basis values, and with a fourth to check that it is linear; a ValueError
-        if it is not.
+        It is called with the basis values of the algebra, by default of 3-d space, and with another to check
+        that it is linear; a ValueError if it is not. Versors of other algebras are such functions, too.
         """
-        basis = [e1, e2, e3] if _checked(grade) == 1 else [e1.undual(), e2.undual(), e3.undual()]
-        images = [pure(f(b), grade, "the image") for b in basis]
-        F = LinearMap.from_matrix(np.stack(np.broadcast_arrays(*images), axis=-1), grade)
-        probe = 0.6 * basis[0] - 1.7 * basis[1] + 2.3 * basis[2]
-        image, size = f(probe), np.linalg.norm(F.matrix, axis=(-2, -1))
-        if not np.all(image.is_close(F(probe), rtol=0, atol=1e-9 * size)):
+        own, size = _space(algebra, grade)
+        images = [_components(f(own.k_vector(grade, row)), own, grade, "the image") for row in np.eye(size)]
+        F = LinearMap.from_matrix(np.stack(np.broadcast_arrays(*images), axis=-1), grade, algebra=own)
+        numbers = np.array([(-1.0) ** k * (0.6 + 0.85 * k) for k in range(size)])
+        probe = own.k_vector(grade, numbers)
+        bound = 1e-9 * np.linalg.norm(numbers) * np.linalg.norm(F.matrix, axis=(-2, -1))
+        image = f(probe)
+        if not np.all(image.is_close(F(probe), rtol=0, atol=bound)):
             raise ValueError(
                 f"the function is not linear: it maps {probe!r} to {image!r}, not to {F(probe)!r}"
             )
         return F
 
+    @staticmethod
+    def identity(shape: int | Shape = (), *, grade: int = 1, algebra: Algebra | None = None) -> LinearMap:
+        """Return the identity map, or a batch of it of this shape."""
+        own, size = _space(algebra, grade)
+        matrix = np.broadcast_to(np.eye(size), (*batch_shape(shape), size, size))
+        return LinearMap.from_matrix(matrix, grade, algebra=own)
+
     # --- matrices
+
+    @property
+    def algebra(self) -> Algebra:
+        """The algebra of the values it maps."""
+        return self._algebra
 
     @property
     def grade(self) -> int:
@@ -82,7 +113,10 @@ class LinearMap:
 
     @property
     def matrix(self) -> Array:
-        """The matrices (..., 3, 3) over e1, e2, e3, or for grade 2 over e2e3, e3e1, e1e2."""
+        """The matrices (..., 3, 3) over e1, e2, e3, or for grade 2 over e2e3, e3e1, e1e2.
+
+        In other algebras (..., K, K) over the K basis elements of the grade, in their order.
+        """
         return self._matrix.copy()
 
     @property
@@ -92,14 +126,18 @@ class LinearMap:
 
     @property
     def bivector_matrix(self) -> Array:
-        """The matrices (..., 3, 3) of the action on bivectors; for a map of vectors, that of its cofactors.
+        """The matrices of the action on bivectors; for a map of vectors of 3-d space, that of its cofactors.
 
-        The columns are the images ``F(e2)∧F(e3)``, ``F(e3)∧F(e1)``, ``F(e1)∧F(e2)``.
+        Of shape (..., 3, 3) in 3-d space; the columns are ``F(e2)∧F(e3)``, ``F(e3)∧F(e1)``, ``F(e1)∧F(e2)``.
         """
+        return self.matrix if self.grade == 2 else compound(self.algebra, self.matrix, 2)
+
+    @property
+    def outermorphism_matrix(self) -> Array:
+        """The matrices (..., 2**n, 2**n) of the action of a map of vectors on all components, `dense`."""
         if self.grade == 2:
-            return self.matrix
-        x, y, z = self._images()
-        return np.stack([p.wedge(q).components for p, q in ((y, z), (z, x), (x, y))], axis=-1)
+            raise TypeError("a map of bivectors has no outermorphism; see its matrix")
+        return outermorphism(self.algebra, self.matrix)
 
     @property
     def determinant(self) -> Any:
@@ -107,47 +145,124 @@ class LinearMap:
 
         For a map of bivectors, the determinant of its matrix.
         """
-        x, y, z = self._images()
-        return x.wedge(y).wedge(z).components[..., 0][()]
+        n, matrix = self.algebra.dimension, self.matrix
+        if matrix.shape[-1] != n:
+            return np.linalg.det(matrix)
+        return compound(self.algebra, matrix, n)[..., 0, 0][()]
+
+    def trace(self) -> Any:
+        """Return the trace of the matrix, ``Σ e^k·F(e_k)``: a float, or an array of the batch shape."""
+        return np.trace(self.matrix, axis1=-2, axis2=-1)[()]
 
     def __call__(self, X: Any) -> Multivector:
-        """``F(X)``, in float64; batches broadcast."""
+        """``F(X)``, in float64; batches broadcast. Of complex X, ``F(X.real) + i F(X.imag)``."""
         if not isinstance(X, Multivector):
             name = type(X).__name__
             raise TypeError(f"a linear map acts on multivectors, got {name}; wrap arrays with ph.vector")
+        if X.dtype in (np.complex64, np.complex128):
+            return self(X.real) + 1j * self(X.imag)
         if self.grade == 2:
-            return bivector(_times(self.matrix, pure(X, 2, "the argument of a map of bivectors")))
-        if X.algebra is not e1.algebra:
-            raise TypeError(f"a linear map acts on values of 3-d space, got one of {X.algebra}")
+            components = _components(X, self.algebra, 2, "the argument of a map of bivectors")
+            return self.algebra.bivector(times(self.matrix, components))
+        if X.algebra is not self.algebra:
+            own = "3-d space" if self.algebra is _G3 else self.algebra
+            raise TypeError(f"this linear map acts on values of {own}, got one of {X.algebra}")
         first, *others = [self._part(X.astype(float), k) for k in X.grades]
         return sum(others, start=first)
 
     def _part(self, X: Multivector, k: int) -> Multivector:
-        components = X.grade(k).components
+        components, own = X.grade(k).components, self.algebra
         if k == 0:
-            return scalar(components[..., 0]).wedge(np.ones(self.shape))
+            return own.scalar(components[..., 0]).wedge(np.ones(self.shape))
         if k == 1:
-            return vector(_times(self.matrix, components))
-        if k == 2:
-            return bivector(_times(self.bivector_matrix, components))
-        return trivector(components[..., 0]).wedge(self.determinant)
-
-    def _images(self) -> list[Multivector]:
-        return [vector(self.matrix[..., k]) for k in range(3)]
+            return own.vector(times(self.matrix, components))
+        if k == own.dimension:
+            return own.pseudoscalar(components[..., 0]).wedge(self.determinant)
+        return own.k_vector(k, times(compound(own, self.matrix, k), components))
 
     # --- algebra
 
-    def __mul__(self, other: LinearMap) -> LinearMap:
-        """``F*G`` applies G first: ``(F*G)(X) = F(G(X))``."""
+    def __mul__(self, other: Any) -> LinearMap:
+        """``F*G`` applies G first, ``(F*G)(X) = F(G(X))``; ``F*2`` is a multiple."""
+        return self.__matmul__(other) if isinstance(other, LinearMap) else self._scaled(other)
+
+    def __rmul__(self, other: Any) -> LinearMap:
+        return self._scaled(other)
+
+    def __matmul__(self, other: Any) -> LinearMap:
+        """``F @ G`` applies G first: ``(F @ G)(X) = F(G(X))``."""
         if not isinstance(other, LinearMap):
             return NotImplemented
-        if self.grade == other.grade == 1:
-            return LinearMap.from_matrix(self.matrix @ other.matrix)
-        return LinearMap.from_matrix(self.bivector_matrix @ other.bivector_matrix, grade=2)
+        self._require_algebra(other)
+        if self.grade == other.grade:
+            return self._with(self.matrix @ other.matrix)
+        return LinearMap.from_matrix(
+            self.bivector_matrix @ other.bivector_matrix, grade=2, algebra=self.algebra
+        )
+
+    def _scaled(self, factor: Any) -> LinearMap:
+        if not _is_number(factor):
+            return NotImplemented  # type: ignore[no-any-return]
+        size = as_floats(factor, "the factor of a linear map")
+        return self._with(size[..., np.newaxis, np.newaxis] * self.matrix)
+
+    def __truediv__(self, divisor: Any) -> LinearMap:
+        if not _is_number(divisor):
+            return NotImplemented
+        size = as_floats(divisor, "the divisor of a linear map")
+        if np.any(size == 0):
+            raise ZeroDivisionError(f"division of a linear map by zero{at_index(first_index(size == 0))}")
+        return self._with(self.matrix / size[..., np.newaxis, np.newaxis])
+
+    def __add__(self, other: Any) -> LinearMap:
+        """``(F + G)(a) = F(a) + G(a)`` for vectors a, or for maps of bivectors for bivectors."""
+        if not isinstance(other, LinearMap):
+            return NotImplemented
+        self._require_addend(other)
+        return self._with(self.matrix + other.matrix)
+
+    def __sub__(self, other: Any) -> LinearMap:
+        if not isinstance(other, LinearMap):
+            return NotImplemented
+        self._require_addend(other)
+        return self._with(self.matrix - other.matrix)
+
+    def __neg__(self) -> LinearMap:
+        return self._with(-self.matrix)
+
+    def __pos__(self) -> LinearMap:
+        return self
+
+    def _with(self, matrix: Any) -> LinearMap:
+        """Return a map of the same grade and algebra."""
+        return LinearMap.from_matrix(matrix, self.grade, algebra=self.algebra)
+
+    def _require_algebra(self, other: LinearMap) -> None:
+        if other.algebra is not self.algebra:
+            raise TypeError(f"the maps belong to different algebras, {self.algebra} and {other.algebra}")
+
+    def _require_addend(self, other: LinearMap) -> None:
+        self._require_algebra(other)
+        if other.grade != self.grade:
+            raise TypeError("a map of vectors and a map of bivectors have no sum; add their bivector_matrix")
 
     def adjoint(self) -> LinearMap:
-        """Return the adjoint map, ``F(a)·b = a·adj(F)(b)``: the transposed matrix."""
-        return LinearMap.from_matrix(np.swapaxes(self.matrix, -1, -2), self.grade)
+        """Return the adjoint map, ``F(a)·b = a·adj(F)(b)``: in 3-d space the transposed matrix.
+
+        In an indefinite metric ``η Fᵀ η``, with the squares of the basis elements in η. A ValueError in a
+        degenerate metric, where the equation does not determine it.
+        """
+        transposed: Array = np.swapaxes(self.matrix, -1, -2)
+        _, q, r = self.algebra.signature
+        if r:
+            raise ValueError(
+                f"a map of {self.algebra} has no adjoint, because its metric is degenerate; the dual map has "
+                "the transposed matrix"
+            )
+        if q:
+            squares: Array = self.algebra._reverse_squares(1 << self.grade).astype(np.float64)
+            transposed = squares[:, np.newaxis] * transposed * squares
+        return self._with(transposed)
 
     def inverse(self) -> LinearMap:
         """Return the inverse map, which is also ``A ↦ I adj(F)(I⁻¹ A) / det F``.
@@ -155,69 +270,36 @@ class LinearMap:
         A ValueError, with the batch index, where the map is singular to rounding.
         """
         sizes = np.linalg.svd(self.matrix, compute_uv=False)
-        singular = sizes[..., 2] <= 4 * np.finfo(float).eps * sizes[..., 0]
+        singular = sizes[..., -1] <= 4 * np.finfo(float).eps * sizes[..., 0]
         if singular.any():
             index = first_index(singular)
             raise ValueError(
                 f"the map{at_index(index)} has no inverse: its singular values are {sizes[index].tolist()}"
             )
-        return LinearMap.from_matrix(np.linalg.inv(self.matrix), self.grade)
+        return self._with(np.linalg.inv(self.matrix))
 
     def symmetric_part(self) -> LinearMap:
         """Return ``½ (F + adj F)``, as maps of vectors or, for grade 2, of bivectors."""
-        return LinearMap.from_matrix(0.5 * self.matrix + 0.5 * self.adjoint().matrix, self.grade)
+        return self._with(0.5 * self.matrix + 0.5 * self.adjoint().matrix)
 
     def antisymmetric_part(self) -> LinearMap:
         """Return ``½ (F − adj F)``; of vectors, it is ``a ↦ a·B`` for a bivector B."""
-        return LinearMap.from_matrix(0.5 * self.matrix - 0.5 * self.adjoint().matrix, self.grade)
+        return self._with(0.5 * self.matrix - 0.5 * self.adjoint().matrix)
 
-    # --- eigenvalues
-
-    def eigenvectors(self) -> tuple[Multivector, Array]:
-        """Return unit eigenvectors (..., 3) and eigenvalues (..., 3) of a symmetric map of vectors.
-
-        The eigenvalues rise; the vectors are perpendicular and right-handed, ``a1 a2 a3 = I``.
-        """
-        if self.grade == 2:
-            raise ValueError("a map of bivectors has no eigenvectors; see eigenplanes")
-        factors, axes = self._principal_axes()
-        return vector(axes), factors
-
-    def eigenplanes(self) -> tuple[Multivector, Array]:
-        """Return unit bivectors (..., 3) that a symmetric map only scales, and their eigenvalues (..., 3).
-
-        The eigenvalues rise. For a map of vectors they are the products of two eigenvalues of vectors.
-        """
-        stretch, axes = self._principal_axes()
-        if self.grade == 2:
-            return bivector(axes), stretch
-        factors = np.stack([stretch[..., i] * stretch[..., j] for i, j in ((1, 2), (2, 0), (0, 1))], axis=-1)
-        order = np.argsort(factors, axis=-1, kind="stable")
-        planes = np.take_along_axis(axes, order[..., np.newaxis], axis=-2)
-        return bivector(planes), np.take_along_axis(factors, order, axis=-1)
-
-    def _principal_axes(self) -> tuple[Array, Array]:
-        """Return eigenvalues (..., 3), rising, and right-handed eigenvectors as rows (..., 3, 3)."""
-        transposed = np.swapaxes(self.matrix, -1, -2)
-        skew = np.abs(self.matrix - transposed).max(axis=(-2, -1))
-        asymmetric = skew > _ROUNDING * np.abs(self.matrix).max(axis=(-2, -1))
-        if asymmetric.any():
-            index = first_index(asymmetric)
-            raise ValueError(
-                f"the map{at_index(index)} is not symmetric: it differs from adjoint() by {skew[index]:.3g}; "
-                "take symmetric_part(), or for a rotation Rotor.from_matrix(F.matrix).plane_angle()"
-            )
-        factors, columns = np.linalg.eigh(0.5 * self.matrix + 0.5 * transposed)
-        columns[..., 2] *= np.sign(np.linalg.det(columns))[..., np.newaxis]
-        return factors, np.swapaxes(columns, -1, -2)
+    eigenvectors = _decompositions.eigenvectors
+    eigenplanes = _decompositions.eigenplanes
+    svd = _decompositions.svd
+    polar = _decompositions.polar
 
     # --- comparison
 
     def __eq__(self, other: object) -> Any:
-        """Exact equality of grade and matrix: a bool, or an array of the batch shape."""
+        """Exact equality of algebra, grade and matrix: a bool, or an array of the batch shape."""
         if not isinstance(other, LinearMap):
             return NotImplemented
-        return ((self.matrix == other.matrix) & (self.grade == other.grade)).all(axis=(-2, -1))[()]
+        if self.grade != other.grade or self.algebra is not other.algebra:
+            return np.zeros(np.broadcast_shapes(self.shape, other.shape), dtype=bool)[()]
+        return (self.matrix == other.matrix).all(axis=(-2, -1))[()]
 
     def __ne__(self, other: object) -> Any:
         equal = self.__eq__(other)
@@ -227,13 +309,18 @@ class LinearMap:
         """Whether ``|F − G| <= max(rtol · max(|F|, |G|), atol)``, |F|² the sum of the squared entries."""
         if not isinstance(other, LinearMap) or other.grade != self.grade:
             raise TypeError(f"is_close needs another map of {_NAMES[self.grade]}, got {other!r}")
+        self._require_algebra(other)
         a, b = np.broadcast_arrays(self.matrix, other.matrix)
         distance, p, q = (np.linalg.norm(m, axis=(-2, -1)) for m in (a - b, a, b))
         return (distance <= np.maximum(rtol * np.maximum(p, q), atol))[()]
 
+    def _described(self) -> str:
+        of = "" if self.algebra is _G3 else f" of {self.algebra}"
+        return f"LinearMap of {_NAMES[self.grade]}{of}"
+
     def __repr__(self) -> str:
         batch = f", shape {self.shape}" if self.shape else ""
-        return f"LinearMap of {_NAMES[self.grade]}{batch}, matrix\n{self.matrix!r}"
+        return f"{self._described()}{batch}, matrix\n{self.matrix!r}"
 
     def _repr_latex_(self) -> str:
         from polhode._algebra import format as _format
@@ -241,19 +328,49 @@ class LinearMap:
         return _format.matrix_latex(f"{type(self).__name__} of {_NAMES[self.grade]}", self.matrix)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return LinearMap.from_matrix, (np.array(self.matrix), self.grade)
+        return _restored, (np.array(self.matrix), self.grade, self.algebra)
 
 
-def _checked(grade: int) -> int:
+def _is_number(x: Any) -> bool:
+    """Whether x may scale a map: a number, or an array as a batch."""
+    return type(x) in (int, float) or isinstance(x, np.ndarray | np.number)
+
+
+def _restored(matrix: Array, grade: int, algebra: Algebra) -> LinearMap:
+    return LinearMap.from_matrix(matrix, grade, algebra=algebra)
+
+
+def _space(algebra: Any, grade: int) -> tuple[Algebra, int]:
+    """Return the algebra, 3-d space for None, and the number of its basis elements of the grade."""
+    own = _G3 if algebra is None else algebra
+    if not isinstance(own, Algebra):
+        raise TypeError(f"the algebra must be one of ph.algebra(p, q, r), got {type(own).__name__}")
     if grade not in _NAMES:
         raise ValueError(f"a linear map takes vectors (grade 1) or bivectors (grade 2), got grade {grade!r}")
-    return grade
+    if own.dimension < grade:
+        raise ValueError(f"{own} has no {_NAMES[grade]} that a linear map could take")
+    return own, math.comb(own.dimension, grade)
 
 
-def _times(matrix: Array, components: Array) -> Array:
-    with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
-        product: Array = (matrix @ components[..., np.newaxis])[..., 0]
-    return product
+def _components(value: Any, algebra: Algebra, grade: int, what: str) -> Array:
+    """Return the components of a value of the algebra with a single grade, as float64."""
+    if algebra is _G3:
+        return pure(value, grade, what)
+    if not isinstance(value, Multivector) or value.algebra is not algebra:
+        got = value.algebra if isinstance(value, Multivector) else type(value).__name__
+        raise TypeError(f"{what} must be a value of {algebra}, got {got}")
+    if value._held() & ~(1 << grade):
+        raise TypeError(f"{what} must be of grade {grade}, got {value!r}, which has other grades")
+    return as_coefficients(with_grades(value, 1 << grade), what, float)  # type: ignore[no-any-return]
 
 
-_native.register("LinearMap", LinearMap)
+class _OfSpace(type):
+    def __instancecheck__(cls, value: object) -> bool:
+        return isinstance(value, LinearMap) and value.algebra is _G3
+
+
+class _MapOfSpace(metaclass=_OfSpace):
+    """The type of maps of 3-d space, the only ones that compiled formulas call."""
+
+
+_native.register("LinearMap", _MapOfSpace)

@@ -12,11 +12,13 @@ from polhode import _native
 from polhode._algebra import blade_names as _blade_names
 from polhode._algebra import circular as _circular
 from polhode._algebra import comparison as _comparison
+from polhode._algebra import conjugates as _conjugates
 from polhode._algebra import frames as _frames
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
 from polhode._algebra import subspaces as _subspaces
 from polhode._algebra import symbols as _symbols
+from polhode._algebra import ufuncs as _ufuncs
 from polhode._algebra import versors as _versors
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.native import joins
@@ -38,8 +40,8 @@ class Multivector(_native.Multivector):
     of two vectors 4 (scalar and bivector). Batch axes lead, components are the last axis, and batches
     broadcast as in NumPy.
 
-    Coefficients are float64 or float32; whole numbers and fractions, kept exact; SymPy expressions; or
-    arrays of JAX or any other array-API library.
+    Coefficients are float64, float32, complex128 or complex64; whole numbers and fractions, kept exact; SymPy
+    expressions; or arrays of JAX or any other array-API library.
 
     ``A*B`` is the geometric product, ``A^B`` the wedge, ``A|B`` the dot (the lowest grade,
     ``abs(r - s)``), ``A&B`` the regressive product `vee`, ``V>>A`` the action ``V(A)`` of a versor, ``~A``
@@ -53,7 +55,7 @@ class Multivector(_native.Multivector):
     """
 
     __slots__ = ()
-    __array_ufunc__ = None  # NumPy arrays defer to this class in mixed operations
+    __array_ufunc__ = _ufuncs.Override()
     __sympy__ = False  # and so do SymPy expressions, without converting it
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
 
@@ -99,7 +101,7 @@ class Multivector(_native.Multivector):
 
     @property
     def dtype(self) -> Any:
-        """The dtype of the components: float64, float32, object (exact or symbolic), or another library's."""
+        """The dtype of the components: float or complex, object (exact, symbolic), or another library's."""
         return self._data.dtype
 
     def _grade(self, *grades: int) -> Multivector:
@@ -107,8 +109,12 @@ class Multivector(_native.Multivector):
         return self._part(_grades.mask_of(self.algebra, grades))
 
     def astype(self, dtype: Any) -> Self:
-        """Return the value with components of another type, such as ``np.float32`` or ``float``."""
-        return self._like(as_coefficients(self._data, "a component", dtype))
+        """Return the value with components of another type: ``np.float32``, ``float``, ``complex``."""
+        return self._like(as_coefficients(self._data, "a component", dtype, complex_too=True))
+
+    real = property(_conjugates.real)
+    imag = property(_conjugates.imag)
+    conj = conjugate = _conjugates.conj
 
     map = _grades.mapped
     diff = _symbols.diff
@@ -163,7 +169,17 @@ class Multivector(_native.Multivector):
                 f"only a single scalar converts to float, got grades {self.grades} and shape {self.shape}; "
                 "use .grade(0) or .components"
             )
+        if self._data.dtype.kind == "c":
+            raise TypeError(f"the scalar {self} is complex; use complex(value), or float(value.real)")
         return float(self._data[0])
+
+    def __complex__(self) -> complex:
+        if self._mask != 1 or self.shape:
+            raise TypeError(
+                f"only a single scalar converts to complex, got grades {self.grades} and shape {self.shape}; "
+                "use .grade(0) or .components"
+            )
+        return complex(self._data[0])
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         """Return the components of a value of one grade, as a copy; a TypeError for several grades."""

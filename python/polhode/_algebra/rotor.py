@@ -21,6 +21,7 @@ from polhode._support.arrays import (
     at_index,
     batch_shape,
     first_index,
+    is_complex,
     is_float,
     joined,
     mapped,
@@ -47,6 +48,10 @@ def _computed(name: str, *operands: Any) -> Any:
     """Apply a function of rotors; batches broadcast. In the compiled core for floats, else generic."""
     if all(map(is_float, operands)):
         return mapped(getattr(_native, f"rotor_{name}"), joined(*operands))
+    if any(map(is_complex, operands)):
+        raise TypeError(
+            "rotors have real coefficients, got complex ones; take .real, or exp of a multivector"
+        )
     kind = kind_of(*operands)
     return getattr(_generic.rotors, name)(kind, *map(kind.asarray, operands))
 

@@ -18,10 +18,16 @@ from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.pga import pga
 from polhode._algebra.rotor import Rotor
-from polhode._support.arrays import is_float
+from polhode._support.arrays import is_complex, is_float
 
 _KEYS = {"algebra", "grades", "rotor", "shape", "dtype", "components"}
-_DTYPES = {"float64": np.float64, "float32": np.float32, "object": object}
+_DTYPES = {
+    "float64": np.float64,
+    "float32": np.float32,
+    "complex128": np.complex128,
+    "complex64": np.complex64,
+    "object": object,
+}
 
 
 def to_dict(value: Multivector) -> dict[str, Any]:
@@ -29,19 +35,21 @@ def to_dict(value: Multivector) -> dict[str, Any]:
 
     An algebra is its signature (p, q, r), or a name such as ``"pga(3)"``.
 
-    JSON can hold all of them; a fraction is text, ``"1/3"``. `from_dict` restores the value, bit for bit. A
-    TypeError for symbolic coefficients; arrays of other libraries are restored as NumPy floats.
+    JSON can hold all of them; a fraction is text, ``"1/3"``, a complex number a pair ``[re, im]``.
+    `from_dict` restores the value, bit for bit. A TypeError for symbolic coefficients; arrays of other
+    libraries are restored as NumPy floats.
     """
     if not isinstance(value, _native.Multivector):
         raise TypeError(f"to_dict needs a multivector, got {type(value).__name__}")
     data = np.asarray(value._data)
+    plain = np.stack([data.real, data.imag], axis=-1) if is_complex(data) else data
     return {
         "algebra": value.algebra._key(),
         "grades": list(value.grades),
         "rotor": isinstance(value, Rotor),
         "shape": list(value.shape),
         "dtype": data.dtype.name,
-        "components": np.frompyfunc(_plain, 1, 1)(data).tolist() if data.dtype == object else data.tolist(),
+        "components": np.frompyfunc(_plain, 1, 1)(data).tolist() if data.dtype == object else plain.tolist(),
     }
 
 
@@ -72,10 +80,13 @@ def _restored(fields: Mapping[str, Any]) -> Multivector:
     if fields["dtype"] not in _DTYPES:
         raise ValueError(f"dtype must be one of {', '.join(_DTYPES)}, got {fields['dtype']!r}")
     numbers = np.asarray(np.frompyfunc(_number, 1, 1)(np.array(fields["components"], dtype=object)))
+    if fields["dtype"] in ("complex128", "complex64"):
+        numbers = _complex(numbers)
     shape = (*map(operator.index, fields["shape"]), len(space._indices(mask)))
     if numbers.size != math.prod(shape):
         raise ValueError(f"grades {grades} and shape {fields['shape']} do not fit {numbers.size} components")
-    data = as_coefficients(numbers, "a component", _DTYPES[fields["dtype"]]).reshape(shape)
+    dtype = _DTYPES[fields["dtype"]]
+    data = as_coefficients(numbers, "a component", dtype, complex_too=True).reshape(shape)
     if not isinstance(fields["rotor"], bool):
         raise ValueError(f"rotor must be true or false, got {fields['rotor']!r}")
     if not fields["rotor"]:
@@ -100,6 +111,14 @@ def _algebra_of(key: Any) -> Algebra:
     if len(signature) != 3:
         raise ValueError(f"an algebra is three counts (p, q, r), got {signature}")
     return algebra(*signature)
+
+
+def _complex(pairs: Any) -> Any:
+    """Return complex numbers of pairs in the last axis."""
+    if not pairs.shape or pairs.shape[-1] != 2:
+        raise ValueError(f"complex components are pairs [re, im], got shape {pairs.shape}")
+    parts = pairs.astype(float)
+    return parts[..., 0] + 1j * parts[..., 1]
 
 
 def _number(x: Any) -> Any:

@@ -15,7 +15,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._formula.interpreter import Walk
 from polhode._generic.exact import is_multiprecision, is_zero, sqrt
 from polhode._generic.numeric import Numeric, components
-from polhode._support.arrays import is_float
+from polhode._support.arrays import is_complex, is_float
 from polhode._support.extras import register_pytree
 
 
@@ -190,7 +190,7 @@ def _length(walk: Walk, data: Any) -> Any:
     kind = _floats(walk)
     if walk.kind.exact and not is_float(data):
         data = np.frompyfunc(_float, 1, 1)(data).astype(np.float64)
-    return kind.length(components(kind.asarray(data)))
+    return kind.length(components(kind.asarray(np.abs(data) if is_complex(data) else data)))
 
 
 def _float(x: Any) -> float:

@@ -211,8 +211,8 @@ def _together(values: Mapping[str, Any] | None, named: dict[str, Any]) -> dict[s
 
 
 def _algebra_of(value: Multivector | LinearMap) -> Any:
-    """Return the algebra of a value; linear maps belong to 3-d space."""
-    return value.algebra if isinstance(value, Multivector) else algebra_of(3)
+    """Return the algebra of a value."""
+    return value.algebra
 
 
 def _require_algebra(name: str, value: Multivector | LinearMap, algebra: Any, owner: str) -> None:
@@ -233,6 +233,11 @@ def _common_algebra(algebra: Any, values: dict[str, Multivector]) -> Any:
 def _value(name: str, value: Any, algebra: Any, owner: str) -> Any:
     if isinstance(value, Multivector | LinearMap):
         _require_algebra(name, value, algebra, owner)
+        if isinstance(value, LinearMap) and algebra is not algebra_of(3):
+            raise TypeError(
+                f"{name} is a linear map of {algebra}; formulas call those of 3-d space: apply it first and "
+                "pass its value by name"
+            )
         return value
     if type(value) in (int, float):
         return value

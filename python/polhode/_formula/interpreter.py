@@ -16,7 +16,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._formula.errors import FormulaError
 from polhode._generic.exact import divide, is_symbolic
 from polhode._generic.numeric import Numeric
-from polhode._support.arrays import is_float
+from polhode._support.arrays import is_complex, is_float
 
 
 class Step(NamedTuple):
@@ -102,7 +102,7 @@ def _typed(value: Multivector, step: Step) -> Multivector:
     """Return a value with the grades and the type of the step."""
     if value._mask != step.mask:
         value = value._part(step.mask)
-    if isinstance(value, Rotor) == step.unit:
+    if isinstance(value, Rotor) == step.unit or is_complex(value._data):  # rotors are real
         return value
     return Rotor._from_rows(value._data) if step.unit else value._part(step.mask)
 

@@ -98,7 +98,7 @@ def null_factors(d: Numeric, null: Sequence[int], data: Array, size: Any) -> Arr
     Scaling these generators is an automorphism. With it, large translations do not swamp the rotations beside
     them, nor do they need more halvings of an exponent.
     """
-    root = d.zeros_like(data[..., 0]) + 1.0
+    root = d.zeros_like(d.xp.abs(data[..., 0])) + 1.0
     if not any(null):
         return root[..., None]
     for i, count in enumerate(null):
@@ -137,7 +137,7 @@ def exp(
         d.require_finite(components(data))
         simple = _anticommute(terms, [i for i in held if i != 0])
         if simple:
-            result = _closed_exp(d, terms, data)
+            result = _complex_exp(d, terms, data) if d.is_complex else _closed_exp(d, terms, data)
         else:
             factors = null_factors(d, null, data, 1.0)
             result = _series_exp(d, terms, data * factors) / factors
@@ -170,6 +170,23 @@ def _closed_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
     sinhc = d.where(turns, factor * d.sin(turn) / turn, (plus - minus) / boost)
     c = d.where(small, factor * horner(COSH, near), cosh)
     q = d.where(small, factor * horner(SINHC, near), sinhc)
+    return d.stack([c, *(q * component for component in v)])
+
+
+def _complex_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
+    """``e^s (cosh z + V sinh z / z)`` for ``V² = z²``; even in z, so that either root will do."""
+    s, *v = components(m)
+    w = d.zeros_like(s)
+    for i, j, k, sign in terms:
+        if i == j != 0 and k == 0:
+            w = w + sign * v[i - 1] * v[i - 1]
+    small = d.abs(w) < 1
+    near, z = d.where(small, w, 0.0), d.sqrt(d.where(small, 1.0, w))
+    # Exponents are added first, because their sum may be small.
+    plus, minus = 0.5 * d.exp(s + z), 0.5 * d.exp(s - z)
+    factor = d.exp(s)
+    c = d.where(small, factor * horner(COSH, near), plus + minus)
+    q = d.where(small, factor * horner(SINHC, near), (plus - minus) / z)
     return d.stack([c, *(q * component for component in v)])
 
 

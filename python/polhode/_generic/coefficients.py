@@ -22,22 +22,37 @@ def of(*values: Any) -> Coefficients:
 
     Floats in NumPy arrays and Python numbers combine with everything. Exact coefficients (arrays of objects,
     Fractions, SymPy expressions) combine with these only, and so do the arrays of each other library; any
-    other mix is a TypeError. NumPy alone gives NumPy with float64.
+    other mix is a TypeError. NumPy alone gives NumPy with float64, or complex numbers if some array has them.
     """
     exact: list[Any] = []
     foreign: list[Any] = []
+    native: list[Any] = []
     for leaf in leaves(values):
         if _is_exact(leaf):
             exact.append(leaf)
         elif _namespace(leaf) is not None:
             foreign.append(leaf)
+        elif isinstance(leaf, np.ndarray | np.generic | complex):
+            native.append(leaf)
+    dtype = _complex_dtype(native)
+    if dtype is not None and (exact or foreign):
+        other = f"exact coefficients ({_example(exact[0])})" if exact else f"{_library(foreign[0])} arrays"
+        raise TypeError(f"{other} and complex numbers do not mix; convert one of them first")
     if not foreign:
-        return Exact(_context(exact)) if exact else Numeric(np, np.dtype(np.float64))
+        return Exact(_context(exact)) if exact else Numeric(np, dtype or np.dtype(np.float64))
     names = list(dict.fromkeys(map(_library, foreign)))
     if exact or len(names) > 1:
         other = f"exact coefficients ({_example(exact[0])})" if exact else f"{names[1]} arrays"
         raise TypeError(f"{names[0]} arrays and {other} do not mix; convert one of them first")
     return _numeric(foreign)
+
+
+def _complex_dtype(arrays: list[Any]) -> Any:
+    """Return complex64 or complex128, the type of NumPy arrays together; None if all are real."""
+    if all(np.iscomplexobj(array) is False for array in arrays):
+        return None
+    wide = any(np.result_type(array) not in (np.float32, np.complex64) for array in arrays)
+    return np.dtype(np.complex128 if wide else np.complex64)
 
 
 def _numeric(arrays: list[Any]) -> Numeric:

@@ -18,7 +18,7 @@ class Numeric:
 
     All arrays of a computation have one floating type: float32 stays float32. Only functions of the
     standard are used, those not defined here (`sqrt`, `sin`, `reshape` ...) directly. Components are never
-    assigned to: they are separated, and stacked again.
+    assigned to: they are separated, and stacked again. NumPy's arrays may be complex.
     """
 
     exact = False
@@ -27,6 +27,8 @@ class Numeric:
     def __init__(self, xp: Any, dtype: Any = None, device: Any = None) -> None:
         self.xp = xp
         self.dtype = xp.asarray(1.0).dtype if dtype is None else dtype
+        self.is_complex = xp is np and np.dtype(self.dtype).kind == "c"
+        self.real_dtype = np.finfo(self.dtype).dtype if self.is_complex else self.dtype
         self.placed = {} if device is None else {"device": device}
 
     def __getattr__(self, name: str) -> Any:
@@ -49,6 +51,8 @@ class Numeric:
         if isinstance(values, list | tuple):
             parts = self.xp.broadcast_arrays(*(self.asarray(value) for value in values))
             return self.xp.stack(list(parts), axis=0)
+        if self.is_complex:
+            return np.asarray(values, dtype=self.dtype)
         if isinstance(values, np.ndarray | np.generic | int | float) or not hasattr(values, "dtype"):
             floats = np.array(as_floats(values, "coefficients"))  # a copy, which others may keep and write to
             return self.xp.asarray(floats, dtype=self.dtype, **self.placed)
@@ -85,12 +89,18 @@ class Numeric:
 
     def _full(self, x: Any) -> Array:
         if isinstance(x, int | float):
-            return self.xp.asarray(x, dtype=self.dtype, **self.placed)
+            return self.xp.asarray(x, dtype=self.real_dtype, **self.placed)
         return x
 
     def abs(self, x: Array) -> Array:
         """``|x|``, of derivative 1 at 0."""
+        if self.is_complex:
+            return self.xp.abs(x)
         return self.xp.where(x < 0, -x, x)
+
+    def squared(self, x: Array) -> Array:
+        """``|x|²``."""
+        return np.square(x.real) + np.square(x.imag) if self.is_complex else x * x
 
     def divide(self, x: Array, y: Array) -> Array:
         """``x/y``."""

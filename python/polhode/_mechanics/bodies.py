@@ -9,11 +9,15 @@ from typing import Any, overload
 import numpy as np
 
 from polhode import _native
+from polhode._algebra.algebra import Algebra
+from polhode._algebra.algebra import algebra as algebra_of
 from polhode._algebra.constructors import as_point, as_vectors, bivector, pure, vector
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._support.arrays import Array, as_components, as_float, as_floats
+
+_G3 = algebra_of(3)
 
 
 class Inertia(LinearMap):
@@ -74,6 +78,11 @@ class Inertia(LinearMap):
         if L is None:
             return LinearMap.from_function(self.inverse, grade=2)
         return bivector(self._core.inverse(pure(L, 2, "the angular momentum")), copy=False)
+
+    @property
+    def algebra(self) -> Algebra:
+        """The algebra of 3-d space."""
+        return _G3
 
     @property
     def grade(self) -> int:

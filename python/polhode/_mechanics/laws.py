@@ -46,8 +46,13 @@ def number(value: Any, name: str) -> float:
 def formula_value(value: Any, name: str, batches: bool = False) -> Any:
     """Return a value for a formula: a finite multivector over float64, a linear map or a number.
 
-    Multivectors are single ones unless `batches` are taken.
+    Multivectors are single ones unless `batches` are taken. Values and maps are of 3-d space.
     """
+    if isinstance(value, Multivector | LinearMap) and value.algebra.signature != (3, 0, 0):
+        kind = "linear map" if isinstance(value, LinearMap) else "value"
+        raise TypeError(
+            f"{name} is a {kind} of {value.algebra}; the formulas of laws take those of 3-d space"
+        )
     if isinstance(value, LinearMap):
         return value
     if not isinstance(value, Multivector):

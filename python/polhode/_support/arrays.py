@@ -105,6 +105,11 @@ def is_float(data: Any) -> bool:
     return isinstance(data, np.ndarray) and data.dtype in _FLOATS
 
 
+def is_complex(data: Any) -> bool:
+    """Whether this is a NumPy array of complex numbers."""
+    return isinstance(data, np.ndarray) and data.dtype.kind == "c"
+
+
 def mapped(f: Callable[[Array], Array], data: Any) -> Any:
     """Return f of the rows, computed in float64 and rounded to their type."""
     result = f(np.ascontiguousarray(data, dtype=np.float64))

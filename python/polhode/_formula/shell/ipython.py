@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.algebra import algebra
 from polhode._algebra.linear_map import LinearMap
 from polhode._formula.shell.session import FUNCTIONS, Answer, LineError, Session, canonical, without_comment
 
@@ -46,20 +45,18 @@ def spelled(text: str, everything: dict[str, Any]) -> dict[str, str]:
 
 def _is_usable(value: Any) -> bool:
     if isinstance(value, np.ndarray):
-        return value.dtype.kind in "iufO"
+        return value.dtype.kind in "iufcO"
     if isinstance(value, _native.Multivector | LinearMap):
         return True
-    if isinstance(value, numbers.Real):
+    if isinstance(value, numbers.Complex):
         return value is not True and value is not False
     sympy = sys.modules.get("sympy")
     return hasattr(value, "__array_namespace__") or (sympy is not None and isinstance(value, sympy.Expr))
 
 
 def _algebra(value: Any) -> Any:
-    """Return the algebra of a value; linear maps belong to 3-d space."""
-    if isinstance(value, _native.Multivector):
-        return value.algebra
-    return algebra(3) if isinstance(value, LinearMap) else None
+    """Return the algebra of a value, None without one."""
+    return value.algebra if isinstance(value, _native.Multivector | LinearMap) else None
 
 
 def magic(everything: dict[str, Any]) -> Any:

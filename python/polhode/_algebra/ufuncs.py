@@ -1,0 +1,72 @@
+"""NumPy's universal functions of values: ``np.exp(A)`` is ``A.exp()``, an array times a value a product."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _native
+
+if TYPE_CHECKING:
+    from polhode._algebra.multivector import Multivector
+
+# Functions of one value, and the methods that compute them.
+_METHODS = {
+    **{getattr(np, name): name for name in ("exp", "log", "sqrt", "sin", "cos", "tan")},
+    **{getattr(np, name): name for name in ("sinh", "cosh", "tanh")},
+    np.absolute: "norm",
+    np.conjugate: "conj",
+    np.negative: "__neg__",
+    np.positive: "__pos__",
+    np.reciprocal: "inverse",
+}
+
+# Operators, and those of a right operand.
+_OPERATORS = {
+    np.add: ("__add__", "__radd__"),
+    np.subtract: ("__sub__", "__rsub__"),
+    np.multiply: ("__mul__", "__rmul__"),
+    np.true_divide: ("__truediv__", "__rtruediv__"),
+    np.bitwise_xor: ("__xor__", "__rxor__"),
+    np.bitwise_or: ("__or__", "__ror__"),
+    np.equal: ("__eq__", "__eq__"),
+    np.not_equal: ("__ne__", "__ne__"),
+    np.power: ("__pow__", "__rpow__"),
+}
+
+
+class Override:
+    """The attribute ``__array_ufunc__``: the function for NumPy, which asks the type, None on values.
+
+    Other libraries (CuPy, Dask) ask the value, and leave operators to it where it has None.
+    """
+
+    def __get__(self, value: Any, owner: Any = None) -> Any:
+        return applied if value is None else None
+
+
+def applied(_value: Multivector, function: Any, method: str, *inputs: Any, **options: Any) -> Any:
+    """Return a universal function of values; a TypeError, with the remedy, if it is not one of values."""
+    if method == "__call__" and not options:
+        names = _OPERATORS.get(function)
+        if names is not None:
+            left, right = inputs
+            if isinstance(left, _native.Multivector):
+                result = getattr(left, names[0])(right)
+            else:
+                result = getattr(right, names[1], _refused)(left)
+            if result is not NotImplemented:
+                return result
+        elif function in _METHODS:
+            return getattr(inputs[0], _METHODS[function])()
+    name = function.__name__ if method == "__call__" else f"{function.__name__}.{method}"
+    what = "these operands with out" if "out" in options else "these operands"
+    raise TypeError(
+        f"np.{name} does not accept {what}; use the operators and methods of multivectors, or NumPy on their "
+        ".components"
+    )
+
+
+def _refused(_: Any) -> Any:
+    return NotImplemented

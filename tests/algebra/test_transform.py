@@ -179,6 +179,24 @@ def test_dual_quaternions(transforms):
     assert np.abs((real * dual).sum(axis=-1)).max() <= 4 * EPS
 
 
+def test_means_over_axes():
+    rng = np.random.default_rng(5)
+    T, w = RigidTransform(ph.Rotor.random((3, 4), rng=4), rng.standard_normal((3, 4, 3))), rng.random((3, 4))
+    for axis, of_one in ((1, lambda k: (T[k], w[k])), (-2, lambda k: (T[:, k], w[:, k]))):
+        for weights in (None, w):
+            means = T.mean(weights, axis=axis)
+            for k, mean in enumerate(means):
+                part, own = of_one(k)
+                # Of up to four attitudes, whose eigenvalues differ by some tenths.
+                expected = part.mean(None if weights is None else own)
+                assert mean.is_close(expected, rtol=64 * EPS, atol=16 * EPS)
+    assert T.mean(axis=(0, 1)).is_close(T.mean(), rtol=64 * EPS, atol=16 * EPS)
+    assert T.mean(axis=()).is_close(T, rtol=64 * EPS, atol=EPS).all()
+    assert T[0, 0].mean().is_close(T[0, 0], rtol=64 * EPS, atol=EPS)
+    with pytest.raises(ValueError, match="numbers >= 0"):
+        T.mean(-w)
+
+
 def test_scipy_agrees(transforms):
     spatial = pytest.importorskip("scipy.spatial.transform")
     if not hasattr(spatial, "RigidTransform"):

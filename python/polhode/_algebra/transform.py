@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode._algebra.algebra import algebra
 from polhode._algebra.coefficients import as_coefficients, common, kind_of, namespace, number_like
-from polhode._algebra.constructors import one_grade, vector
+from polhode._algebra.constructors import one_grade, scalar, vector
 from polhode._algebra.estimation import mean
 from polhode._algebra.grades import concatenate, stack, with_grades
 from polhode._algebra.multivector import Multivector
@@ -288,18 +288,17 @@ class RigidTransform:
         step: RigidTransform = (self.inv() * other) ** t
         return self * step
 
-    def mean(self, weights: Any = None) -> RigidTransform:
-        """Return the mean over all of a batch: of the rotations as by `ph.mean`, and of the translations."""
-        if not self.shape:
-            return self
-        count = int(np.prod(self.shape))
-        moved = self.translation.reshape(count)
+    def mean(self, weights: Any = None, axis: int | tuple[int, ...] | None = None) -> RigidTransform:
+        """Return the mean over batch axes, by default all: of rotations as by `ph.mean`, and of translations.
+
+        `weights` are numbers >= 0 that broadcast to the batch shape. A ValueError as of `ph.mean`.
+        """
+        turn = mean(self.rotor, weights, axis)
         if weights is None:
-            center = moved.sum() / count
-        else:
-            given = np.broadcast_to(np.asarray(weights, float), self.shape).reshape(count)
-            center = (moved * given).sum() / given.sum()
-        return RigidTransform(mean(self.rotor, weights), center)
+            return RigidTransform(turn, self.translation.mean(axis))
+        given = as_coefficients(weights, "weights")
+        w = scalar(namespace(given).broadcast_to(given, self.shape))
+        return RigidTransform(turn, (self.translation * w).sum(axis) / w.sum(axis))
 
     # --- batches
 

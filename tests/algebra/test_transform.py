@@ -155,6 +155,8 @@ def test_motors_move_planes_and_points(transforms):
         RigidTransform.from_motor(e1)
     with pytest.raises(ValueError, match="even element, got the grades"):
         RigidTransform.from_motor(null)
+    with pytest.raises(ValueError, match="the rotation part of a motor must be finite and not 0"):
+        RigidTransform.from_motor(shift - 1)
 
 
 def test_matrices_are_checked(transforms):
@@ -168,6 +170,9 @@ def test_matrices_are_checked(transforms):
         RigidTransform.from_matrix(wrong)
     with pytest.raises(ValueError, match="reflection"):
         RigidTransform.from_matrix(np.diag([1.0, 1.0, -1.0, 1.0]))
+    measured = np.diag([1.1, 1.0, 0.8, 1.0])
+    measured[:3, 3] = [1, 2, 3]
+    assert RigidTransform.from_matrix(measured, nearest=True) == RigidTransform(translation=[1, 2, 3])
 
 
 def test_dual_quaternions(transforms):
@@ -177,6 +182,11 @@ def test_dual_quaternions(transforms):
         np.testing.assert_allclose(again.as_matrix(), transforms.as_matrix(), rtol=0, atol=16 * EPS)
     real, dual = q[:, :4], q[:, 4:]
     assert np.abs((real * dual).sum(axis=-1)).max() <= 4 * EPS
+    q[2, :4] = 0
+    with pytest.raises(
+        ValueError, match=r"at index \(2,\): the real part of a dual quaternion must be finite"
+    ):
+        RigidTransform.from_dual_quat(q)
 
 
 def test_means_over_axes():

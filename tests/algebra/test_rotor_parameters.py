@@ -135,11 +135,31 @@ def test_euler_angles_are_davenport_angles():
     assert Rotor.from_davenport([e3, e1], "i", np.zeros((5, 2))).shape == (5,)
 
 
+@pytest.mark.parametrize("order", ["e", "i"])
+def test_davenport_axes_of_batches(order):
+    frames = random_rotors((4, 1), 7)(ph.vector(np.eye(3)))  # the axes of four frames
+    R = random_rotors((1, 5), 8)
+    angles = R.to_davenport(frames.reshape(4, 1, 3), order)
+    assert angles.shape == (4, 5, 3)
+    for k in range(4):
+        np.testing.assert_allclose(angles[k], R[0].to_davenport(frames[k], order), rtol=0, atol=8 * EPS)
+    again = Rotor.from_davenport(frames.components[:, None], order, angles)
+    # Three turns about axes that are perpendicular to rounding.
+    assert np.all(again.distance(R) <= 32 * EPS)
+
+
 def test_wrong_axes_raise():
     R = Rotor.identity()
+    axes = np.tile(np.eye(3), (2, 1, 1))
+    axes[1, 2] = [0, 1, 1]
+    with pytest.raises(ValueError, match=r"axes 1 and 2 at index \(1,\) must be perpendicular"):
+        R.to_davenport(axes, "e")
+    axes[1, 0] = 0
+    with pytest.raises(ValueError, match=r"axis 0 at index \(1,\) is \[0.0, 0.0, 0.0\]"):
+        R.to_davenport(axes, "e")
     with pytest.raises(ValueError, match=r"axes 1 and 2 must be perpendicular; .* is 0\.7"):
         R.to_davenport([[1, 0, 0], [0, 1, 0], [0, 1, 1]], "e")
-    with pytest.raises(ValueError, match=r"three axes, an array \(n, 3\), got shape \(2, 3\)"):
+    with pytest.raises(ValueError, match=r"three axes, an array \(\.\.\., n, 3\), got shape \(2, 3\)"):
         R.to_davenport([e1, e2], "e")
     with pytest.raises(ValueError, match=r"axis 1 is .* not zero"):
         Rotor.from_davenport([[1, 0, 0], [0, 0, 0]], "e", [1, 2])

@@ -155,6 +155,8 @@ def test_motors_move_planes_and_points(transforms):
         RigidTransform.from_motor(e1)
     with pytest.raises(ValueError, match="even element, got the grades"):
         RigidTransform.from_motor(null)
+    with pytest.raises(ValueError, match="the rotation part of a motor must be finite and not 0"):
+        RigidTransform.from_motor(shift - 1)
 
 
 def test_matrices_are_checked(transforms):
@@ -168,6 +170,9 @@ def test_matrices_are_checked(transforms):
         RigidTransform.from_matrix(wrong)
     with pytest.raises(ValueError, match="reflection"):
         RigidTransform.from_matrix(np.diag([1.0, 1.0, -1.0, 1.0]))
+    measured = np.diag([1.1, 1.0, 0.8, 1.0])
+    measured[:3, 3] = [1, 2, 3]
+    assert RigidTransform.from_matrix(measured, nearest=True) == RigidTransform(translation=[1, 2, 3])
 
 
 def test_dual_quaternions(transforms):
@@ -177,6 +182,29 @@ def test_dual_quaternions(transforms):
         np.testing.assert_allclose(again.as_matrix(), transforms.as_matrix(), rtol=0, atol=16 * EPS)
     real, dual = q[:, :4], q[:, 4:]
     assert np.abs((real * dual).sum(axis=-1)).max() <= 4 * EPS
+    q[2, :4] = 0
+    with pytest.raises(
+        ValueError, match=r"at index \(2,\): the real part of a dual quaternion must be finite"
+    ):
+        RigidTransform.from_dual_quat(q)
+
+
+def test_means_over_axes():
+    rng = np.random.default_rng(5)
+    T, w = RigidTransform(ph.Rotor.random((3, 4), rng=4), rng.standard_normal((3, 4, 3))), rng.random((3, 4))
+    for axis, of_one in ((1, lambda k: (T[k], w[k])), (-2, lambda k: (T[:, k], w[:, k]))):
+        for weights in (None, w):
+            means = T.mean(weights, axis=axis)
+            for k, mean in enumerate(means):
+                part, own = of_one(k)
+                # Of up to four attitudes, whose eigenvalues differ by some tenths.
+                expected = part.mean(None if weights is None else own)
+                assert mean.is_close(expected, rtol=64 * EPS, atol=16 * EPS)
+    assert T.mean(axis=(0, 1)).is_close(T.mean(), rtol=64 * EPS, atol=16 * EPS)
+    assert T.mean(axis=()).is_close(T, rtol=64 * EPS, atol=EPS).all()
+    assert T[0, 0].mean().is_close(T[0, 0], rtol=64 * EPS, atol=EPS)
+    with pytest.raises(ValueError, match="numbers >= 0"):
+        T.mean(-w)
 
 
 def test_scipy_agrees(transforms):

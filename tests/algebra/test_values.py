@@ -180,7 +180,10 @@ def test_items_of_rotors_are_rotors():
 
 def test_float_of_a_scalar():
     assert float(ph.scalar(2.5)) == 2.5
-    for value in (e1, ph.scalar([1.0, 2.0]), 1 + e1, ph.multivector([1.0, 0, 0, 0, 0, 0, 0, 0])):
+    # The square of a vector holds a bivector, which is exactly 0.
+    assert float((2 * e1 + e2) * (2 * e1 + e2)) == 5
+    assert float(ph.multivector([1.0, 0, 0, 0, 0, 0, 0, 0])) == 1
+    for value in (e1, ph.scalar([1.0, 2.0]), 1 + e1, 1 + 1e-300 * e1):
         with pytest.raises(TypeError, match="only a single scalar converts to float"):
             float(value)
 

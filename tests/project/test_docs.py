@@ -34,17 +34,22 @@ def test_scenes_run(text, tmp_path):
     assert trajectory.certificate.worst < 1e-10
 
 
-@pytest.mark.parametrize(
-    "name", ["algebra", "pga", "cga", "formulas", "motion", "jax", pytest.param("viewer", marks=needs_bundle)]
-)
+PAGES = ["algebra", "pga", "cga", "formulas", "motion", "jax", pytest.param("viewer", marks=needs_bundle)]
+# The pages of a day each use several extras.
+DAYS = ["roboticist", "attitude-engineer", "geometric-algebraist"]
+EXTRAS = ("jax", "sympy", "anywidget", "matplotlib", "pandas", "pyarrow", "scipy", "xarray")
+
+
+@pytest.mark.parametrize("name", [*PAGES, *DAYS])
 def test_the_pages_run_and_print_their_comments(name, tmp_path):
-    for needed in ("jax", "sympy", "anywidget"):
+    for needed in EXTRAS if name in DAYS else EXTRAS[:3]:
         pytest.importorskip(needed)
     # Pages read the examples, and write their files here.
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     blocks = blocks_of(ROOT / f"docs/{name}.md")
     code = "\n".join(text for language, text in blocks if language == "python")
-    done = processes.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path)
+    environment = {**os.environ, "MPLBACKEND": "agg"}
+    done = processes.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path, env=environment)
     assert done.returncode == 0, done.stderr
     expected = []
     for language, text in blocks:

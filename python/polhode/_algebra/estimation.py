@@ -34,19 +34,19 @@ def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None)
     Parameters
     ----------
     R
-        A batch of rotors, or a list of rotors.
+        A batch of rotors, or a list of rotors; a single rotor is its own mean.
     weights
         Numbers >= 0 that broadcast to the batch shape; by default all are equal.
     axis
-        Batch axis or axes to average over, as in NumPy; by default all of them. The result has the batch
-        shape of the others.
+        Batch axis or axes to average over, as in NumPy; by default all of them, none for ``()``. The result
+        has the batch shape of the others.
 
     A ValueError if a mean is not unique, as for half turns about three axes; while JAX traces, the result is
     then arbitrary. Arrays of other libraries keep their type; derivatives are right up to the third.
     """
     rotors = stack(R) if isinstance(R, list | tuple) and R else R
-    if not isinstance(rotors, Rotor) or not rotors.shape or not all(rotors.shape):
-        raise ValueError(f"mean needs a batch of rotors of shape (n,) or more axes, n > 0, got {R!r}")
+    if not isinstance(rotors, Rotor) or not all(rotors.shape):
+        raise ValueError(f"mean needs rotors, at least one, got {R!r}")
     kind = _numbers(rotors, weights)
     xp, axes = kind.xp, _batch_axes(axis, len(rotors.shape))
     w = _usable_weights(kind, weights, rotors.shape)
@@ -99,11 +99,7 @@ def _batch_axes(axis: Any, count: int) -> tuple[int, ...]:
         return tuple(range(count))
     given = axis if isinstance(axis, tuple) else (axis,)
     places = tuple(operator.index(k) for k in given)
-    if (
-        not places
-        or not all(-count <= k < count for k in places)
-        or len({k % count for k in places}) < len(places)
-    ):
+    if not all(-count <= k < count for k in places) or len({k % count for k in places}) < len(places):
         raise ValueError(f"axis {axis} does not name different axes of {count} batch axes")
     return tuple(k % count for k in places)
 

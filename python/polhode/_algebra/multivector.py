@@ -164,7 +164,8 @@ class Multivector(_native.Multivector):
     mean = _grades.averaged
 
     def __float__(self) -> float:
-        if self._mask != 1 or self.shape:
+        """Return a single scalar as a float; other grades must be absent or exactly 0."""
+        if self.shape or not self._mask & 1 or self._held() & ~1:
             raise TypeError(
                 f"only a single scalar converts to float, got grades {self.grades} and shape {self.shape}; "
                 "use .grade(0) or .components"

@@ -99,23 +99,22 @@ def from_davenport(axes: Any, order: str, angles: Any, degrees: bool = False) ->
     Parameters
     ----------
     axes
-        Vectors (n,) or an array (n, 3), n = 1 to 3, or (3,) for a single axis; lengths are ignored.
+        Vectors (..., n) or an array (..., n, 3), n = 1 to 3, or (3,) for a single axis; lengths are ignored.
     order
         ``"extrinsic"`` or ``"e"``: the axes are fixed in space; ``"intrinsic"`` or ``"i"``: they turn with
         the body.
     angles
         Array (..., n) in radians, or degrees, one for each axis; for one axis a single angle need not be an
-        array.
+        array. Batch shapes broadcast with those of the axes.
     """
     unit, intrinsic = _davenport_axes(axes, (1, 2, 3)), _intrinsic(order)
     theta = _radians(angles, degrees)
     if not theta.shape:
         theta = theta[None]
-    if theta.shape[-1] != len(unit):
-        raise ValueError(
-            f"{len(unit)} axes need {len(unit)} angles in the last axis, got shape {tuple(theta.shape)}"
-        )
-    turns = [from_axis_angle(axis, theta[..., k]) for k, axis in enumerate(unit)]
+    count = unit.shape[-2]
+    if theta.shape[-1] != count:
+        raise ValueError(f"{count} axes need {count} angles in the last axis, got shape {tuple(theta.shape)}")
+    turns = [from_axis_angle(unit[..., k, :], theta[..., k]) for k in range(count)]
     # Turns about axes of the body are the same turns about fixed axes in the opposite order.
     total, *others = turns[::-1] if intrinsic else turns
     for turn in others:
@@ -124,26 +123,28 @@ def from_davenport(axes: Any, order: str, angles: Any, degrees: bool = False) ->
 
 
 def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
-    """Return Davenport angles (..., 3) about three axes, as in `from_davenport`, in radians or degrees.
+    """Return Davenport angles (..., 3), in radians or degrees, about three axes as in `from_davenport`.
 
     The first and third lie in [−π, π], the second in [−λ, π − λ] for the angle λ in [−π, π] from the first
     axis to the third about the second (for turns about fixed axes: from the third to the first), or, where
     λ < 0, in [−π − λ, −λ]. At the ends of its range, in gimbal lock, the third angle is 0. There the three
     angles still give the attitude, so there is no warning.
     """
-    first, second, third = _davenport_axes(axes, (3,))
+    first, second, third = np.moveaxis(_davenport_axes(axes, (3,)), -2, 0)
     intrinsic = _intrinsic(order)
     if not intrinsic:  # the same turns about axes of the body, in the opposite order
         first, third = third, first
     # The third axis is the first one turned by λ about the second, so that R times this turn is a product of
     # turns about the first, second and first axis.
-    lead = float(np.arctan2(second @ np.cross(first, third), first @ third))
-    sign = -1.0 if lead < 0 else 1.0
-    second, lead = sign * second, sign * lead
+    lead: Any = np.arctan2((second * np.cross(first, third)).sum(axis=-1), (first * third).sum(axis=-1))
+    sign: Any = np.where(lead < 0, -1.0, 1.0)
+    second, lead = sign[..., np.newaxis] * second, np.abs(lead)
     frame = Rotor.from_matrix(np.stack([np.cross(second, first), second, first], axis=-1))
     proper = ~frame * R * from_axis_angle(second, lead) * frame
     angles = proper.to_euler("ZYZ" if intrinsic else "zyz")
     alpha, beta, gamma = (angles[..., k] for k in range(3))
+    if not lead.shape:
+        sign, lead = float(sign), float(lead)
     found = kind_of(angles).stack([alpha, sign * (beta - lead), gamma])
     if not degrees:
         return found
@@ -153,26 +154,29 @@ def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
 
 
 def _davenport_axes(axes: Any, lengths: tuple[int, ...]) -> Array:
-    """Return unit axes (n, 3); a ValueError unless neighbours are perpendicular."""
+    """Return unit axes (..., n, 3); a ValueError unless neighbours are perpendicular."""
     given = one_grade(axes, 1, "the axes")._data if isinstance(axes, Multivector) else axes
     if isinstance(given, list | tuple):
         given = [row.components if isinstance(row, Multivector) else row for row in given]
     array = np.atleast_2d(as_floats(given, "the axes"))
     count = "three" if lengths == (3,) else "one to three"
-    if array.ndim != 2 or array.shape[1] != 3 or len(array) not in lengths:
-        raise ValueError(f"Davenport angles need {count} axes, an array (n, 3), got shape {array.shape}")
+    if array.shape[-1] != 3 or array.shape[-2] not in lengths:
+        raise ValueError(f"Davenport angles need {count} axes, an array (..., n, 3), got shape {array.shape}")
     sizes = np.linalg.norm(array, axis=-1)
     usable = np.isfinite(sizes) & (sizes > 0)
     if not usable.all():
-        k = int(np.argmin(usable))
-        raise ValueError(f"axis {k} is {array[k].tolist()}; it must be finite and not zero")
-    unit: Array = array / sizes[:, np.newaxis]
-    for k in range(len(unit) - 1):
-        cosine = float(unit[k] @ unit[k + 1])
-        if abs(cosine) > _RIGHT_ANGLE:
-            raise ValueError(
-                f"axes {k} and {k + 1} must be perpendicular; the cosine of their angle is {cosine:.3g}"
-            )
+        *batch, k = first_index(~usable)
+        found = array[(*batch, k)].tolist()
+        raise ValueError(f"axis {k}{at_index(tuple(batch))} is {found}; it must be finite and not zero")
+    unit: Array = array / sizes[..., np.newaxis]
+    cosines = (unit[..., :-1, :] * unit[..., 1:, :]).sum(axis=-1)
+    oblique = np.abs(cosines) > _RIGHT_ANGLE
+    if oblique.any():
+        *batch, k = index = first_index(oblique)
+        raise ValueError(
+            f"axes {k} and {k + 1}{at_index(tuple(batch))} must be perpendicular; the cosine of their angle "
+            f"is {cosines[index]:.3g}"
+        )
     return unit
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode._algebra.algebra import algebra
 from polhode._algebra.coefficients import as_coefficients, common, kind_of, namespace, number_like
-from polhode._algebra.constructors import one_grade, vector
+from polhode._algebra.constructors import one_grade, scalar, vector
 from polhode._algebra.estimation import mean
 from polhode._algebra.grades import concatenate, stack, with_grades
 from polhode._algebra.multivector import Multivector
@@ -104,10 +104,11 @@ class RigidTransform:
         return RigidTransform(_as_rotor(rotation), translation)
 
     @staticmethod
-    def from_matrix(matrix: Any) -> RigidTransform:
+    def from_matrix(matrix: Any, nearest: bool = False) -> RigidTransform:
         """From matrices (..., 4, 4) that act on columns (x, y, z, 1), with the last row (0, 0, 0, 1).
 
-        The rotation is made exact as by `Rotor.from_matrix`, with its errors.
+        The rotation is made exact as by `Rotor.from_matrix`, with its errors; with ``nearest=True`` it is the
+        nearest one to any 3x3 part.
         """
         given = as_coefficients(matrix, "transformation matrix")
         if tuple(given.shape[-2:]) != (4, 4):
@@ -120,7 +121,7 @@ class RigidTransform:
                     "the last row of a transformation matrix must be (0, 0, 0, 1), got "
                     f"{last[wrong][0].tolist()}"
                 )
-        return RigidTransform(Rotor.from_matrix(given[..., :3, :3]), given[..., :3, 3])
+        return RigidTransform(Rotor.from_matrix(given[..., :3, :3], nearest), given[..., :3, 3])
 
     @staticmethod
     def from_exp_coords(exp_coords: Any) -> RigidTransform:
@@ -145,7 +146,7 @@ class RigidTransform:
         """From unit dual quaternions (..., 8): the real part, then the dual part, each ``(x, y, z, w)``.
 
         With `scalar_first`, each is ``(w, x, y, z)``. Both are divided by the norm of the real part; what of
-        the dual part is not orthogonal to it is dropped.
+        the dual part is not orthogonal to it is dropped. A ValueError for a real part 0.
         """
         given = as_coefficients(dual_quat, "dual quaternion")
         if not given.shape or given.shape[-1] != 8:
@@ -154,7 +155,9 @@ class RigidTransform:
         if not scalar_first:
             real, dual = [real[3], *real[:3]], [dual[3], *dual[:3]]
         (w, i, j, k), (a, b, c, d) = real, dual
-        return _of_motor(_motor(kind_of(given), [w, -k, j, b, -i, c, d, a]))
+        return _of_motor(
+            _motor(kind_of(given), [w, -k, j, b, -i, c, d, a]), "the real part of a dual quaternion"
+        )
 
     @staticmethod
     def from_motor(M: Multivector) -> RigidTransform:
@@ -163,7 +166,7 @@ class RigidTransform:
             raise TypeError("a motor is an even element of ph.algebra(3, 0, 1)")
         if any(k % 2 for k in M.grades):
             raise ValueError(f"a motor is an even element, got the grades {M.grades}")
-        return _of_motor(M)
+        return _of_motor(M, "the rotation part of a motor")
 
     @staticmethod
     def from_scipy(transform: ScipyTransform) -> RigidTransform:
@@ -288,18 +291,17 @@ class RigidTransform:
         step: RigidTransform = (self.inv() * other) ** t
         return self * step
 
-    def mean(self, weights: Any = None) -> RigidTransform:
-        """Return the mean over all of a batch: of the rotations as by `ph.mean`, and of the translations."""
-        if not self.shape:
-            return self
-        count = int(np.prod(self.shape))
-        moved = self.translation.reshape(count)
+    def mean(self, weights: Any = None, axis: int | tuple[int, ...] | None = None) -> RigidTransform:
+        """Return the mean over batch axes, by default all: of rotations as by `ph.mean`, and of translations.
+
+        `weights` are numbers >= 0 that broadcast to the batch shape. A ValueError as of `ph.mean`.
+        """
+        turn = mean(self.rotor, weights, axis)
         if weights is None:
-            center = moved.sum() / count
-        else:
-            given = np.broadcast_to(np.asarray(weights, float), self.shape).reshape(count)
-            center = (moved * given).sum() / given.sum()
-        return RigidTransform(mean(self.rotor, weights), center)
+            return RigidTransform(turn, self.translation.mean(axis))
+        given = as_coefficients(weights, "weights")
+        w = scalar(namespace(given).broadcast_to(given, self.shape))
+        return RigidTransform(turn, (self.translation * w).sum(axis) / w.sum(axis))
 
     # --- batches
 
@@ -380,13 +382,16 @@ def _motor(kind: Any, columns: list[Any]) -> Multivector:
     return Multivector._of(kind.stack(columns), _EVEN, _MOTORS)
 
 
-def _of_motor(M: Multivector) -> RigidTransform:
-    """Return the transform of an even element that need not have norm 1."""
+def _of_motor(M: Multivector, part: str) -> RigidTransform:
+    """Return the transform of an even element that need not have norm 1; `part` must not be 0."""
     w, xy, xz, _, yz, *_ = _columns(M)
     kind = kind_of(w)
     zero = kind.zeros_like(w)
     turn = _motor(kind, [w, xy, xz, zero, yz, zero, zero, zero])
     # M = (1 + ½ x0∧e4) R, with R of any norm.
-    _, _, _, x, _, y, z, _ = _columns(M * ~turn / turn.norm_squared())
+    size = turn.norm_squared()
+    if not kind.exact:
+        kind.require(kind.asarray(size) > 0, f"{part} must be finite and not 0")
+    _, _, _, x, _, y, z, _ = _columns(M * ~turn / size)
     rotor = Rotor.from_components(kind.stack([w, yz, -xz, xy]))
     return RigidTransform(rotor, kind.stack([2 * x, 2 * y, 2 * z]))

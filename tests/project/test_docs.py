@@ -35,7 +35,7 @@ def test_scenes_run(text, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name", ["algebra", "formulas", "motion", "jax", pytest.param("viewer", marks=needs_bundle)]
+    "name", ["algebra", "motors", "formulas", "motion", "jax", pytest.param("viewer", marks=needs_bundle)]
 )
 def test_the_pages_run_and_print_their_comments(name, tmp_path):
     for needed in ("jax", "sympy", "anywidget"):

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from polhode._algebra.linear_map import LinearMap
     from polhode._algebra.pga import PGA, pga
     from polhode._algebra.rates import attitude_from_rates, rates_from_attitude
+    from polhode._algebra.screws import Screw, adjoint_matrix, screw_parameters
     from polhode._algebra.serialize import from_dict, to_dict
     from polhode._algebra.transform import RigidTransform
     from polhode._formula.agreement import Agreement
@@ -62,12 +63,13 @@ __all__ = [
     "CGA", "PGA", "Agreement", "Algebra", "Alignment", "Body", "Certificate", "Crossings", "DampedTop",
     "Failure", "FlowDerivatives", "Formula", "FormulaError", "FreeMotion", "I", "Inertia", "LagrangeTop",
     "LarmorSphere", "LinearMap", "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline",
-    "Scene", "SceneError", "State", "Stepper", "SymmetricTop", "Trajectory", "algebra", "align",
-    "attitude_from_rates", "axial", "bivector", "cga", "concatenate", "cross", "describe_free", "e1", "e2",
-    "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict", "from_pauli", "left_jacobian",
-    "mean", "multivector", "pga", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf",
-    "reciprocal_frame", "right_jacobian", "scalar", "simulate", "simulate_blocks", "slerp", "split",
-    "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
+    "Scene", "SceneError", "Screw", "State", "Stepper", "SymmetricTop", "Trajectory", "adjoint_matrix",
+    "algebra", "align", "attitude_from_rates", "axial", "bivector", "cga", "concatenate", "cross",
+    "describe_free", "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict",
+    "from_pauli", "left_jacobian", "mean", "multivector", "pga", "rates_from_attitude", "read_mjcf",
+    "read_sdf", "read_urdf", "reciprocal_frame", "right_jacobian", "scalar", "screw_parameters", "simulate",
+    "simulate_blocks", "slerp", "split", "stack", "to_dict", "to_pauli", "torque", "trivector", "vector",
+    "view",
 ]
 # fmt: on
 
@@ -83,6 +85,7 @@ _LATER = {
         "_algebra.linear_map": "LinearMap",
         "_algebra.pga": "PGA pga",
         "_algebra.rates": "attitude_from_rates rates_from_attitude",
+        "_algebra.screws": "Screw adjoint_matrix screw_parameters",
         "_algebra.serialize": "from_dict to_dict",
         "_algebra.transform": "RigidTransform",
         "_formula.agreement": "Agreement",

@@ -34,7 +34,16 @@ def test_scenes_run(text, tmp_path):
     assert trajectory.certificate.worst < 1e-10
 
 
-PAGES = ["algebra", "pga", "cga", "formulas", "motion", "jax", pytest.param("viewer", marks=needs_bundle)]
+PAGES = [
+    "algebra",
+    "motors",
+    "pga",
+    "cga",
+    "formulas",
+    "motion",
+    "jax",
+    pytest.param("viewer", marks=needs_bundle),
+]
 # The pages of a day each use several extras.
 DAYS = ["roboticist", "attitude-engineer", "geometric-algebraist"]
 EXTRAS = ("jax", "sympy", "anywidget", "matplotlib", "pandas", "pyarrow", "scipy", "xarray")

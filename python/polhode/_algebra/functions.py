@@ -9,7 +9,8 @@ import numpy as np
 
 from polhode import _generic, _native
 from polhode._algebra import grades as _parts
-from polhode._algebra.coefficients import common, kind_of, taken
+from polhode._algebra import motors as _motors
+from polhode._algebra.coefficients import common, kind_of, number_like, taken
 from polhode._algebra.products import coerced
 from polhode._support.arrays import Array, at_index, first_index, is_complex, is_float, mapped, new
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 Signs = np.ndarray[Any, np.dtype[np.int8]]
 
 _BIVECTOR, _EVEN = 0b0100, 0b0101
+_ODD = 0b010101010
 
 
 def divided(value: Multivector, other: Any) -> Multivector:
@@ -39,13 +41,21 @@ def divided(value: Multivector, other: Any) -> Multivector:
 
 
 def power(value: Multivector, n: Any) -> Multivector:
-    """Return an integer power; negative ones through the inverse."""
+    """Return a power: an integer one of any value, negative ones through the inverse.
+
+    Of even values, such as motors, also ``exp(n log A)`` for any real n or array of them.
+    """
     try:
         exponent = operator.index(n)
     except TypeError:
-        raise TypeError(
-            f"a multivector has integer powers, got {n!r}; write (n * A.log()).exp() for others"
-        ) from None
+        if value._held() & _ODD or isinstance(n, str | bytes | complex | type(None)):
+            raise TypeError(
+                f"a multivector has integer powers, and real ones if it is even; got {n!r}; write "
+                "(n * A.log()).exp() for others"
+            ) from None
+        logarithm: Multivector = value.log() * number_like(n, "the power", value._data)
+        power: Multivector = logarithm.exp()
+        return power
     base = value.inverse() if exponent < 0 else value
     exponent = abs(exponent)
     if exponent == 0:
@@ -126,7 +136,16 @@ def _unit_and_size(data: Array, signs: Signs) -> tuple[Array, Array]:
 
 
 def normalized(value: Multivector) -> Multivector:
-    """Return ``A/|A|``; a ValueError for zero and non-finite values."""
+    """Return ``A/|A|``; a ValueError for zero and non-finite values.
+
+    Even values of Cl(3,0,1) with scalars and bivectors, such as motors, are divided by the dual number
+    ``√(M ~M)``, so that the result is a motor, with ``M ~M = 1``.
+    """
+    unit = _over_norm(value)
+    return _motors.without_excess(unit) if value._mask & _EVEN == _EVEN and _motors.is_motor(value) else unit
+
+
+def _over_norm(value: Multivector) -> Multivector:
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if not is_float(data) and not is_complex(data):
         if min(signs) > 0:
@@ -180,8 +199,11 @@ def function(name: str, value: Multivector) -> Multivector:
 
 
 def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
-    """Return the inverse or the exponential of complex coefficients, or generic ones outside 3-d space."""
+    """Return a function of complex or generic coefficients."""
     algebra = value.algebra
+    if name != "inverse" and _motors.is_motor(value) and not is_complex(value._data):
+        mask = algebra._grades_of_function(name, value._mask)
+        return _motors.function(name, value, mask)._data, mask
     if name not in ("inverse", "exp"):
         if is_complex(value._data):
             raise TypeError(

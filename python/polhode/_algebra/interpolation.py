@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
-from polhode._algebra.coefficients import foreign_kind, namespace
+from polhode import _generic
+from polhode._algebra.coefficients import foreign_kind, kind_of
 from polhode._algebra.constructors import bivector
 from polhode._algebra.grades import stack
 from polhode._algebra.multivector import Multivector
@@ -16,21 +17,52 @@ from polhode._algebra.signs import half_turn
 from polhode._support.arrays import Array, as_floats, at_index, first_index, frozen, is_float
 
 
-def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
+@overload
+def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor: ...
+
+
+@overload
+def slerp(R: Multivector, S: Multivector, t: Any) -> Multivector: ...
+
+
+def slerp(R: Any, S: Any, t: Any) -> Any:
     """Return the rotor a fraction t (an array broadcasts) of the way from R to S, at constant rate.
 
     The shorter way round: ``R (~R S)^t``, with the sign of S that makes it so: t = 0 gives R, t = 1 gives S
     or −S. If the attitudes are half a turn apart, to rounding, both ways are equally long and S keeps its
     sign: R to S and R to −S go opposite ways round.
+
+    Of motors of ``ph.algebra(3, 0, 1)`` the motor, along the screw from one to the other, a turn of at most
+    π; of other even versors ``R (R⁻¹ S)^t``, whose norms are interpolated as well.
     """
-    for value in (R, S):
-        if not isinstance(value, Rotor):
-            raise TypeError(f"slerp needs rotors, got {type(value).__name__}")
+    if not (isinstance(R, Rotor) and isinstance(S, Rotor)):
+        return _slerp_of_versors(R, S, t)
     step = (~R * S)._data
-    longer = step[..., :1] < -half_turn(step)
-    shorter = Rotor.from_components(namespace(step).where(longer, -step, step))
-    path: Rotor = R * shorter**t
-    return path
+    return R * Rotor.from_components(_shorter(step, step[..., :1])) ** t
+
+
+def _slerp_of_versors(R: Any, S: Any, t: Any) -> Any:
+    for value in (R, S):
+        if not isinstance(value, Multivector) or any(k % 2 for k in value.grades):
+            found = f"the grades {value.grades}" if isinstance(value, Multivector) else type(value).__name__
+            raise TypeError(f"slerp needs rotors, or motors and other even versors, got {found}")
+    step = ~R * S / (R * ~R).grade(0)
+    shorter = step._like(_shorter(step._data, step.grade(0)._data))
+    return R * shorter**t
+
+
+def _shorter(step: Any, scalar: Any) -> Any:
+    """Return components, reversed in sign where the scalar part is negative, beyond rounding."""
+    kind = kind_of(step)
+    if kind.exact:
+        negative = np.frompyfunc(lambda x: _is_negative(x, -half_turn(step)), 1, 1)(scalar)
+        return np.where(negative.astype(bool), -step, step)
+    return kind.xp.where(scalar < -half_turn(step), -step, step)
+
+
+def _is_negative(x: Any, bound: float) -> bool:
+    """Whether a number is less than the bound, or an expression is known to be negative."""
+    return bool(x.is_negative) if _generic.exact.is_symbolic(x) else bool(x < bound)
 
 
 class RotorSpline:

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode._algebra.algebra import algebra
+from polhode._algebra.algebra import Algebra, algebra
 from polhode._algebra.coefficients import as_coefficients, common, kind_of, namespace, number_like
 from polhode._algebra.constructors import one_grade, scalar, vector
 from polhode._algebra.estimation import mean
-from polhode._algebra.grades import concatenate, stack, with_grades
+from polhode._algebra.grades import concatenate, stack
+from polhode._algebra.motors import columns, is_motor, of_columns, places
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._algebra.screws import adjoint_matrix, screw_parameters
 from polhode._support.arrays import Array, Shape
 from polhode._support.extras import optional
 
@@ -21,11 +23,7 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import RigidTransform as ScipyTransform
     from scipy.spatial.transform import Rotation
 
-# Places of the components of an even element of Cl(3,0,1), whose null vector is e4, as
-# (1, e12, e13, e14, e23, e24, e34, e1234).
 _MOTORS = algebra(3, 0, 1)
-_EVEN = 0b10101
-_BIVECTOR = 0b00100
 
 
 class RigidTransform:
@@ -135,11 +133,12 @@ class RigidTransform:
             raise ValueError(
                 f"exponential coordinates need 6 components in the last axis, got shape {tuple(given.shape)}"
             )
-        a, b, c, x, y, z = (given[..., k] / (-2 if k < 3 else 2) for k in range(6))
         kind = kind_of(given)
-        # Over (e12, e13, e14, e23, e24, e34): −½ of the plane of rotation and ½ v e4.
-        screw = Multivector._of(kind.stack([c, -b, x, a, y, z]), _BIVECTOR, _MOTORS)
-        return RigidTransform.from_motor(screw.exp())
+        a, b, c, x, y, z = (kind.divide(given[..., k], -2 if k < 3 else 2) for k in range(6))
+        zero = kind.zeros_like(a)
+        # −½ of the plane of rotation and ½ v∧e4.
+        motor = of_columns(_MOTORS, [zero, a, b, c, x, y, z, zero]).grade(2).exp()
+        return _of_motor(motor, "the rotation of exponential coordinates")
 
     @staticmethod
     def from_dual_quat(dual_quat: Any, *, scalar_first: bool = False) -> RigidTransform:
@@ -155,16 +154,15 @@ class RigidTransform:
         if not scalar_first:
             real, dual = [real[3], *real[:3]], [dual[3], *dual[:3]]
         (w, i, j, k), (a, b, c, d) = real, dual
-        return _of_motor(
-            _motor(kind_of(given), [w, -k, j, b, -i, c, d, a]), "the real part of a dual quaternion"
-        )
+        motor = of_columns(_MOTORS, [w, -i, -j, -k, b, c, d, a])
+        return _of_motor(motor, "the real part of a dual quaternion")
 
     @staticmethod
     def from_motor(M: Multivector) -> RigidTransform:
         """From a motor, an even element of ``ph.algebra(3, 0, 1)``, divided by its norm: see `to_motor`."""
-        if not isinstance(M, Multivector) or M.algebra is not _MOTORS:
+        if not isinstance(M, Multivector) or places(M.algebra) is None:
             raise TypeError("a motor is an even element of ph.algebra(3, 0, 1)")
-        if any(k % 2 for k in M.grades):
+        if not is_motor(M):
             raise ValueError(f"a motor is an even element, got the grades {M.grades}")
         return _of_motor(M, "the rotation part of a motor")
 
@@ -213,30 +211,34 @@ class RigidTransform:
     def as_exp_coords(self) -> Any:
         """Return exponential coordinates (..., 6): rotation vector of at most π, then the velocity."""
         screw = self._nearer().to_motor().log()
-        xy, xz, x4, yz, y4, z4 = _columns(screw, _BIVECTOR)
-        return kind_of(screw._data).stack([-2 * yz, 2 * xz, -2 * xy, 2 * x4, 2 * y4, 2 * z4])
+        _, a, b, c, x, y, z, _ = columns(screw)
+        return kind_of(screw._data).stack([-2 * a, -2 * b, -2 * c, 2 * x, 2 * y, 2 * z])
 
     def as_dual_quat(self, *, scalar_first: bool = False) -> Any:
         """Return unit dual quaternions (..., 8): see `from_dual_quat`; R and −R give opposite ones."""
-        w, xy, xz, x4, yz, y4, z4, xyz4 = _columns(self.to_motor())
-        real, dual = [w, -yz, xz, -xy], [xyz4, x4, y4, z4]
+        w, yz, zx, xy, x4, y4, z4, xyz4 = columns(self.to_motor())
+        real, dual = [w, -yz, -zx, -xy], [xyz4, x4, y4, z4]
         if not scalar_first:
             real, dual = [*real[1:], real[0]], [*dual[1:], dual[0]]
         return kind_of(w).stack([*real, *dual])
 
-    def to_motor(self) -> Multivector:
+    def to_motor(self, algebra: Algebra = _MOTORS) -> Multivector:
         """Return the motor ``M = (1 + ½ x0∧e4) R`` of ``ph.algebra(3, 0, 1)``, whose null vector is e4.
 
         ``M X ~M`` moves planes ``n + d e4``, those with ``n·x + d = 0``, and their intersections.
         ``M = exp(−½ B + ½ v∧e4)`` is a screw: a rotation vector dual to B, and the velocity v of the origin.
+        `algebra` may be another one of three generators of square 1 and one of square 0, in any order, which
+        then takes the part of e4.
         """
+        if places(algebra) is None:
+            raise ValueError(f"a motor needs an algebra of the signature (3, 0, 1), got {algebra}")
         turn, moved = common(self.rotor._data, self.translation._data)
         kind = kind_of(turn)
         w, yz, zx, xy = (turn[..., k] for k in range(4))
-        x, y, z = (moved[..., k] for k in range(3))
+        half = [kind.divide(moved[..., k], 2) for k in range(3)]
         zero = kind.zeros_like(w)
-        rotor = _motor(kind, [w, xy, -zx, zero, yz, zero, zero, zero])
-        return _motor(kind, [zero + 1, zero, zero, x / 2, zero, y / 2, z / 2, zero]) * rotor
+        rotor = of_columns(algebra, [w, yz, zx, xy, *[zero] * 4])
+        return of_columns(algebra, [zero + 1, *[zero] * 3, *half, zero]) * rotor
 
     def to_scipy(self) -> ScipyTransform:
         """Return a ``scipy.spatial.transform.RigidTransform`` (SciPy 1.16 or later)."""
@@ -247,6 +249,9 @@ class RigidTransform:
             self.translation.components, self.rotor.to_scipy()
         )
         return result
+
+    screw_parameters = screw_parameters
+    adjoint = adjoint_matrix
 
     # --- action and algebra
 
@@ -373,25 +378,15 @@ def _as_rotor(rotation: Any) -> Rotor:
     return rotation if isinstance(rotation, Rotor) else Rotor.from_scipy(rotation)
 
 
-def _columns(value: Multivector, mask: int = _EVEN) -> list[Any]:
-    data = with_grades(value, mask)
-    return [data[..., k] for k in range(data.shape[-1])]
-
-
-def _motor(kind: Any, columns: list[Any]) -> Multivector:
-    return Multivector._of(kind.stack(columns), _EVEN, _MOTORS)
-
-
 def _of_motor(M: Multivector, part: str) -> RigidTransform:
     """Return the transform of an even element that need not have norm 1; `part` must not be 0."""
-    w, xy, xz, _, yz, *_ = _columns(M)
+    w, yz, zx, xy, *_ = columns(M)
     kind = kind_of(w)
-    zero = kind.zeros_like(w)
-    turn = _motor(kind, [w, xy, xz, zero, yz, zero, zero, zero])
+    turn = of_columns(M.algebra, [w, yz, zx, xy, *[kind.zeros_like(w)] * 4])
     # M = (1 + ½ x0∧e4) R, with R of any norm.
     size = turn.norm_squared()
     if not kind.exact:
         kind.require(kind.asarray(size) > 0, f"{part} must be finite and not 0")
-    _, _, _, x, _, y, z, _ = _columns(M * ~turn / size)
-    rotor = Rotor.from_components(kind.stack([w, yz, -xz, xy]))
+    _, _, _, _, x, y, z, _ = columns(M * ~turn / size)
+    rotor = Rotor.from_components(kind.stack([w, yz, zx, xy]))
     return RigidTransform(rotor, kind.stack([2 * x, 2 * y, 2 * z]))

@@ -50,7 +50,7 @@ def _log_even(m: Row) -> Row:
         raise ValueError("no logarithm: the multivector is singular")
     plane = [0, 0, 1] if is_zero(size) else [divide(x, size) for x in b]
     angle = atan2(size, s)
-    return [_log_length(s, size), 0, 0, 0, *(angle * x for x in plane), 0]
+    return [log_length(s, size), 0, 0, 0, *(angle * x for x in plane), 0]
 
 
 def sqrt(m: Row) -> Row:
@@ -130,10 +130,10 @@ def _vanishes(z: Complex) -> bool:
 
 
 def _log(z: Complex) -> Complex:
-    return Complex(_log_length(z.re, z.im), atan2(z.im, z.re))
+    return Complex(log_length(z.re, z.im), atan2(z.im, z.re))
 
 
-def _log_length(x: Any, y: Any) -> Any:
+def log_length(x: Any, y: Any) -> Any:
     """``log √(x² + y²)``."""
     if is_zero(x) or is_zero(y):
         return call("log", abs(x if is_zero(y) else y))

@@ -1,0 +1,78 @@
+"""Components of motors, the even elements of algebras of three positive generators and a null one."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _generic, _native
+from polhode._algebra.coefficients import kind_of
+from polhode._algebra.grades import with_grades
+
+if TYPE_CHECKING:
+    from polhode._algebra.algebra import Algebra
+    from polhode._algebra.multivector import Multivector
+
+EVEN = 0b10101
+# One basis element: its place among all, and the sign with which it stands there.
+Place = tuple[int, int]
+
+
+@functools.cache
+def places(algebra: Algebra) -> tuple[Place, ...] | None:
+    """Return where an algebra has ``1, e2e3, e3e1, e1e2, e1n, e2n, e3n, e1e2e3n``, n being its null vector.
+
+    None if its generators are not three of square 1 and one of square 0, in any order.
+    """
+    vectors = [(float(e.norm_squared()), e) for e in algebra.basis_vectors]
+    if sorted(square for square, _ in vectors) != [0.0, 1.0, 1.0, 1.0]:
+        return None
+    null = next(e for square, e in vectors if square == 0)
+    a, b, c = (e for square, e in vectors if square == 1)
+    elements = (algebra.scalar(1.0), b * c, c * a, a * b, a * null, b * null, c * null, a * b * c * null)
+    found = []
+    for element in elements:
+        row = element.dense()
+        k = int(np.flatnonzero(row)[0])
+        found.append((k, int(row[k])))
+    return tuple(found)
+
+
+def is_motor(value: Any) -> bool:
+    """Whether this is an even element of an algebra that has motors, by the grades that it holds."""
+    return (
+        isinstance(value, _native.Multivector)
+        and not value._mask & ~EVEN
+        and places(value.algebra) is not None
+    )
+
+
+def columns(value: Multivector) -> list[Any]:
+    """Return the eight components (...) of an even element in the order of `places`."""
+    data, algebra = with_grades(value, EVEN), value.algebra
+    place = {index: k for k, index in enumerate(algebra._indices(EVEN))}
+    return [data[..., place[k]] * sign for k, sign in places(algebra) or ()]
+
+
+def of_columns(algebra: Algebra, parts: list[Any], mask: int = EVEN) -> Multivector:
+    """Return the element with these components in the order of `places`, over the grades in the mask."""
+    at = {index: sign * part for (index, sign), part in zip(places(algebra) or (), parts, strict=True)}
+    data = kind_of(*parts).stack([at[index] for index in algebra._indices(mask)])
+    return _native.Multivector._of(data, mask, algebra)
+
+
+def function(name: str, value: Multivector, mask: int) -> Multivector:
+    """Return exp, log or sqrt of an even element of any coefficients, over the grades in the mask."""
+    kind = kind_of(value._data)
+    rows = getattr(_generic.motors, name)(kind, kind.stack(columns(value)))
+    return of_columns(value.algebra, [rows[..., k] for k in range(8)], mask)
+
+
+def without_excess(unit: Multivector) -> Multivector:
+    """Return an even element of norm 1 divided by the dual number ``√(M ~M)``.
+
+    ``M ~M = 1 + δJ`` for the pseudoscalar J, whose square is 0; the inverse root is ``1 − ½ δJ``.
+    """
+    return unit - unit * (unit * ~unit).grade(4) / 2

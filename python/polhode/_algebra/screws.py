@@ -1,0 +1,96 @@
+"""Screws of motors and transforms: axis, angle and distance, and the adjoint matrix."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from polhode import _generic
+from polhode._algebra.coefficients import kind_of
+from polhode._algebra.constructors import cross, vector
+from polhode._algebra.motors import columns, is_motor
+from polhode._algebra.multivector import Multivector
+
+
+class Screw(NamedTuple):
+    """The screw of a displacement, a turn about an axis and a translation along it (Chasles' theorem).
+
+    Attributes
+    ----------
+    axis
+        Unit vector of 3-d space along the axis; of a pure translation its direction, of none e3.
+    point
+        The point of the axis nearest to the origin; of a pure translation the origin.
+    angle
+        Angle of the turn in [0, π], in radians, right-handed about `axis`.
+    distance
+        Translation along `axis`, of either sign, in the units of the points.
+    """
+
+    axis: Multivector
+    point: Multivector
+    angle: Any
+    distance: Any
+
+    @property
+    def moment(self) -> Multivector:
+        """The moment ``point × axis`` of the axis, the second half of its Plücker coordinates."""
+        return cross(self.point, self.axis)
+
+    @property
+    def pitch(self) -> Any:
+        """Distance per angle, per radian; infinite for a pure translation, NaN where nothing moves."""
+        if kind_of(self.angle, self.distance).exact:
+            return np.frompyfunc(_pitch, 2, 1)(self.distance, self.angle)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.distance / self.angle
+
+
+def _pitch(distance: Any, angle: Any) -> Any:
+    if _generic.exact.is_zero(angle):
+        return float("nan") if _generic.exact.is_zero(distance) else float("inf")
+    return _generic.exact.divide(distance, angle)
+
+
+def screw_parameters(M: Any) -> Screw:
+    """Return the screw of a motor or a `RigidTransform`: axis, its point, angle and distance.
+
+    M moves by `distance` along the axis and turns by `angle` about it, right-handed: Chasles' theorem. M and
+    −M have the same screw. Batches give batches; floats, SymPy expressions and arrays of JAX are kept.
+    Derivatives of what the identity and pure translations do not determine are 0 there.
+
+    A TypeError for any other value; a ValueError, with the batch index, where M is not a multiple of a motor.
+    """
+    kind, rows, given = _rows(M, "screw_parameters")
+    axis, point, angle, distance = _generic.motors.screw(kind, rows)
+    if kind.native:
+        axis, point, angle, distance = (x.astype(given.dtype)[()] for x in (axis, point, angle, distance))
+    return Screw(vector(axis), vector(point), angle, distance)
+
+
+def adjoint_matrix(M: Any) -> Any:
+    """Return the matrices (..., 6, 6) by which a motor or a `RigidTransform` moves twists and screws.
+
+    They act on columns of an angular velocity (or rotation vector) ω, then a velocity v of the origin: the
+    order of `RigidTransform.as_exp_coords`, ``X = −½ I3 ω + ½ v∧n ↦ M X ~M`` with the null vector n. For
+    ``y = R x ~R + x0`` they are ``[[R, 0], [[x0]ₓ R, R]]``: twists in body axes become twists in space.
+    Wrenches, a moment and then a force, move by the inverse transpose. Errors and coefficients as in
+    `screw_parameters`.
+    """
+    kind, rows, given = _rows(M, "adjoint_matrix")
+    matrices = _generic.motors.adjoint(kind, rows)
+    return matrices.astype(given.dtype, copy=False) if kind.native else matrices
+
+
+def _rows(M: Any, name: str) -> tuple[Any, Any, Any]:
+    """Return the arithmetic, the components (..., 8) and the value of a motor."""
+    value = M.to_motor() if hasattr(M, "to_motor") else M
+    if not is_motor(value):
+        raise TypeError(
+            f"{name} needs a motor, an even element of ph.algebra(3, 0, 1), or a RigidTransform, got "
+            + (f"{value!r}" if isinstance(value, Multivector) and not value.shape else type(value).__name__)
+        )
+    parts = columns(value)
+    kind = kind_of(value._data)
+    return kind, kind.asarray(kind.stack(parts)), value

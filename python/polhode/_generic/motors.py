@@ -1,0 +1,248 @@
+"""exp, log, sqrt and screws of motors, over arrays of any coefficients.
+
+With the null vector n and ``J = e1e2e3 n``, an even element is ``s + I3 b + m n + p J`` for ``I3 = e1e2e3``.
+Data are arrays (..., 8) of ``s, b, m, p``: components over ``1``, ``(e2e3, e3e1, e1e2)``,
+``(e1n, e2n, e3n)`` and ``J``. The number ``ε = −J`` has ε² = 0 and commutes with even elements, and
+``m n = ε I3 m``. So a motor is a rotor whose components are dual numbers, ``(s − εp) + I3 (b + εm)``, and
+every function f(x) of numbers continues to ``f(x + εy) = f(x) + ε y f'(x)`` (Study; Clifford, 1873).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from polhode._generic.coefficients import Coefficients
+from polhode._generic.exact import atan2, by_rows, call, divide, is_rounding, is_symbolic, is_zero
+from polhode._generic.exact import sqrt as root_of
+from polhode._generic.g3_exact import free_root, length, log_length
+from polhode._generic.g3_smooth import cos_sinc, horner
+from polhode._generic.numeric import Array, Numeric, components, require_in_range, squares
+from polhode._generic.rotors import to_matrix
+
+Parts = list[Any]
+
+# (cos θ − sin θ / θ)/θ² in −θ² for θ < 1: the first term left out is 22/23! < 1e-21.
+_SLOPE = [-2 * (k + 1) / math.factorial(2 * k + 3) for k in range(10)]
+# artan(t)/t in −t², and (1 − artan(t)/t)/t², for t² < 1/16: the first terms left out are below 16⁻¹³/27.
+_NEAR = 1 / 16
+_ARTANC = [1 / (2 * k + 1) for k in range(13)]
+_REST = [1 / (2 * k + 3) for k in range(13)]
+
+_E12 = [0.0, 0.0, 1.0]  # the plane taken where the value determines none
+
+_SINGULAR = "not a motor: the components without null vector are zero"
+_NO_MOTOR = "not a motor: M ~M is not a number; divide it by its norm with normalized()"
+
+
+# --- exp
+
+
+def exp(d: Coefficients, data: Array) -> Array:
+    """``exp M`` of even elements: of the bivector ``I3 β + v n`` a motor, ``cos Θ + C sin Θ/Θ``.
+
+    C is ``I3 (β + εv)`` and ``Θ² = −C² = β² + 2ε β·v``.
+    """
+    if not isinstance(d, Numeric):
+        return by_rows(_exact_exp, data)
+    parts = components(data)
+    d.require_finite(parts)
+    s, beta, v, p = _split(parts)
+    cosine, sine = cos_sinc(d, beta)
+    scale = d.scale(beta)
+    scaled = squares(d, [x / scale for x in beta])
+    square = scaled * scale * scale
+    small = square < 1
+    near, far = d.where(small, square, 0.0), d.where(small, 1.0, square)
+    slope = d.where(small, horner(_SLOPE, -near), (cosine - sine) / far)
+    result = d.stack(_times_dual(d.exp(s), p, _exp_parts(cosine, sine, slope, beta, v)))
+    require_in_range(d, result)
+    return result
+
+
+def _exp_parts(cosine: Any, sine: Any, slope: Any, beta: Parts, v: Parts) -> Parts:
+    """Return cos Θ and ``C sin Θ/Θ``, from cos θ, ``sin θ/θ`` and ``(cos θ − sin θ/θ)/θ²``."""
+    along = _dot(beta, v)
+    turned = [sine * x for x in beta]
+    moved = [sine * y + along * slope * x for x, y in zip(beta, v, strict=True)]
+    return [cosine, *turned, *moved, sine * along]
+
+
+def _times_dual(factor: Any, p: Any, parts: Parts) -> Parts:
+    """Return ``f (1 + pJ)`` times an even element."""
+    s, b, m, q = _split(parts)
+    moved = [y - p * x for x, y in zip(b, m, strict=True)]
+    return [factor * x for x in (s, *b, *moved, q + p * s)]
+
+
+def _exact_exp(row: Parts) -> Parts:
+    s, beta, v, p = _split(row)
+    if all(map(is_zero, beta)):
+        cosine, sine, slope = 1, 1, 0  # the last has the factor β
+    else:
+        size = free_root(_dot(beta, beta))
+        cosine, sine = call("cos", size), divide(call("sin", size), size)
+        slope = divide(cosine - sine, size * size)
+    return _times_dual(call("exp", s), p, _exp_parts(cosine, sine, slope, beta, v))
+
+
+# --- log
+
+
+def log(d: Coefficients, data: Array) -> Array:
+    """``ln|M|`` and the bivector B with ``exp B = M/|M|``, of positive multiples of motors.
+
+    ``B = I3 (b + εm) Θ/sin Θ`` for ``cos Θ = s − εp``, with θ in [0, π]; at ``s < 0``, b = 0 in the plane
+    perpendicular to m, or e1e2. Derivatives are finite everywhere else. A ValueError where ``M ~M`` is not a
+    number to half of the digits; a smaller difference is removed as in `normalized`.
+    """
+    if not isinstance(d, Numeric):
+        return by_rows(_exact_log, data)
+    parts = components(data)
+    d.require_finite(parts)
+    size, (s, b, m, p) = _unit(d, parts)
+    sine_squared = squares(d, b)
+    near = (sine_squared < _NEAR * s * s) & (s > 0)
+    safe = d.where(near, s, 1.0)
+    u = d.where(near, sine_squared, 0.0) / (safe * safe)
+    # Θ/sin Θ and its rate, (1 − θ cot θ)/sin²θ in p.
+    length_of_b = d.length(b)
+    beyond = ~near & (length_of_b > 0)
+    sine = d.where(beyond, length_of_b, 1.0)
+    angle = d.atan2(sine, d.where(beyond, s, 1.0))
+    factor = d.where(near, horner(_ARTANC, -u) / safe, angle / sine)
+    # p times the rate, divided by sin θ once more below; with series by 1.
+    rate = p * d.where(near, horner(_REST, -u) / (safe * safe), (1 - s * factor) / sine)
+    # M = −(1 − m n): half a turn of the spinor in a plane that commutes with the translation.
+    turned = ~near & ~beyond
+    plane = d.direction([d.where(turned, x, y) for x, y in zip(m, _E12, strict=True)], _E12)
+    beta = [d.where(turned, math.pi * n, factor * x) for n, x in zip(plane, b, strict=True)]
+    v = [d.where(turned, -y, factor * y + rate * (x / sine)) for x, y in zip(b, m, strict=True)]
+    result = d.stack([d.log(size), *beta, *v, d.zeros_like(s)])
+    require_in_range(d, result)
+    return result
+
+
+def _exact_log(row: Parts) -> Parts:
+    s, b, m, p = _split(row)
+    size = length(b)
+    if is_zero(size) and is_zero(s):
+        raise ValueError(_SINGULAR)
+    if not is_rounding(_dot(b, m) - s * p, 1e-8):
+        raise ValueError(_NO_MOTOR)
+    angle = atan2(size, s)
+    if is_zero(size):
+        along = length(m)
+        plane = [0, 0, 1] if is_zero(along) else [divide(x, along) for x in m]
+        beta, v = [angle * n for n in plane], [divide(y, s) for y in m]
+    else:
+        factor = divide(angle, size)
+        rate = divide(p * (1 - s * factor), size * size)
+        beta = [factor * x for x in b]
+        v = [factor * y + rate * x for x, y in zip(b, m, strict=True)]
+    return [log_length(s, size), *beta, *v, 0]
+
+
+def sqrt(d: Coefficients, data: Array) -> Array:
+    """``√|M| exp(B/2)`` for the logarithm ``ln|M| + B``."""
+    logarithm = log(d, data)
+    return exp(d, d.stack([d.divide(x, 2) for x in components(logarithm)]))
+
+
+# --- screws
+
+
+def screw(d: Coefficients, data: Array) -> tuple[Array, Array, Any, Any]:
+    """Return axis (..., 3), its point nearest to the origin (..., 3), angle in [0, π] and distance.
+
+    A motor is ``exp(I3 β + v n)``: it turns by ``ω = −2β`` and moves the origin with the velocity 2v. The
+    axis without a turn is that of the translation, without either e3; its point is then the origin.
+    """
+    if not isinstance(d, Numeric):
+        rows = by_rows(_exact_screw, data)
+        return rows[..., :3], rows[..., 3:6], rows[..., 6][()], rows[..., 7][()]
+    logarithm = log(d, d.where(data[..., :1] < 0, -data, data))
+    _, beta, v, _ = _split([2.0 * x for x in components(logarithm)])
+    angle = d.length(beta)
+    turns = angle > 0
+    axis = d.direction([d.where(turns, -x, y) for x, y in zip(beta, v, strict=True)], _E12)
+    safe = d.where(turns, angle, 1.0)
+    point = [d.where(turns, x / safe, 0.0) for x in _cross(axis, v)]
+    return d.stack(axis), d.stack(point), angle, _dot(axis, v)
+
+
+def _exact_screw(row: Parts) -> Parts:
+    if not is_symbolic(row[0]) and row[0] < 0:
+        row = [-x for x in row]
+    _, beta, v, _ = _split([2 * x for x in _exact_log(row)])
+    angle = abs(length(beta))
+    if is_zero(angle):
+        distance = abs(length(v))
+        axis = [0, 0, 1] if is_zero(distance) else [divide(x, distance) for x in v]
+        return [*axis, 0, 0, 0, 0, distance]
+    axis = [divide(-x, angle) for x in beta]
+    return [*axis, *(divide(x, angle) for x in _cross(axis, v)), angle, _dot(axis, v)]
+
+
+def adjoint(d: Coefficients, data: Array) -> Array:
+    """Return matrices (..., 6, 6) of ``M X ~M`` on screws ``X = −½ I3 ω + ½ v n``, in the order ω, v.
+
+    The blocks are ``[[R, 0], [[x]ₓ R, R]]`` with the rotation R and the translation x,
+    ``½ x = s m + p b + m × b``.
+    """
+    parts = components(data)
+    if isinstance(d, Numeric):
+        _, (s, b, m, p) = _unit(d, parts)
+    else:
+        s, b, m, p = _split(components(by_rows(_exact_unit, data)))
+    moved = [2 * (s * y + p * x + z) for x, y, z in zip(b, m, _cross(m, b), strict=True)]
+    turn = to_matrix(d, d.stack([s, *b]))
+    columns = [[turn[..., i, j] for i in range(3)] for j in range(3)]
+    crossed = [_cross(moved, column) for column in columns]
+    zero = d.zeros_like(s)
+    rows = [[columns[j][i] for j in range(3)] + [zero] * 3 for i in range(3)]
+    rows += [[crossed[j][i] for j in range(3)] + [columns[j][i] for j in range(3)] for i in range(3)]
+    flat = d.stack([x for row in rows for x in row])
+    return d.reshape(flat, (*flat.shape[:-1], 6, 6))
+
+
+# --- helpers
+
+
+def _split(parts: Parts) -> tuple[Any, Parts, Parts, Any]:
+    """Return s, b, m and p."""
+    return parts[0], parts[1:4], parts[4:7], parts[7]
+
+
+def _unit(d: Numeric, parts: Parts) -> tuple[Any, tuple[Any, Parts, Parts, Any]]:
+    """Return ``√(s² + b²)`` and the motor divided by the dual number ``√(M ~M)``.
+
+    ``M ~M = s² + b² + 2ε δ`` with ``δ = b·m − sp``, which of a motor is 0.
+    """
+    size = d.length(parts[:4])
+    d.require(size > 0, _SINGULAR)
+    safe = d.where(size > 0, size, math.nan)
+    s, b, m, p = _split([x / safe for x in parts])
+    excess = _dot(b, m) - s * p
+    moved = d.length([*m, p])
+    d.require(d.abs(excess) <= d.eps**0.5 * (1 + moved), _NO_MOTOR)
+    return safe, (s, b, [y - excess * x for x, y in zip(b, m, strict=True)], p + excess * s)
+
+
+def _exact_unit(row: Parts) -> Parts:
+    s, b, m, p = _split(row)
+    if not is_rounding(_dot(b, m) - s * p, 1e-8):
+        raise ValueError(_NO_MOTOR)
+    square = s * s + _dot(b, b)
+    if is_zero(square):
+        raise ValueError(_SINGULAR)
+    norm = 1 if is_zero(square - 1) else root_of(square)
+    return [divide(x, norm) for x in row]
+
+
+def _dot(a: Parts, b: Parts) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Parts, b: Parts) -> Parts:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

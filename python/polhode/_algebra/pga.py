@@ -9,15 +9,10 @@ from polhode._algebra.algebra import Algebra, algebra
 from polhode._algebra.coefficients import kind_of
 from polhode._algebra.euclidean import columns, dimension_of, require, require_value, unit_in, vector_in
 from polhode._algebra.multivector import Multivector
-from polhode._algebra.relabel import relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._algebra.versors import small
 from polhode._support.arrays import copied
-
-# The generators e0, e1, e2, e3 in Cl(3,0,1), whose null generator is e4; and back.
-_MOTORS = algebra(3, 0, 1)
-_TO_MOTORS, _FROM_MOTORS = (3, 0, 1, 2), (1, 2, 3, 0)
 
 
 class PGA(Algebra):
@@ -183,13 +178,12 @@ class PGA(Algebra):
             move = rotor
         else:
             move = RigidTransform(rotor, (0.0, 0.0, 0.0) if translation is None else translation)
-        return relabelled(move.to_motor(), self, _FROM_MOTORS)
+        return move.to_motor(self)
 
     def transform(self, M: Multivector) -> RigidTransform:
         """Return the `RigidTransform` of a motor, the inverse of `motor`, divided by its norm."""
         self._require_3d("a RigidTransform")
-        motor = require_value(self, M, "a motor", (0, 2, 4))
-        return RigidTransform.from_motor(relabelled(motor, _MOTORS, _TO_MOTORS))
+        return RigidTransform.from_motor(require_value(self, M, "a motor", (0, 2, 4)))
 
     # --- helpers
 

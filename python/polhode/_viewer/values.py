@@ -14,6 +14,7 @@ from polhode._algebra.cga import CGA, cga
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.pga import PGA, pga
 from polhode._algebra.rotor import Rotor
+from polhode._algebra.screws import screw_parameters
 from polhode._algebra.transform import RigidTransform
 from polhode._support.arrays import is_float
 
@@ -168,19 +169,13 @@ def _motor(space: Any, M: Multivector) -> tuple[str, list[Shape]]:
     if any(k % 2 for k in M.grades):
         return "multivector", []
     try:
-        turn, velocity = np.split(space.transform(M).as_exp_coords(), 2)
+        axis, point, angle, distance = screw_parameters(M)
     except ValueError:
         return "multivector", []
-    angle, speed = float(np.linalg.norm(turn)), float(np.linalg.norm(velocity))
-    if angle > _TOLERANCE:
-        at, along = np.cross(turn, velocity) / angle**2, turn / angle
-        shift = float(along @ velocity)
-    elif speed > 0:
-        angle, at, along, shift = 0.0, np.zeros(3), velocity / speed, speed
-    else:
+    if angle == 0 and distance == 0:
         return "motor", []
-    shape = {"kind": "screw", "at": _numbers(at), "along": _numbers(along), "angle": angle, "shift": shift}
-    return "motor", [shape]
+    turn = {"angle": float(angle), "shift": float(distance)}
+    return "motor", [{"kind": "screw", "at": _numbers(point), "along": _numbers(axis), **turn}]
 
 
 def _conformal_vector(space: CGA, X: Multivector) -> tuple[str, list[Shape]]:

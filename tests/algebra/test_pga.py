@@ -374,6 +374,21 @@ def test_symbols_and_traced_arrays():
     assert np.allclose(place(np.array([1.0, 2.0, 3.0])), [2, 4, 6], rtol=1e-6)
 
 
+def test_single_precision_stays():
+    x = np.ones((4, 3), np.float32)
+    found = [A.point(x), A.plane(x, 2.0), A.line(x, direction=x), A.translator(x), A.point(x) ^ A.plane(x)]
+    found += [
+        A.normalized(3 * A.point(x)),
+        A.down(A.point(x)),
+        *A.point_and_direction(A.line(x, direction=x)),
+    ]
+    C = ph.cga(3)
+    found += [C.up(x), C.down(C.up(x)), C.plane(x, 2.0), C.line(x, 2 * x), C.sphere(x, 2.0), C.translator(x)]
+    found += [C.center(C.sphere(x, 2.0)), *C.points(C.point_pair(x, 2 * x)), C.circle(x, x, 2.0)]
+    assert {value.dtype for value in found} == {np.dtype(np.float32)}
+    assert np.allclose(C.radius(C.sphere(x, 2.0)), 2, rtol=1e-5)
+
+
 # --- operators and random values
 
 

@@ -3,6 +3,7 @@
 import copy
 import json
 import pickle
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -65,6 +66,8 @@ def test_formulas_know_the_null_vectors():
     assert f(X=2 * X) == X
     assert ph.formula("eo + e1 + ½ einf", algebra=C)() == C.up([1.0, 0, 0])
     assert ph.formula("X∧einf").grades(X=X) == (2,)
+    exact = C.vector([Fraction(1, 3), 0, 0, 0, 1])
+    assert ph.formula("eo X + X eo")(X=exact) == Fraction(-1)
     assert ph.formula("eo X")(X=X, eo=C.einf) == C.einf * X  # a given value comes first
     with pytest.raises(ph.FormulaError, match="einf"):
         ph.formula("einf + a")(a=ph.e1)
@@ -258,6 +261,19 @@ def test_symbols_and_traced_arrays():
     jnp = jax.numpy
     radius = jax.jit(lambda c, r: C.radius(C.translator(c) >> C.sphere(c, r)))
     assert np.isclose(radius(jnp.array([0.1, 0.2, 0.3]), jnp.array(0.5)), 0.5, rtol=1e-5)
+
+
+def test_values_of_other_algebras():
+    M = ph.algebra(4, 1).random(5, rng=6)
+    assert np.all(C.embed(M).dense() == M.dense())
+    assert C.embed(M).algebra is C
+    B = ph.bivector([1.0, 2.0, 3.0])
+    assert C.embed(B)["e31"] == 2.0
+    assert C.embed(C.eo) is C.eo
+    with pytest.raises(
+        TypeError, match=r"cga\(3\) contains values of Cl\(3\) or Cl\(4,1\), got one of Cl\(2\)"
+    ):
+        C.embed(ph.algebra(2).I)
 
 
 def test_batches_broadcast():

@@ -354,6 +354,22 @@ def test_reflection_in_a_plane():
     assert np.allclose(A.coordinates(plane >> A.point([1.0, 2.0, 3.0])), [1, 2, -1])
 
 
+@SPACES
+def test_values_with_the_null_generator_last(n):
+    space, last, T = ph.pga(n), ph.algebra(n, 0, 1), matrix(n)
+    M = space.random((4,), rng=n)
+    assert np.array_equal(space.null_last(M).dense(), M.dense() @ T.T)
+    assert np.all(space.embed(space.null_last(M)) == M)
+    assert space.null_last(M).algebra is last
+    assert space.embed(ph.algebra(n).basis_vectors[0]) == space.basis_vectors[1]
+    exact = space.vector(range(n + 1), dtype=object)
+    assert space.embed(space.null_last(exact)) == exact
+    with pytest.raises(TypeError, match="embed needs a multivector"):
+        space.embed(2.0)
+    with pytest.raises(TypeError, match=r"contains values of"):
+        space.embed(ph.algebra(1, 3).I)
+
+
 def test_motors_of_other_dimensions():
     space = ph.pga(2)
     t = np.array([1.0, -2.0])

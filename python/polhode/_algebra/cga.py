@@ -10,7 +10,7 @@ from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.euclidean import columns, dimension_of, require, require_value, unit_in, vector_in
 from polhode._algebra.functions import as_precise
 from polhode._algebra.multivector import Multivector
-from polhode._algebra.relabel import relabelled
+from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 
@@ -116,7 +116,7 @@ class CGA(Algebra):
         else:
             given, what = direction, "the direction"
         along = unit_in(self._space, given, what)
-        return self.up(start).wedge(self._embedded(along)).wedge(as_precise(self.einf, along))
+        return self.up(start).wedge(self.embed(along)).wedge(as_precise(self.einf, along))
 
     def plane(self, normal: Any, distance: Any = 0.0) -> Multivector:
         """Return the hyperplane ``n·x = distance``, with the unit vector n along `normal`, of norm 1.
@@ -125,7 +125,7 @@ class CGA(Algebra):
         """
         n = unit_in(self._space, normal, "the normal")
         foot = self._space.scalar(number_like(distance, "the distance", n._data)) * n
-        blade = self._embedded(n.right_complement())
+        blade = self.embed(n.right_complement())
         return self.up(foot).wedge(blade).wedge(as_precise(self.einf, n))
 
     # --- rounds
@@ -159,7 +159,7 @@ class CGA(Algebra):
             kind.require(r > 0, "a radius must be positive; a sphere of radius 0 is a point, up(x)")
         core = self._eo_like(r) + self.scalar(kind.divide(r * r, 2)) * as_precise(self.einf, place)
         shift = self.translator(place)
-        moved: Multivector = shift * core.wedge(as_precise(self._embedded(blade), place)) * ~shift
+        moved: Multivector = shift * core.wedge(as_precise(self.embed(blade), place)) * ~shift
         return moved._part(1 << blade.grades[-1] + 1)
 
     def _eo_like(self, data: Any) -> Multivector:
@@ -227,7 +227,7 @@ class CGA(Algebra):
             bound = kind.eps**0.5 * kind.xp.max(kind.xp.abs(X._data), axis=-1)
             flat = kind.xp.max(kind.xp.abs(outside._data), axis=-1) <= bound
             require(flat, X, "the value does not contain einf: for a round take X ^ einf")
-        rest = X - eo.wedge(self._embedded(blade)).wedge(einf)
+        rest = X - eo.wedge(self.embed(blade)).wedge(einf)
         moment = -self._restricted(rest.right_contraction(eo))
         scale = self._space.scalar(size)
         return blade / scale, moment / scale
@@ -251,12 +251,12 @@ class CGA(Algebra):
 
     def rotor(self, R: Multivector) -> Multivector:
         """Return a rotor of ``ph.algebra(n)`` as an element of this algebra: it turns about the origin."""
-        return self._embedded(require_value(self._space, R, "a rotor"))
+        return self.embed(require_value(self._space, R, "a rotor"))
 
     def translator(self, displacement: Any) -> Multivector:
         """Return versors that shift by vectors t: ``1 − ½ t einf``."""
         t = vector_in(self._space, displacement, "the displacement")
-        return 1 - self._embedded(t) * as_precise(self.einf, t) / 2
+        return 1 - self.embed(t) * as_precise(self.einf, t) / 2
 
     def dilator(self, factor: Any, center: Any = None) -> Multivector:
         """Return versors that scale lengths by a positive factor f, about the origin or a center.
@@ -287,9 +287,10 @@ class CGA(Algebra):
 
     # --- helpers
 
-    def _embedded(self, value: Multivector) -> Multivector:
-        """Return a value of Euclidean space in this algebra."""
-        return relabelled(value, self, range(self._n))
+    def embed(self, X: Multivector) -> Multivector:
+        """Return a value of ``ph.algebra(n)`` or of ``ph.algebra(n + 1, 1)`` in this algebra."""
+        n = self._n
+        return embedded(X, self, {self._space: range(n), algebra(n + 1, 1): range(n + 2)})
 
     def _restricted(self, value: Multivector) -> Multivector:
         """Return the Euclidean part of a value."""

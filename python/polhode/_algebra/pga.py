@@ -10,15 +10,11 @@ from polhode._algebra.coefficients import common, kind_of, number_like
 from polhode._algebra.euclidean import columns, dimension_of, require, require_value, unit_in, vector_in
 from polhode._algebra.functions import as_precise
 from polhode._algebra.multivector import Multivector
-from polhode._algebra.relabel import relabelled
+from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._algebra.versors import small
 from polhode._support.arrays import copied
-
-# The generators e0, e1, e2, e3 in Cl(3,0,1), whose null generator is e4; and back.
-_MOTORS = algebra(3, 0, 1)
-_TO_MOTORS, _FROM_MOTORS = (3, 0, 1, 2), (1, 2, 3, 0)
 
 
 class PGA(Algebra):
@@ -70,7 +66,7 @@ class PGA(Algebra):
     def direction(self, x: Any) -> Multivector:
         """Return points at infinity in the directions x; a motion turns, but does not shift them."""
         v = vector_in(self._space, x, "the direction")
-        return self._embedded(v).right_complement()
+        return self.embed(v).right_complement()
 
     def plane(self, normal: Any, distance: Any = 0.0) -> Multivector:
         """Return the hyperplane ``n·x = distance``, with the unit vector n along `normal`.
@@ -124,7 +120,7 @@ class PGA(Algebra):
         if self.dimension % 2:  # e0∧L = −L∧e0 for an odd number of planes
             parts = [-x for x in parts]
         along = self._space.vector(kind.stack([-x for x in parts]))
-        return self.down(self._embedded(along).wedge(unit)), along
+        return self.down(self.embed(along).wedge(unit)), along
 
     def normalized(self, X: Multivector) -> Multivector:
         """Return planes, lines, points and motors of unit norm, with checks.
@@ -167,7 +163,7 @@ class PGA(Algebra):
     def translator(self, displacement: Any) -> Multivector:
         """Return motors that shift by vectors t: ``1 − ½ e0 t``."""
         t = vector_in(self._space, displacement, "the displacement")
-        return 1 - as_precise(self.e0, t) * self._embedded(t) / 2
+        return 1 - as_precise(self.e0, t) * self.embed(t) / 2
 
     def motor(self, rotor: Rotor | RigidTransform | None = None, translation: Any = None) -> Multivector:
         """Return the motor ``M = (1 − ½ e0 x0) R`` of a rotor and a translation, or of a `RigidTransform`.
@@ -181,13 +177,29 @@ class PGA(Algebra):
             move = rotor
         else:
             move = RigidTransform(rotor, (0.0, 0.0, 0.0) if translation is None else translation)
-        return relabelled(move.to_motor(), self, _FROM_MOTORS)
+        return self.embed(move.to_motor())
 
     def transform(self, M: Multivector) -> RigidTransform:
         """Return the `RigidTransform` of a motor, the inverse of `motor`, divided by its norm."""
         self._require_3d("a RigidTransform")
         motor = require_value(self, M, "a motor", (0, 2, 4))
-        return RigidTransform.from_motor(relabelled(motor, _MOTORS, _TO_MOTORS))
+        return RigidTransform.from_motor(self.null_last(motor))
+
+    # --- other algebras
+
+    def embed(self, X: Multivector) -> Multivector:
+        """Return a value of ``ph.algebra(n)`` or of ``ph.algebra(n, 0, 1)`` in this algebra.
+
+        In three dimensions the null generator e4 there is e0 here; the inverse is `null_last`.
+        """
+        n = self.dimension - 1
+        places = {self._space: range(1, n + 1), algebra(n, 0, 1): (*range(1, n + 1), 0)}
+        return embedded(X, self, places)
+
+    def null_last(self, X: Multivector) -> Multivector:
+        """Return a value in ``ph.algebra(n, 0, 1)``, whose null generator is the last."""
+        n = self.dimension - 1
+        return relabelled(require_value(self, X, "the value"), algebra(n, 0, 1), (n, *range(n)))
 
     # --- helpers
 
@@ -200,10 +212,6 @@ class PGA(Algebra):
         weight, rows = common(first, rest._data)
         parts = [rows[..., k] for k in range(rows.shape[-1])]
         return self.vector(kind_of(rows).stack([weight[..., 0], *parts]))
-
-    def _embedded(self, vector: Multivector) -> Multivector:
-        """Return a Euclidean vector in this algebra."""
-        return relabelled(vector, self, range(1, self.dimension))
 
     def _position(self, point: Any, what: str) -> Multivector:
         if isinstance(point, Multivector) and point.algebra is self:

@@ -98,6 +98,15 @@ def test_points_are_those_of_clifford():
         assert np.array_equal(names[name].value[1:6], getattr(C, name).components)
 
 
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3, 1e6])
+def test_coordinates_lose_the_square_of_the_distance(size):
+    x = size * np.random.default_rng(9).normal(size=(100, 3))
+    back = C.down(C.up(x)).components
+    s2 = (x * x).sum(-1, keepdims=True)
+    # ½ s² ± ½ are rounded by half an ε each, and their difference is 1.
+    assert np.all(np.abs(back - x) <= (EPS * (2 + s2)) * np.abs(x))
+
+
 def test_what_is_not_a_point():
     with pytest.raises(ValueError, match="at infinity"):
         C.down(C.einf)
@@ -233,6 +242,8 @@ def test_versors_move_points():
     assert np.all(C.motor(T) == C.motor(R, t))
     for V in (C.translator(t), C.rotor(R), C.dilator(f, t), C.motor(T)):
         assert (V * ~V).is_close(1, atol=1e-13).all()
+    with pytest.raises(TypeError, match="a rotor must be of grade 0 or 2"):
+        C.rotor(ph.e1)
     with pytest.raises(ValueError, match="positive factor"):
         C.dilator([1.0, 0.0])
 

@@ -28,6 +28,9 @@ class CGA(Algebra):
     Versors move all of them: ``T >> X`` with `rotor`, `translator`, `dilator` and `motor`. Points, directions
     and normals are given as arrays (..., n) or vectors of ``ph.algebra(n)``, with leading batch axes and any
     coefficients. `blades` and formulas know the names eo and einf.
+
+    The components of a point at the distance s from the origin grow as ½ s², so its coordinates come back
+    with a relative error of about ``ε s²``: choose the unit of length near the size of the scene.
     """
 
     __slots__ = ()
@@ -101,7 +104,7 @@ class CGA(Algebra):
         """Return the position of a vector with any square."""
         parts, kind = columns(P), kind_of(P._data)
         weight = parts[-1] - parts[-2]
-        require(weight != 0, P, "the point is at infinity, without coordinates")
+        require(weight != 0, P, "the point is at infinity, or too far away for the digits of its components")
         return self._space.vector(kind.stack([kind.divide(x, weight) for x in parts[:-2]]))
 
     # --- flats
@@ -251,7 +254,7 @@ class CGA(Algebra):
 
     def rotor(self, R: Multivector) -> Multivector:
         """Return a rotor of ``ph.algebra(n)`` as an element of this algebra: it turns about the origin."""
-        return self.embed(require_value(self._space, R, "a rotor"))
+        return self.embed(require_value(self._space, R, "a rotor", tuple(range(0, self._n + 1, 2))))
 
     def translator(self, displacement: Any) -> Multivector:
         """Return versors that shift by vectors t: ``1 − ½ t einf``."""

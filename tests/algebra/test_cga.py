@@ -3,6 +3,7 @@
 import copy
 import json
 import pickle
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -65,6 +66,8 @@ def test_formulas_know_the_null_vectors():
     assert f(X=2 * X) == X
     assert ph.formula("eo + e1 + ½ einf", algebra=C)() == C.up([1.0, 0, 0])
     assert ph.formula("X∧einf").grades(X=X) == (2,)
+    exact = C.vector([Fraction(1, 3), 0, 0, 0, 1])
+    assert ph.formula("eo X + X eo")(X=exact) == Fraction(-1)
     assert ph.formula("eo X")(X=X, eo=C.einf) == C.einf * X  # a given value comes first
     with pytest.raises(ph.FormulaError, match="einf"):
         ph.formula("einf + a")(a=ph.e1)
@@ -93,6 +96,15 @@ def test_points_are_those_of_clifford():
     assert np.array_equal(theirs.value[1:6], C.up([1.0, 2.0, -3.0]).components)
     for name in ("eo", "einf"):
         assert np.array_equal(names[name].value[1:6], getattr(C, name).components)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3, 1e6])
+def test_coordinates_lose_the_square_of_the_distance(size):
+    x = size * np.random.default_rng(9).normal(size=(100, 3))
+    back = C.down(C.up(x)).components
+    s2 = (x * x).sum(-1, keepdims=True)
+    # ½ s² ± ½ are rounded by half an ε each, and their difference is 1.
+    assert np.all(np.abs(back - x) <= (EPS * (2 + s2)) * np.abs(x))
 
 
 def test_what_is_not_a_point():
@@ -230,6 +242,8 @@ def test_versors_move_points():
     assert np.all(C.motor(T) == C.motor(R, t))
     for V in (C.translator(t), C.rotor(R), C.dilator(f, t), C.motor(T)):
         assert (V * ~V).is_close(1, atol=1e-13).all()
+    with pytest.raises(TypeError, match="a rotor must be of grade 0 or 2"):
+        C.rotor(ph.e1)
     with pytest.raises(ValueError, match="positive factor"):
         C.dilator([1.0, 0.0])
 
@@ -258,6 +272,19 @@ def test_symbols_and_traced_arrays():
     jnp = jax.numpy
     radius = jax.jit(lambda c, r: C.radius(C.translator(c) >> C.sphere(c, r)))
     assert np.isclose(radius(jnp.array([0.1, 0.2, 0.3]), jnp.array(0.5)), 0.5, rtol=1e-5)
+
+
+def test_values_of_other_algebras():
+    M = ph.algebra(4, 1).random(5, rng=6)
+    assert np.all(C.embed(M).dense() == M.dense())
+    assert C.embed(M).algebra is C
+    B = ph.bivector([1.0, 2.0, 3.0])
+    assert C.embed(B)["e31"] == 2.0
+    assert C.embed(C.eo) is C.eo
+    with pytest.raises(
+        TypeError, match=r"cga\(3\) contains values of Cl\(3\) or Cl\(4,1\), got one of Cl\(2\)"
+    ):
+        C.embed(ph.algebra(2).I)
 
 
 def test_batches_broadcast():

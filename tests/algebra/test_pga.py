@@ -191,7 +191,9 @@ def test_values_keep_their_algebra():
     assert ph.to_dict(M)["algebra"] == "pga(3)"
     assert pickle.loads(pickle.dumps(A)) is A is ph.pga()
     assert A is not LAST
-    with pytest.raises(TypeError, match=r"different algebras, pga\(3\) and Cl\(3,0,1\)"):
+    with pytest.raises(
+        TypeError, match=r"different algebras, pga\(3\) and Cl\(3,0,1\); .* ph.pga\(3\).embed"
+    ):
         A.e0 + LAST.basis_vectors[0]
     with pytest.raises(ValueError, match="an algebra is three counts"):
         ph.from_dict({**ph.to_dict(M), "algebra": "sta"})
@@ -259,6 +261,8 @@ def test_planes_contain_their_points(n):
     back, distance = space.normal_and_distance(3 * plane)
     assert np.allclose(back.components, unit, atol=4 * EPS)
     assert np.allclose(distance, d, rtol=8 * EPS)
+    with pytest.raises(ValueError, match="broadcast"):
+        space.plane(normal, d[:4])
     with pytest.raises(ValueError, match="the normal is not a direction"):
         space.plane(np.zeros(n))
     with pytest.raises(ValueError, match="at infinity"):
@@ -354,6 +358,22 @@ def test_reflection_in_a_plane():
     assert np.allclose(A.coordinates(plane >> A.point([1.0, 2.0, 3.0])), [1, 2, -1])
 
 
+@SPACES
+def test_values_with_the_null_generator_last(n):
+    space, last, T = ph.pga(n), ph.algebra(n, 0, 1), matrix(n)
+    M = space.random((4,), rng=n)
+    assert np.array_equal(space.null_last(M).dense(), M.dense() @ T.T)
+    assert np.all(space.embed(space.null_last(M)) == M)
+    assert space.null_last(M).algebra is last
+    assert space.embed(ph.algebra(n).basis_vectors[0]) == space.basis_vectors[1]
+    exact = space.vector(range(n + 1), dtype=object)
+    assert space.embed(space.null_last(exact)) == exact
+    with pytest.raises(TypeError, match="embed needs a multivector"):
+        space.embed(2.0)
+    with pytest.raises(TypeError, match=r"contains values of"):
+        space.embed(ph.algebra(1, 3).I)
+
+
 def test_motors_of_other_dimensions():
     space = ph.pga(2)
     t = np.array([1.0, -2.0])
@@ -372,6 +392,21 @@ def test_symbols_and_traced_arrays():
     jax = pytest.importorskip("jax")
     place = jax.jit(lambda x: A.coordinates(A.motor(None, x) >> A.point(x)))
     assert np.allclose(place(np.array([1.0, 2.0, 3.0])), [2, 4, 6], rtol=1e-6)
+
+
+def test_single_precision_stays():
+    x = np.ones((4, 3), np.float32)
+    found = [A.point(x), A.plane(x, 2.0), A.line(x, direction=x), A.translator(x), A.point(x) ^ A.plane(x)]
+    found += [
+        A.normalized(3 * A.point(x)),
+        A.down(A.point(x)),
+        *A.point_and_direction(A.line(x, direction=x)),
+    ]
+    C = ph.cga(3)
+    found += [C.up(x), C.down(C.up(x)), C.plane(x, 2.0), C.line(x, 2 * x), C.sphere(x, 2.0), C.translator(x)]
+    found += [C.center(C.sphere(x, 2.0)), *C.points(C.point_pair(x, 2 * x)), C.circle(x, x, 2.0)]
+    assert {value.dtype for value in found} == {np.dtype(np.float32)}
+    assert np.allclose(C.radius(C.sphere(x, 2.0)), 2, rtol=1e-5)
 
 
 # --- operators and random values

@@ -6,10 +6,11 @@ import functools
 from typing import Any
 
 from polhode._algebra.algebra import Algebra, algebra
-from polhode._algebra.coefficients import as_coefficients, kind_of
+from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.euclidean import columns, dimension_of, require, require_value, unit_in, vector_in
+from polhode._algebra.functions import as_precise
 from polhode._algebra.multivector import Multivector
-from polhode._algebra.relabel import relabelled
+from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 
@@ -27,6 +28,9 @@ class CGA(Algebra):
     Versors move all of them: ``T >> X`` with `rotor`, `translator`, `dilator` and `motor`. Points, directions
     and normals are given as arrays (..., n) or vectors of ``ph.algebra(n)``, with leading batch axes and any
     coefficients. `blades` and formulas know the names eo and einf.
+
+    The components of a point at the distance s from the origin grow as ½ s², so its coordinates come back
+    with a relative error of about ``ε s²``: choose the unit of length near the size of the scene.
     """
 
     __slots__ = ()
@@ -100,7 +104,7 @@ class CGA(Algebra):
         """Return the position of a vector with any square."""
         parts, kind = columns(P), kind_of(P._data)
         weight = parts[-1] - parts[-2]
-        require(weight != 0, P, "the point is at infinity, without coordinates")
+        require(weight != 0, P, "the point is at infinity, or too far away for the digits of its components")
         return self._space.vector(kind.stack([kind.divide(x, weight) for x in parts[:-2]]))
 
     # --- flats
@@ -115,7 +119,7 @@ class CGA(Algebra):
         else:
             given, what = direction, "the direction"
         along = unit_in(self._space, given, what)
-        return self.up(start).wedge(self._embedded(along)).wedge(self.einf)
+        return self.up(start).wedge(self.embed(along)).wedge(as_precise(self.einf, along))
 
     def plane(self, normal: Any, distance: Any = 0.0) -> Multivector:
         """Return the hyperplane ``n·x = distance``, with the unit vector n along `normal`, of norm 1.
@@ -123,8 +127,9 @@ class CGA(Algebra):
         ``P∧E∧einf`` with the blade E of the plane, ``n∧E = I``: of the normal e3 it is ``e1∧e2``.
         """
         n = unit_in(self._space, normal, "the normal")
-        foot = self._space.scalar(distance) * n
-        return self.up(foot).wedge(self._embedded(n.right_complement())).wedge(self.einf)
+        foot = self._space.scalar(number_like(distance, "the distance", n._data)) * n
+        blade = self.embed(n.right_complement())
+        return self.up(foot).wedge(blade).wedge(as_precise(self.einf, n))
 
     # --- rounds
 
@@ -150,13 +155,14 @@ class CGA(Algebra):
         return self._round(center, self._space.I, radius)
 
     def _round(self, center: Any, blade: Multivector, radius: Any) -> Multivector:
-        r = as_coefficients(radius, "the radius")
+        place = self._position(center, "the center")
+        r = number_like(radius, "the radius", place._data)
         kind = kind_of(r)
         if not kind.exact:
             kind.require(r > 0, "a radius must be positive; a sphere of radius 0 is a point, up(x)")
-        core = self._eo_like(r) + self.scalar(kind.divide(r * r, 2)) * self.einf
-        shift = self.translator(self._position(center, "the center"))
-        moved: Multivector = shift * core.wedge(self._embedded(blade)) * ~shift
+        core = self._eo_like(r) + self.scalar(kind.divide(r * r, 2)) * as_precise(self.einf, place)
+        shift = self.translator(place)
+        moved: Multivector = shift * core.wedge(as_precise(self.embed(blade), place)) * ~shift
         return moved._part(1 << blade.grades[-1] + 1)
 
     def _eo_like(self, data: Any) -> Multivector:
@@ -171,7 +177,7 @@ class CGA(Algebra):
     def center(self, X: Multivector) -> Multivector:
         """Return the centers of spheres, circles and point pairs as vectors: those of ``X einf X``."""
         X = self._require_round(X)
-        return self._down((X * self.einf * X).grade(1))
+        return self._down((X * as_precise(self.einf, X) * X).grade(1))
 
     def squared_radius(self, X: Multivector) -> Any:
         """Return r² of spheres, circles, point pairs and points, negative of an imaginary one.
@@ -181,7 +187,7 @@ class CGA(Algebra):
         X = self._require_round(X)
         k = X.grades[0]
         square = (X * X).grade(0)
-        normal = self.einf.left_contraction(X)
+        normal = as_precise(self.einf, X).left_contraction(X)
         other = (normal * normal).grade(0)
         ratio = square / other * (-1) ** k
         return ratio._data[..., 0][()]
@@ -198,7 +204,7 @@ class CGA(Algebra):
         """Return the positions of the points of point pairs as vectors, the inverse of `point_pair`."""
         pair = require_value(self, pair, "a point pair", (2,))
         center, radius = self.center(pair), self.radius(pair)
-        _, along = self.point_and_direction(pair.wedge(self.einf))
+        _, along = self.point_and_direction(pair.wedge(as_precise(self.einf, pair)))
         arm = self._space.scalar(radius) * along
         return center - arm, center + arm
 
@@ -215,18 +221,17 @@ class CGA(Algebra):
 
     def _flat(self, X: Multivector) -> tuple[Multivector, Multivector]:
         """Return E and ``x∧E`` of the flat ``P∧E∧einf`` in Euclidean space, with the unit blade E."""
-        kind = kind_of(X._data)
-        inner = self.einf.left_contraction(X)
-        blade = self._restricted(inner.right_contraction(self.eo))
+        kind, eo, einf = kind_of(X._data), as_precise(self.eo, X), as_precise(self.einf, X)
+        blade = self._restricted(einf.left_contraction(X).right_contraction(eo))
         size = blade.norm()
         require(size != 0, X, "the value is not a line or a plane: it does not contain einf")
-        outside = X.wedge(self.einf)
+        outside = X.wedge(einf)
         if not kind.exact:
             bound = kind.eps**0.5 * kind.xp.max(kind.xp.abs(X._data), axis=-1)
             flat = kind.xp.max(kind.xp.abs(outside._data), axis=-1) <= bound
             require(flat, X, "the value does not contain einf: for a round take X ^ einf")
-        rest = X - self.eo.wedge(self._embedded(blade)).wedge(self.einf)
-        moment = -self._restricted(rest.right_contraction(self.eo))
+        rest = X - eo.wedge(self.embed(blade)).wedge(einf)
+        moment = -self._restricted(rest.right_contraction(eo))
         scale = self._space.scalar(size)
         return blade / scale, moment / scale
 
@@ -236,7 +241,7 @@ class CGA(Algebra):
         if held.bit_count() > 1:
             raise TypeError(f"a round has one grade, got the grades {X.grades}")
         X = X._part(held)
-        inside = self.einf.left_contraction(X)
+        inside = as_precise(self.einf, X).left_contraction(X)
         square, kind = (inside * inside).grade(0)._data[..., 0], kind_of(X._data)
         if kind.exact:
             ok = square != 0
@@ -249,12 +254,12 @@ class CGA(Algebra):
 
     def rotor(self, R: Multivector) -> Multivector:
         """Return a rotor of ``ph.algebra(n)`` as an element of this algebra: it turns about the origin."""
-        return self._embedded(require_value(self._space, R, "a rotor"))
+        return self.embed(require_value(self._space, R, "a rotor", tuple(range(0, self._n + 1, 2))))
 
     def translator(self, displacement: Any) -> Multivector:
         """Return versors that shift by vectors t: ``1 − ½ t einf``."""
         t = vector_in(self._space, displacement, "the displacement")
-        return 1 - self._embedded(t) * self.einf / 2
+        return 1 - self.embed(t) * as_precise(self.einf, t) / 2
 
     def dilator(self, factor: Any, center: Any = None) -> Multivector:
         """Return versors that scale lengths by a positive factor f, about the origin or a center.
@@ -285,9 +290,10 @@ class CGA(Algebra):
 
     # --- helpers
 
-    def _embedded(self, value: Multivector) -> Multivector:
-        """Return a value of Euclidean space in this algebra."""
-        return relabelled(value, self, range(self._n))
+    def embed(self, X: Multivector) -> Multivector:
+        """Return a value of ``ph.algebra(n)`` or of ``ph.algebra(n + 1, 1)`` in this algebra."""
+        n = self._n
+        return embedded(X, self, {self._space: range(n), algebra(n + 1, 1): range(n + 2)})
 
     def _restricted(self, value: Multivector) -> Multivector:
         """Return the Euclidean part of a value."""

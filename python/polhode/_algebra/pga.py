@@ -6,9 +6,11 @@ import functools
 from typing import Any
 
 from polhode._algebra.algebra import Algebra, algebra
-from polhode._algebra.coefficients import kind_of
+from polhode._algebra.coefficients import common, kind_of, number_like
 from polhode._algebra.euclidean import columns, dimension_of, require, require_value, unit_in, vector_in
+from polhode._algebra.functions import as_precise
 from polhode._algebra.multivector import Multivector
+from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._algebra.versors import small
@@ -59,13 +61,12 @@ class PGA(Algebra):
     def point(self, x: Any) -> Multivector:
         """Return points at the positions x, of weight 1."""
         v = vector_in(self._space, x, "the position")
-        zero = kind_of(v._data).zeros_like(v._data[..., 0])
-        return self._plane(zero + 1, v).right_complement()
+        return self._vector(kind_of(v._data).zeros_like(v._data[..., :1]) + 1, v).right_complement()
 
     def direction(self, x: Any) -> Multivector:
         """Return points at infinity in the directions x; a motion turns, but does not shift them."""
         v = vector_in(self._space, x, "the direction")
-        return self._plane(kind_of(v._data).zeros_like(v._data[..., 0]), v).right_complement()
+        return self.embed(v).right_complement()
 
     def plane(self, normal: Any, distance: Any = 0.0) -> Multivector:
         """Return the hyperplane ``n·x = distance``, with the unit vector n along `normal`.
@@ -74,8 +75,7 @@ class PGA(Algebra):
         an array. In two dimensions it is a line. A ValueError for a normal of zero.
         """
         n = unit_in(self._space, normal, "the normal")
-        zero = kind_of(n._data).zeros_like(n._data[..., 0])
-        return self._plane(zero, n) - self.scalar(distance) * self.e0
+        return self._vector(-number_like(distance, "the distance", n._data)[..., None], n)
 
     def line(self, point: Any, through: Any = None, *, direction: Any = None) -> Multivector:
         """Return the line from `point` to the point `through`, or along `direction`, of norm 1.
@@ -115,13 +115,12 @@ class PGA(Algebra):
     def point_and_direction(self, line: Multivector) -> tuple[Multivector, Multivector]:
         """Return the point of lines nearest to the origin and the unit direction, as vectors."""
         unit = self._unit(require_value(self, line, "a line", (self.dimension - 2,)))
-        _, *parts = columns(unit.wedge(self.e0).left_complement())
+        _, *parts = columns(unit.wedge(as_precise(self.e0, unit)).left_complement())
         kind = kind_of(unit._data)
         if self.dimension % 2:  # e0∧L = −L∧e0 for an odd number of planes
             parts = [-x for x in parts]
         along = self._space.vector(kind.stack([-x for x in parts]))
-        across = self._plane(kind.zeros_like(parts[0]), along)
-        return self.down(across.wedge(unit)), along
+        return self.down(self.embed(along).wedge(unit)), along
 
     def normalized(self, X: Multivector) -> Multivector:
         """Return planes, lines, points and motors of unit norm, with checks.
@@ -164,7 +163,7 @@ class PGA(Algebra):
     def translator(self, displacement: Any) -> Multivector:
         """Return motors that shift by vectors t: ``1 − ½ e0 t``."""
         t = vector_in(self._space, displacement, "the displacement")
-        return 1 - self.e0 * self._plane(kind_of(t._data).zeros_like(t._data[..., 0]), t) / 2
+        return 1 - as_precise(self.e0, t) * self.embed(t) / 2
 
     def motor(self, rotor: Rotor | RigidTransform | None = None, translation: Any = None) -> Multivector:
         """Return the motor ``M = (1 − ½ e0 x0) R`` of a rotor and a translation, or of a `RigidTransform`.
@@ -185,15 +184,33 @@ class PGA(Algebra):
         self._require_3d("a RigidTransform")
         return RigidTransform.from_motor(require_value(self, M, "a motor", (0, 2, 4)))
 
+    # --- other algebras
+
+    def embed(self, X: Multivector) -> Multivector:
+        """Return a value of ``ph.algebra(n)`` or of ``ph.algebra(n, 0, 1)`` in this algebra.
+
+        In three dimensions the null generator e4 there is e0 here; the inverse is `null_last`.
+        """
+        n = self.dimension - 1
+        places = {self._space: range(1, n + 1), algebra(n, 0, 1): (*range(1, n + 1), 0)}
+        return embedded(X, self, places)
+
+    def null_last(self, X: Multivector) -> Multivector:
+        """Return a value in ``ph.algebra(n, 0, 1)``, whose null generator is the last."""
+        n = self.dimension - 1
+        return relabelled(require_value(self, X, "the value"), algebra(n, 0, 1), (n, *range(n)))
+
     # --- helpers
 
     def _require_3d(self, what: str) -> None:
         if self.dimension != 4:
             raise TypeError(f"{what} exists in ph.pga(3) only, not in {self}")
 
-    def _plane(self, first: Any, normal: Multivector) -> Multivector:
-        """Return the vector with this component of e0 and the others of `normal`."""
-        return self.vector(kind_of(normal._data).stack([first, *columns(normal)]))
+    def _vector(self, first: Any, rest: Multivector) -> Multivector:
+        """Return the vector with these components (..., 1) of e0, and the others of a Euclidean vector."""
+        weight, rows = common(first, rest._data)
+        parts = [rows[..., k] for k in range(rows.shape[-1])]
+        return self.vector(kind_of(rows).stack([weight[..., 0], *parts]))
 
     def _position(self, point: Any, what: str) -> Multivector:
         if isinstance(point, Multivector) and point.algebra is self:

@@ -63,7 +63,9 @@ def common_algebra(left: Multivector, right: Multivector) -> Any:
     """Return the algebra of both; a TypeError if they differ."""
     algebra = left.algebra
     if algebra is not right.algebra:
-        raise TypeError(f"the values belong to different algebras, {algebra} and {right.algebra}")
+        larger = [known for known in (algebra, right.algebra) if hasattr(known, "embed")]
+        remedy = f"; convert one with ph.{larger[0]}.embed" if larger else ""
+        raise TypeError(f"the values belong to different algebras, {algebra} and {right.algebra}{remedy}")
     return algebra
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,18 @@ from polhode._support.arrays import is_float
 
 if TYPE_CHECKING:
     from polhode._algebra.algebra import Algebra
+
+
+def embedded(X: Any, target: Algebra, places: Mapping[Algebra, Sequence[int]]) -> Multivector:
+    """Return a value of one of these algebras, or of the target itself, in the target."""
+    if not isinstance(X, Multivector):
+        raise TypeError(f"embed needs a multivector, got {type(X).__name__}")
+    if X.algebra is target:
+        return X
+    if X.algebra not in places:
+        known = " or ".join(map(str, places))
+        raise TypeError(f"{target} contains values of {known}, got one of {X.algebra}")
+    return relabelled(X, target, places[X.algebra])
 
 
 def relabelled(value: Multivector, target: Algebra, places: Sequence[int | None]) -> Multivector:

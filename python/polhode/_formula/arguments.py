@@ -6,6 +6,7 @@ import operator
 import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -101,7 +102,7 @@ def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[s
     """Return the values by name. An unusable value is an error only if the formula uses it."""
     everything = _together(values, named)
     algebra, owner = _main_algebra(core, everything)
-    everything = {**algebra._named(), **everything}
+    everything = {**_named(algebra, everything.values()), **everything}
     known: dict[str, Any] = {}
     refused: dict[str, TypeError] = {}
     for name, value in everything.items():
@@ -111,6 +112,14 @@ def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[s
             refused[name] = error
     kinds = [(name, *_kind(value)) for name, value in known.items()]
     return Given(algebra, kinds, list(known.values()), refused)
+
+
+def _named(algebra: Any, values: Iterable[Any]) -> dict[str, Multivector]:
+    """Return the values that have names in the algebra; exact ones beside exact values."""
+    named: dict[str, Multivector] = algebra._named()
+    if named and any(isinstance(value, Multivector) and value.dtype == object for value in values):
+        return {name: algebra.vector([Fraction(x) for x in v.components]) for name, v in named.items()}
+    return named
 
 
 def compiled(core: _native.Formula, known: Given) -> tuple[_native.Program, Given]:

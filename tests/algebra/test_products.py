@@ -36,6 +36,32 @@ ALL_PRODUCTS = NAMED | OPERATORS
 # --- products
 
 
+@pytest.mark.parametrize("signature", [(3, 0, 0), (1, 0, 0), (1, 3, 0), (3, 0, 1), (2, 2, 1)])
+def test_the_anticommutator_is_the_rest_of_the_product(signature):
+    algebra = ph.algebra(*signature)
+    rng = np.random.default_rng(1)
+    A, B = (algebra.multivector(rng.integers(-4, 5, (5, algebra.size)).astype(float)) for _ in range(2))
+    assert np.all(A.anticommutator(B) == (A * B + B * A) / 2)
+    assert np.all(A.anticommutator(B) + A.commutator(B) == A * B)
+    for r, s in product(range(algebra.dimension + 1), repeat=2):
+        P, Q = A.grade(r), B.grade(s)
+        found = P.anticommutator(Q)
+        assert np.all(found == (P * Q + Q * P) / 2)
+        # The grades of the product are those of both parts.
+        assert set(found.grades) | set(P.commutator(Q).grades) | {0} >= set((P * Q).grades)
+    assert np.all(A.anticommutator(2) == 2 * A)
+
+
+def test_anticommutators_of_vectors_and_planes():
+    a, b = ph.vector([1, 2, 3]), ph.vector([3, 1, 0])
+    assert a.anticommutator(b).grades == (0,)
+    assert a.anticommutator(b) == a.dot(b)
+    assert e1.anticommutator(ph.I) == ph.bivector([1, 0, 0])
+    assert a.astype(object).anticommutator(b.astype(object)) == 5
+    with pytest.raises(TypeError, match="anticommutator needs a multivector"):
+        a.anticommutator("b")
+
+
 @pytest.mark.parametrize("name", ALL_PRODUCTS)
 def test_products_of_all_grades_equal_the_oracle(name):
     of_package_values, of_dicts = ALL_PRODUCTS[name]

@@ -156,6 +156,15 @@ def test_changed_components_are_coefficients():
         a.astype(object).map(str)
 
 
+def test_short_integers_of_numpy_keep_single_precision():
+    a = ph.vector(np.array([1, 2, 3], np.float32))
+    for number in (np.int8(2), np.uint16(2), np.array([2, 3], np.int16)):
+        for result in (number * a, a * number, a + number, a - number):
+            assert result.dtype == np.float32
+    assert (np.int32(2) * a).dtype == (np.int8(2) * e1).dtype == np.float64
+    assert np.int8(2) * a == 2 * a
+
+
 def test_overflow_of_single_precision_warns():
     a = ph.vector(np.array([1, 2, 3], np.float32))
     with pytest.warns(RuntimeWarning, match="overflow"):

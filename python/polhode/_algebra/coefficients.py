@@ -124,7 +124,10 @@ def scalars(value: Any, like: Any) -> Any:
         if value.dtype.kind not in "iufcO":
             return None
         if value.dtype.kind in "iu" and floating:  # rounded, not exact
-            return as_floats(value, "scalar")[..., None]
+            numbers = as_floats(value, "scalar")[..., None]
+            # As in NumPy, int8 and int16 keep float32.
+            single = is_float(like) and np.result_type(like, value) == np.float32
+            return numbers.astype(np.float32) if single else numbers
     elif not isinstance(value, Real) and foreign_kind(value) is None:
         return None
     return as_coefficients(value, "scalar", complex_too=True)[..., None]

@@ -19,9 +19,9 @@ V = TypeVar("V", bound="Multivector")
 
 
 def conj(value: V) -> V:
-    """Return the value with complex conjugate coefficients; the basis elements stay: it is not the reverse.
+    """Return the value with complex conjugate coefficients; the basis elements stay.
 
-    The Hermitian conjugate of 3-d space, the adjoint of Pauli matrices, is ``~A.conj()``. Also `conjugate`.
+    It is neither the reverse nor `clifford_conjugate`. The Hermitian conjugate of 3-d space is ``~A.conj()``.
     """
     return _mapped(value, np.conj, lambda x: x.conjugate(), lambda x: x)
 

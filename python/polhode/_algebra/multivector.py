@@ -16,6 +16,7 @@ from polhode._algebra import conjugates as _conjugates
 from polhode._algebra import frames as _frames
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
+from polhode._algebra import products as _products
 from polhode._algebra import subspaces as _subspaces
 from polhode._algebra import symbols as _symbols
 from polhode._algebra import ufuncs as _ufuncs
@@ -114,7 +115,7 @@ class Multivector(_native.Multivector):
 
     real = property(_conjugates.real)
     imag = property(_conjugates.imag)
-    conj = conjugate = _conjugates.conj
+    conj = _conjugates.conj
 
     map = _grades.mapped
     diff = _symbols.diff
@@ -280,6 +281,8 @@ class Multivector(_native.Multivector):
         if right is None:
             raise TypeError(f"{name} needs a multivector, a number or an array, got {type(other).__name__}")
         return product(name, self, right, out)
+
+    anticommutator = _products.anticommutator
 
     __pow__ = _functions.power
     __call__ = _versors.act

@@ -38,6 +38,28 @@ def product(name: str, left: Multivector, right: Multivector, out: Any = None) -
     return _native.Multivector._of(result, mask, algebra)
 
 
+def anticommutator(value: Multivector, other: Any) -> Multivector:
+    """``½(AB + BA)``: of two vectors their dot. With `commutator` it adds up to ``AB``."""
+    right = coerced(other, value)
+    if right is None:
+        raise TypeError(
+            f"anticommutator needs a multivector, a number or an array, got {type(other).__name__}"
+        )
+    n, mask = common_algebra(value, right).dimension, 0
+    for r in value.grades:
+        for s in right.grades:
+            # The reverse of the part of grade k of AB is ± that of BA.
+            parts = range(abs(r - s), min(r + s, 2 * n - r - s) + 1, 2)
+            mask |= sum(1 << k for k in parts if (_turns(r) + _turns(s) + _turns(k)) % 2 == 0)
+    total = (value * right + right * value) / 2
+    return total._part(mask) if mask else total._part(1)
+
+
+def _turns(grade: int) -> int:
+    """Return the number of swaps in the reverse of a blade."""
+    return grade * (grade - 1) // 2
+
+
 def aligned(a: Array, b: Array) -> tuple[Shape, Array, Array]:
     """Return the common batch shape of two arrays of floats, and their rows in the precision of both."""
     batch, dtype = common_batch(a.shape[:-1], b.shape[:-1]), np.result_type(a, b)

@@ -12,9 +12,10 @@ from polhode._algebra.coefficients import as_coefficients, common, kind_of, name
 from polhode._algebra.constructors import one_grade, scalar, vector
 from polhode._algebra.estimation import mean
 from polhode._algebra.grades import concatenate, stack, with_grades
+from polhode._algebra.jacobians import left_jacobian
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._support.arrays import Array, Shape
+from polhode._support.arrays import Array, Shape, is_float
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
@@ -113,14 +114,15 @@ class RigidTransform:
         given = as_coefficients(matrix, "transformation matrix")
         if tuple(given.shape[-2:]) != (4, 4):
             raise ValueError(f"a transformation matrix has shape (..., 4, 4), got {tuple(given.shape)}")
+        last, row = given[..., 3, :], np.array([0.0, 0.0, 0.0, 1.0])
+        message = "the last row of a transformation matrix must be (0, 0, 0, 1)"
         if isinstance(given, np.ndarray):
-            last = given[..., 3, :]
-            wrong = (last != np.array([0, 0, 0, 1])).any(axis=-1)
+            wrong = (last != row).any(axis=-1)
             if wrong.any():
-                raise ValueError(
-                    "the last row of a transformation matrix must be (0, 0, 0, 1), got "
-                    f"{last[wrong][0].tolist()}"
-                )
+                raise ValueError(f"{message}, got {last[wrong][0].tolist()}")
+        else:
+            kind = kind_of(given)
+            kind.require(kind.xp.all(last == kind.asarray(row), axis=-1), message)
         return RigidTransform(Rotor.from_matrix(given[..., :3, :3], nearest), given[..., :3, 3])
 
     @staticmethod
@@ -135,8 +137,11 @@ class RigidTransform:
             raise ValueError(
                 f"exponential coordinates need 6 components in the last axis, got shape {tuple(given.shape)}"
             )
-        a, b, c, x, y, z = (given[..., k] / (-2 if k < 3 else 2) for k in range(6))
         kind = kind_of(given)
+        if kind.exact:  # only bivectors whose square is a number have an exact exponential
+            v, rate = given[..., :3], given[..., 3:, None]
+            return RigidTransform(Rotor.from_rotation_vector(v), np.matmul(left_jacobian(v), rate)[..., 0])
+        a, b, c, x, y, z = (given[..., k] / (-2 if k < 3 else 2) for k in range(6))
         # Over (e12, e13, e14, e23, e24, e34): −½ of the plane of rotation and ½ v e4.
         screw = Multivector._of(kind.stack([c, -b, x, a, y, z]), _BIVECTOR, _MOTORS)
         return RigidTransform.from_motor(screw.exp())
@@ -212,7 +217,13 @@ class RigidTransform:
 
     def as_exp_coords(self) -> Any:
         """Return exponential coordinates (..., 6): rotation vector of at most π, then the velocity."""
-        screw = self._nearer().to_motor().log()
+        nearer = self._nearer()
+        if not is_float(nearer.rotor._data):  # the motor of these has no logarithm
+            v = nearer.rotor.to_rotation_vector()
+            inverse, moved = common(left_jacobian(v, inverse=True), nearer.translation._data)
+            xp = namespace(inverse)
+            return xp.concat([v, xp.matmul(inverse, moved[..., None])[..., 0]], axis=-1)
+        screw = nearer.to_motor().log()
         xy, xz, x4, yz, y4, z4 = _columns(screw, _BIVECTOR)
         return kind_of(screw._data).stack([-2 * yz, 2 * xz, -2 * xy, 2 * x4, 2 * y4, 2 * z4])
 
@@ -352,10 +363,7 @@ class RigidTransform:
 
     def _nearer(self) -> RigidTransform:
         """Return the same transform with the rotor of a turn of at most π."""
-        data = self.rotor._data
-        kind = kind_of(data)
-        sign = kind.where(data[..., :1] < 0, kind.zeros_like(data[..., :1]) - 1, 1)
-        return RigidTransform(Rotor._from_rows(data * sign), self.translation)
+        return RigidTransform(self.rotor.canonical(), self.translation)
 
 
 def _as_vector(value: Any, what: str) -> Multivector:

@@ -155,3 +155,68 @@ def test_jax_differentiates_the_rotation():
             slope = (vector(b + step) - vector(b - step)) / (2 * h)
             # Central differences err by h² times third derivatives of some units, and by rounding over h.
             np.testing.assert_allclose(found[:, 2, k], slope, rtol=0, atol=1e-9)
+
+
+# --- one exact pair
+
+
+def test_an_infinite_weight_aligns_exactly():
+    a, _, b = noisy(6, 0.2, seed=9)
+    w = np.array([1.0, 2.0, np.inf, 1.0, 0.5, 0.0])
+    found = ph.align(a, b, w)
+    unit = [v / np.linalg.norm(v) for v in (found.rotor(ph.vector(a[2])).components, b[2])]
+    np.testing.assert_allclose(*unit, rtol=0, atol=8 * EPS)
+    peer, _ = Rotation.align_vectors(b, a, w)
+    # SciPy finds the angle from squares of the differences, which lose up to half the digits.
+    assert found.rotor.distance(Rotor.from_scipy(peer)) <= 1e-7
+    others = np.where(np.isinf(w), 0.0, w)
+
+    def cost(angle):
+        off = b - (Rotor.from_axis_angle(b[2], angle) * found.rotor)(ph.vector(a)).components
+        return (others * (off**2).sum(axis=-1)).sum()
+
+    assert abs(np.sqrt(cost(0.0)) - found.residual) <= 16 * EPS
+    h = 1e-4
+    slope, curvature = cost(h) - cost(-h), (cost(h) - 2 * cost(0.0) + cost(-h)) / (2 * h * h)
+    assert abs(slope) / (4 * h) <= 100 * h**2
+    n = unit[1]
+    np.testing.assert_allclose(found.covariance, np.outer(n, n) / curvature, rtol=0, atol=1e-6)
+
+
+def test_a_large_weight_is_almost_infinite():
+    a, _, b = noisy(5, 0.2, seed=10, shape=(30,))
+    exact = ph.align(a, b, [np.inf, 1, 1, 2, 1])
+    assert exact.rotor.shape == (30,)
+    large = ph.align(a, b, [1e8, 1, 1, 2, 1])
+    # The large weight yields by 1e-8, times the size of the others beside the slopes at the minimum.
+    assert exact.rotor.distance(large.rotor).max() <= 1e-6
+    np.testing.assert_allclose(exact.covariance, large.covariance, rtol=0, atol=1e-6)
+    assert ph.align(a[3], b[3], [np.inf, 1, 1, 2, 1]).rotor.distance(exact.rotor[3]) <= 16 * EPS
+
+
+def test_opposite_directions_and_two_pairs():
+    rotor, residual, _ = ph.align([e1, e2], [-e1, e3], [np.inf, 1])
+    assert rotor(e1).is_close(-e1, atol=4 * EPS)
+    assert rotor(e2).is_close(e3, atol=4 * EPS)
+    assert residual <= 4 * EPS
+    # The second pair decides the angle only.
+    rotor = ph.align([e1, e1 + e2], [e2, e2 + 3 * e3], [np.inf, 1]).rotor
+    assert rotor(e2).is_close(e3, atol=4 * EPS)
+
+
+def test_wrong_infinite_weights_raise():
+    a, b = np.eye(3), np.eye(3)
+    with pytest.raises(ValueError, match="one of each row must be"):
+        ph.align(a, b, [np.inf, np.inf, 1])
+    with pytest.raises(
+        ValueError, match=r"at index \(1,\): if weights are infinite, one of each row must be"
+    ):
+        ph.align(np.stack([a, a]), b, [[np.inf, 1, 1], [1, 1, 1]])
+    with pytest.raises(ValueError, match="all parallel"):
+        ph.align([e1, 2 * e1], [e2, e2], [np.inf, 1])
+    with pytest.raises(ValueError, match="all parallel"):
+        ph.align([e1, e2], [e2, e1], [np.inf, 0])
+    with pytest.raises(ValueError, match="is 0 and has no direction"):
+        ph.align([0 * e1, e2], [e2, e1], [np.inf, 1])
+    with pytest.raises(ValueError, match="weights must be finite"):
+        ph.align(a, b, [np.inf, -1, 1])

@@ -235,9 +235,10 @@ def test_jax():
             (ours.to_mrp(), theirs.to_mrp()),
             (ours.angle, theirs.angle),
             (ours.to_davenport(axes, "i"), theirs.to_davenport(axes, "i")),
+            (ours.to_davenport(np.eye(3)[None], "e"), theirs.to_davenport(np.eye(3)[None], "e")),
             (ours.components, Rotor.from_mrp(theirs.to_mrp()).components),
         ]
-        pairs[3] = (ours.canonical().components, pairs[3][1])
+        pairs[-1] = (ours.canonical().components, pairs[-1][1])
         for expected, found in pairs:
             np.testing.assert_allclose(found, expected, rtol=0, atol=64 * EPS)
         # dp/dφ of small turns is a quarter.

@@ -1,5 +1,6 @@
 """`RigidTransform` against 4x4 matrices, SciPy, screws in closed form, symbols and JAX."""
 
+import contextlib
 import copy
 import pickle
 
@@ -249,6 +250,37 @@ def test_symbols():
     )
     assert sympy.simplify(sympy.Matrix(T.as_matrix()) - expected) == sympy.zeros(4)
     assert sympy.simplify(sympy.Matrix((T * T.inv()).as_matrix())) == sympy.eye(4)
+
+
+def test_screws_of_symbols():
+    sympy = pytest.importorskip("sympy")
+    angle = sympy.Rational(1, 2)
+    x = ph.vector([sympy.Integer(k) for k in (1, 2, 3)])
+    T = RigidTransform(ph.Rotor.from_axis_angle([0, 0, 1], angle), x)
+    floats = RigidTransform(ph.Rotor.from_axis_angle([0, 0, 1], 0.5), [1, 2, 3])
+    found = np.array([float(x) for x in T.as_exp_coords()])
+    np.testing.assert_allclose(found, floats.as_exp_coords(), rtol=0, atol=16 * EPS)
+    matrix = (T**2).as_matrix().astype(float)
+    np.testing.assert_allclose(matrix, (floats**2).as_matrix(), rtol=0, atol=64 * EPS)
+
+
+@pytest.mark.parametrize("name", ["jax.numpy", "array_api_strict"])
+def test_screws_of_other_arrays(name, transforms):
+    xp = pytest.importorskip(name)
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True) if name == "jax.numpy" else contextlib.nullcontext():
+        theirs = RigidTransform.from_matrix(xp.asarray(transforms.as_matrix()))
+        coords = theirs.as_exp_coords()
+        assert type(coords) is type(xp.asarray(0.0))
+        # The inverse Jacobian and the logarithm of a motor differ by rounding, up to turns of 3 rad here.
+        np.testing.assert_allclose(np.asarray(coords), transforms.as_exp_coords(), rtol=0, atol=64 * EPS)
+        for ours, found in (
+            (transforms**0.3, theirs**0.3),
+            (transforms[0].interpolate(transforms, 0.5), theirs[0].interpolate(theirs, 0.5)),
+        ):
+            assert np.allclose(np.asarray(found.as_matrix()), ours.as_matrix(), rtol=0, atol=64 * EPS)
+        with pytest.raises(ValueError, match="last row"):
+            RigidTransform.from_matrix(xp.ones((4, 4)))
 
 
 def test_jax_differentiates_screws():

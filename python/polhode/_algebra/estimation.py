@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from polhode._algebra.coefficients import as_coefficients, foreign_kind, kind_of
-from polhode._algebra.constructors import one_grade
+from polhode._algebra.constructors import one_grade, vector
 from polhode._algebra.grades import stack
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
@@ -115,7 +115,8 @@ class Alignment(NamedTuple):
     rotor
         R, with scalar part >= 0.
     residual
-        ``√(Σ w |b − R a ~R|²)``, in the units of the vectors for weights without a unit.
+        ``√(Σ w |b − R a ~R|²)``, in the units of the vectors for weights without a unit; without the pair of
+        an infinite weight.
     covariance
         Array (..., 3, 3) in rad², in the axes of b: of the small rotation vector ε by which R is off, if the
         errors of each b have the variance 1/w per component. With equal unknown variances, take weights 1 and
@@ -141,7 +142,8 @@ def align(a: Any, b: Any, weights: Any = None) -> Alignment:
         twice the length has four times the weight.
     weights
         Numbers >= 0 that broadcast to the batch shape (..., n); 1 by default. Inverse variances make the
-        covariance that of the attitude.
+        covariance that of the attitude. One of each row (n,) of NumPy floats may be infinite, as in SciPy: R
+        turns this a into the direction of its b, and fits the others by the angle about it.
 
     Returns
     -------
@@ -168,6 +170,8 @@ def align(a: Any, b: Any, weights: Any = None) -> Alignment:
         raise ValueError(f"batch shapes of a and b do not broadcast: (..., n, 3) are {shapes}") from None
     batch = tuple(x.shape[:-1])
     kind.require(xp.all(xp.isfinite(x) & xp.isfinite(y), axis=-1), "a vector is not finite; remove it first")
+    if given and isinstance(given[0], np.ndarray) and np.isposinf(given[0].astype(float)).any():
+        return _aligned_exactly(kind, x, y, given[0])
     w = _usable_weights(kind, weights, batch)
     weights = kind.zeros(batch) + 1.0 if w is None else w
     sizes = [xp.sqrt(xp.sum(xp.sum(weights[..., None] * v * v, axis=-1), axis=-1)) for v in (x, y)]
@@ -185,6 +189,42 @@ def align(a: Any, b: Any, weights: Any = None) -> Alignment:
     covariance, off = _linearized(kind, rotor, x, y, weights)
     residual = xp.sqrt(xp.sum(weights * xp.sum(off * off, axis=-1), axis=-1))
     return Alignment(rotor.canonical(), residual[()] if kind.native else residual, covariance)
+
+
+def _aligned_exactly(kind: Any, x: Any, y: Any, weights: Any) -> Alignment:
+    """Return the alignment of pairs (..., n, 3) where one weight of each row is infinite.
+
+    The turns that map this a to the direction n of its b differ by an angle φ about n. With the parts p of
+    the other a, turned by one of them, and q of b perpendicular to n, the best φ is the angle of
+    ``Σ w p·q + i Σ w n·(p x q)``, whose size is the curvature.
+    """
+    if not kind.native:
+        raise TypeError("an infinite weight needs vectors of NumPy floats; convert others with np.asarray")
+    # Infinite weights as 1: the others are checked below.
+    exact = np.isposinf(weights.astype(float))
+    checked = _usable_weights(kind, np.where(exact, 1.0, weights.astype(float)), x.shape[:-1])
+    exact = np.broadcast_to(exact, checked.shape)
+    kind.require(exact.sum(axis=-1) == 1, "if weights are infinite, one of each row must be")
+    others = np.where(exact, 0.0, checked)
+    first, target = ((v * exact[..., np.newaxis]).sum(axis=-2) for v in (x, y))
+    sizes = np.linalg.norm([first, target], axis=-1)
+    kind.require((sizes > 0).all(axis=0), "a vector with an infinite weight is 0 and has no direction")
+    axis = target / sizes[1][..., np.newaxis]
+    shortest = Rotor.from_vectors(vector(first), vector(target))
+    n, turned = axis[..., np.newaxis, :], shortest[..., np.newaxis](vector(x)).components
+    p, q = (v - (v * n).sum(axis=-1, keepdims=True) * n for v in (turned, y))
+    cosine = (others * (p * q).sum(axis=-1)).sum(axis=-1)
+    sine = (others * (n * np.cross(p, q)).sum(axis=-1)).sum(axis=-1)
+    size = np.sqrt(
+        (others * (x * x).sum(axis=-1)).sum(axis=-1) * (others * (y * y).sum(axis=-1)).sum(axis=-1)
+    )
+    curvature = np.hypot(cosine, sine)
+    kind.require(curvature > 32 * kind.eps * size, _PARALLEL)
+    rotor = Rotor.from_axis_angle(axis, np.arctan2(sine, cosine)) * shortest
+    off = y - rotor[..., np.newaxis](vector(x)).components
+    residual = np.sqrt((others * (off * off).sum(axis=-1)).sum(axis=-1))
+    covariance = axis[..., :, np.newaxis] * axis[..., np.newaxis, :] / curvature[..., np.newaxis, np.newaxis]
+    return Alignment(rotor.canonical(), residual[()], covariance)
 
 
 def _rows(values: Any, what: str) -> Any:

@@ -145,6 +145,8 @@ def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
     alpha, beta, gamma = (angles[..., k] for k in range(3))
     if not lead.shape:
         sign, lead = float(sign), float(lead)
+    elif not isinstance(angles, np.ndarray):
+        sign, lead = map(kind_of(angles).asarray, (sign, lead))
     found = kind_of(angles).stack([alpha, sign * (beta - lead), gamma])
     if not degrees:
         return found

@@ -111,14 +111,15 @@ class RigidTransform:
         given = as_coefficients(matrix, "transformation matrix")
         if tuple(given.shape[-2:]) != (4, 4):
             raise ValueError(f"a transformation matrix has shape (..., 4, 4), got {tuple(given.shape)}")
+        last, row = given[..., 3, :], np.array([0.0, 0.0, 0.0, 1.0])
+        message = "the last row of a transformation matrix must be (0, 0, 0, 1)"
         if isinstance(given, np.ndarray):
-            last = given[..., 3, :]
-            wrong = (last != np.array([0, 0, 0, 1])).any(axis=-1)
+            wrong = (last != row).any(axis=-1)
             if wrong.any():
-                raise ValueError(
-                    "the last row of a transformation matrix must be (0, 0, 0, 1), got "
-                    f"{last[wrong][0].tolist()}"
-                )
+                raise ValueError(f"{message}, got {last[wrong][0].tolist()}")
+        else:
+            kind = kind_of(given)
+            kind.require(kind.xp.all(last == kind.asarray(row), axis=-1), message)
         return RigidTransform(Rotor.from_matrix(given[..., :3, :3], nearest), given[..., :3, 3])
 
     @staticmethod
@@ -357,10 +358,7 @@ class RigidTransform:
 
     def _nearer(self) -> RigidTransform:
         """Return the same transform with the rotor of a turn of at most π."""
-        data = self.rotor._data
-        kind = kind_of(data)
-        sign = kind.where(data[..., :1] < 0, kind.zeros_like(data[..., :1]) - 1, 1)
-        return RigidTransform(Rotor._from_rows(data * sign), self.translation)
+        return RigidTransform(self.rotor.canonical(), self.translation)
 
 
 def _as_vector(value: Any, what: str) -> Multivector:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _generic
-from polhode._algebra.coefficients import as_coefficients, kind_of
+from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.constructors import from_axial, one_grade, vector
 from polhode._algebra.grades import held, with_grades
 from polhode._algebra.multivector import Multivector
+from polhode._generic.exact import atan2, is_symbolic
 from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float
 
 if TYPE_CHECKING:
@@ -47,7 +48,8 @@ def from_axis_angle(axis: Any, angle: Any, degrees: bool = False) -> Rotor:
             index = first_index(unusable)
             found = given._data[index].tolist()
             raise ValueError(f"the axis{at_index(index)} is {found}; it must be finite and not zero")
-    return Rotor.from_plane_angle(from_axial(given), _radians(angle, degrees))
+    turn = _radians(angle, degrees) if degrees else number_like(angle, "angle", given._data)
+    return Rotor.from_plane_angle(from_axial(given), turn)
 
 
 def angle(R: Rotor) -> Any:
@@ -120,7 +122,7 @@ def from_davenport(axes: Any, order: str, angles: Any, degrees: bool = False) ->
     total, *others = turns[::-1] if intrinsic else turns
     for turn in others:
         total = turn * total
-    return total
+    return total.astype(theta.dtype) if is_float(theta) else total
 
 
 def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
@@ -137,19 +139,37 @@ def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
         first, third = third, first
     # The third axis is the first one turned by λ about the second, so that R times this turn is a product of
     # turns about the first, second and first axis.
-    lead = float(np.arctan2(second @ np.cross(first, third), first @ third))
-    sign = -1.0 if lead < 0 else 1.0
+    sine, cosine = second @ np.cross(first, third), first @ third
+    lead: Any = float(np.arctan2(sine, cosine))
+    sign = -1 if lead < 0 else 1
+    if kind_of(R._data).exact and any(map(is_symbolic, R._data.flat)):
+        first, second, third, sine, cosine = map(_as_symbols, (first, second, third, sine, cosine))
+        lead = atan2(sine, cosine)
     second, lead = sign * second, sign * lead
     frame = Rotor.from_matrix(np.stack([np.cross(second, first), second, first], axis=-1))
     proper = ~frame * R * from_axis_angle(second, lead) * frame
     angles = proper.to_euler("ZYZ" if intrinsic else "zyz")
     alpha, beta, gamma = (angles[..., k] for k in range(3))
     found = kind_of(angles).stack([alpha, sign * (beta - lead), gamma])
+    if is_float(R._data):
+        found = found.astype(R.dtype)
     if not degrees:
         return found
     from polhode._algebra import euler
 
     return euler.to_degrees(found)
+
+
+def _as_symbols(x: Any) -> Any:
+    """Return whole numbers as SymPy's; a TypeError for others, with which angles would not be exact."""
+    import sympy
+
+    if (np.round(x) != x).any():
+        raise TypeError(
+            "Davenport angles of SymPy expressions need axes along e1, e2 and e3; for others substitute "
+            "numbers and convert the rotor with .astype(float)"
+        )
+    return np.frompyfunc(lambda value: sympy.Integer(int(value)), 1, 1)(x)
 
 
 def _davenport_axes(axes: Any, lengths: tuple[int, ...]) -> Array:

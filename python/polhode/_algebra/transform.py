@@ -16,7 +16,7 @@ from polhode._algebra.motors import columns, is_motor, of_columns, places
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.screws import adjoint_matrix, screw_parameters
-from polhode._support.arrays import Array, Shape
+from polhode._support.arrays import Array, Shape, is_float
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
@@ -286,7 +286,9 @@ class RigidTransform:
         """``exp(n log T)``: n times the screw of at most half a turn, for any real n or array of them."""
         powers = number_like(n, "the power of a transform", self.rotor._data)
         coords = self.as_exp_coords()
-        return RigidTransform.from_exp_coords(coords * namespace(coords).asarray(powers)[..., None])
+        if not is_float(coords):
+            coords, powers = common(coords, powers)
+        return RigidTransform.from_exp_coords(coords * powers[..., None])
 
     def interpolate(self, other: RigidTransform, t: Any) -> RigidTransform:
         """Return the transforms on the screw from this one (t = 0) to another (t = 1), the short way."""
@@ -357,8 +359,11 @@ class RigidTransform:
         """Return the same transform with the rotor of a turn of at most π."""
         data = self.rotor._data
         kind = kind_of(data)
-        sign = kind.where(data[..., :1] < 0, kind.zeros_like(data[..., :1]) - 1, 1)
-        return RigidTransform(Rotor._from_rows(data * sign), self.translation)
+        if kind.exact:
+            return RigidTransform(self.rotor.canonical(), self.translation)
+        return RigidTransform(
+            Rotor._from_rows(kind.xp.where(data[..., :1] < 0, -data, data)), self.translation
+        )
 
 
 def _as_vector(value: Any, what: str) -> Multivector:

@@ -43,6 +43,13 @@ def _components(values: Any, size: int, what: str) -> Any:
     return data
 
 
+def _triples(value: Any, grade: int, what: str) -> Any:
+    """Return the components (..., 3) of a value of this grade, or of an array or list of them."""
+    return (
+        one_grade(value, grade, what)._data if isinstance(value, Multivector) else _components(value, 3, what)
+    )
+
+
 def _computed(name: str, *operands: Any) -> Any:
     """Apply a function of rotors; batches broadcast. In the compiled core for floats, else generic."""
     if all(map(is_float, operands)):
@@ -86,23 +93,28 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor._from_rows(_computed("from_components", _components(c4, 4, "rotor")))
 
     @staticmethod
-    def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
-        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored."""
-        plane = one_grade(B, 2, "the plane")._data
+    def from_plane_angle(B: Any, theta: Any) -> Rotor:
+        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored.
+
+        B is a bivector, or an array or list (..., 3) of its components over ``(e2e3, e3e1, e1e2)``, which are
+        those of the axis: ``[0, 0, 1]`` is the plane e1∧e2.
+        """
+        plane = _triples(B, 2, "the plane")
         angle = number_like(theta, "angle", plane)
         if is_float(plane) and is_float(angle):
             angle = angle[..., np.newaxis]  # a column, beside the plane
         return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
 
     @staticmethod
-    def from_vectors(a: Multivector, b: Multivector) -> Rotor:
+    def from_vectors(a: Any, b: Any) -> Rotor:
         """Turn the direction of a into that of b, the short way; lengths are ignored.
 
+        Each is a vector, or an array or list (..., 3): ``from_vectors([1, 0, 0], [0, 1, 0])``.
         For opposite directions the plane is not unique; it is taken through a and the basis vector farthest
         from a. `ph.align` finds the best rotation for many pairs.
         """
-        first, second = one_grade(a, 1, "the first direction"), one_grade(b, 1, "the second direction")
-        return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
+        first, second = _triples(a, 1, "the first direction"), _triples(b, 1, "the second direction")
+        return Rotor._from_rows(_computed("from_vectors", first, second))
 
     @staticmethod
     def from_matrix(m: Any, nearest: bool = False) -> Rotor:
@@ -133,8 +145,8 @@ class Rotor(_native.Rotor, Multivector):
     @staticmethod
     def from_rotation_vector(v: Any) -> Rotor:
         """From vectors (..., 3) along the axis, of length the angle in radians; an array or a Multivector."""
-        array = one_grade(v, 1, "a rotation vector")._data if isinstance(v, Multivector) else v
-        return Rotor._from_rows(_computed("from_rotation_vector", _components(array, 3, "rotation vector")))
+        given = _triples(v, 1, "a rotation vector")
+        return Rotor._from_rows(_computed("from_rotation_vector", given))
 
     @staticmethod
     def from_scipy(rot: Rotation) -> Rotor:

@@ -10,6 +10,7 @@ from polhode import _generic
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.constructors import from_axial, one_grade, vector
 from polhode._algebra.grades import held, with_grades
+from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._generic.exact import atan2, is_symbolic
 from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float
@@ -27,7 +28,7 @@ _RIGHT_ANGLE = 1e-7
 # --- axis and angle
 
 
-def from_axis_angle(axis: Any, angle: Any, degrees: bool = False) -> Rotor:
+def from_axis_angle(axis: Any, angle: Any, degrees: bool = False, *, errors: Errors = "raise") -> Rotor:
     """Turn by `angle` about `axis`, in the right-handed sense: ``exp(−I n θ/2)``.
 
     Parameters
@@ -37,8 +38,10 @@ def from_axis_angle(axis: Any, angle: Any, degrees: bool = False) -> Rotor:
     angle
         In radians, or degrees; batch shapes broadcast. Any size: a rotor distinguishes turns to 4π.
 
-    A ValueError for an axis of zero length, with its batch index.
+    A ValueError for an axis of zero length, with its batch index, or NaN with ``errors="mask"``.
     """
+    if errors != "raise":
+        return masked(errors, lambda n, theta: from_axis_angle(n, theta, degrees), (axis, 1), (angle, 0))
     given = (
         one_grade(axis, 1, "the axis") if isinstance(axis, Multivector) else vector(_triples(axis, "an axis"))
     )
@@ -71,11 +74,14 @@ def magnitude(R: Rotor) -> Any:
 # --- modified Rodrigues parameters
 
 
-def from_mrp(mrp: Any) -> Rotor:
+def from_mrp(mrp: Any, *, errors: Errors = "raise") -> Rotor:
     """From modified Rodrigues parameters (..., 3), ``tan(θ/4)`` along the axis; an array or vectors.
 
-    The rotor is the square of ``1 − I p`` divided by its norm, which turns by θ/2.
+    The rotor is the square of ``1 − I p`` divided by its norm, which turns by θ/2. A ValueError for NaN and
+    infinity, or NaN with ``errors="mask"``.
     """
+    if errors != "raise":
+        return masked(errors, from_mrp, (mrp, 1))
     p = one_grade(mrp, 1, "the parameters")._data if isinstance(mrp, Multivector) else mrp
     p = _triples(p, "modified Rodrigues parameters")
     kind = kind_of(p)
@@ -205,13 +211,15 @@ def _intrinsic(order: str) -> bool:
 # --- multivectors
 
 
-def from_multivector(M: Multivector, *, tolerance: float = 0.1) -> Rotor:
+def from_multivector(M: Multivector, *, tolerance: float = 0.1, errors: Errors = "raise") -> Rotor:
     """From an even multivector of 3-d space whose norm is near 1, divided by its norm.
 
     For sums and products that were rotors but for rounding or a small step, such as ``R − ½ R Ω dt``. Odd
     grades must be absent or zero. A ValueError if the norm differs from 1 by more than `tolerance`, which is
-    mostly a mistake: pass ``M.normalized()`` if it is not.
+    mostly a mistake: pass ``M.normalized()`` if it is not. With ``errors="mask"`` such rows are NaN.
     """
+    if errors != "raise":
+        return masked(errors, lambda x: from_multivector(x, tolerance=tolerance), (M, 1))
     if isinstance(M, Rotor):
         return M
     if not isinstance(M, Multivector):

@@ -191,10 +191,12 @@ def test_angles_must_be_finite(bad):
 @pytest.mark.parametrize("make", [
     lambda: ph.Rotor.from_plane_angle(e3, 1.0),
     lambda: ph.Rotor.from_plane_angle(1 + e1 * e2, 1.0),
-    lambda: ph.Rotor.from_plane_angle([0, 0, 1], 1.0),
+    lambda: ph.Rotor.from_plane_angle("xyz", 1.0),
+    lambda: ph.Rotor.from_plane_angle([0, e1, 1], 1.0),
     lambda: ph.Rotor.from_plane_angle(e12, "1"),
     lambda: ph.Rotor.from_vectors(e12, e1),
-    lambda: ph.Rotor.from_vectors(e1, [1, 0, 0]),
+    lambda: ph.Rotor.from_vectors(e1, [1, 0, "0"]),
+    lambda: ph.Rotor.from_vectors(e1, [e1, e2, e3]),
     lambda: ph.Rotor.from_rotation_vector(e12),
     lambda: ph.Rotor.from_components([1j, 0, 0, 0]),
     lambda: ph.Rotor.from_matrix([["a"] * 3] * 3),
@@ -205,6 +207,24 @@ def test_angles_must_be_finite(bad):
 def test_wrong_kinds_are_type_errors(make):
     with pytest.raises(TypeError):
         make()
+
+
+def test_lists_and_arrays_are_vectors_and_planes():
+    quarter = ph.Rotor.from_plane_angle(e12, np.pi / 2)
+    assert ph.Rotor.from_plane_angle([0, 0, 1], np.pi / 2) == quarter
+    assert ph.Rotor.from_vectors([1, 0, 0], [0, 1, 0]) == ph.Rotor.from_vectors(e1, e2)
+    assert ph.Rotor.from_vectors(e1, np.eye(3)).shape == (3,)
+    for make in (
+        lambda x: ph.Rotor.from_plane_angle(x, 1.0),
+        lambda x: ph.Rotor.from_vectors(e1, x),
+        ph.Rotor.from_rotation_vector,
+    ):
+        for wrong in ([1, 0], 3.0, np.zeros((3, 2))):
+            with pytest.raises(ValueError, match="needs 3 components in the last axis, got shape"):
+                make(wrong)
+    # Numbers are scalars in products, so a rotor does not act on them.
+    with pytest.raises(TypeError, match=r"wrap arrays with ph\.vector"):
+        quarter([1, 0, 0])
 
 
 @pytest.mark.parametrize(("left", "right"), PAIRS_OF_SHAPES)

@@ -12,6 +12,7 @@ from polhode import _generic, _native
 from polhode._algebra.coefficients import kind_of
 from polhode._algebra.functions import require_in_range
 from polhode._algebra.grades import over_grades
+from polhode._algebra.masking import Errors, masked
 from polhode._support.arrays import is_complex
 
 if TYPE_CHECKING:
@@ -42,9 +43,9 @@ def cos(value: Multivector) -> Multivector:
     return _pair("cos", value, -1)[0]
 
 
-def tan(value: Multivector) -> Multivector:
-    """``sin A (cos A)⁻¹``; a ValueError where the cosine has no inverse. See `sin`."""
-    return _ratio("tan", value, -1)
+def tan(value: Multivector, *, errors: Errors = "raise") -> Multivector:
+    """``sin A (cos A)⁻¹``; a ValueError, or with ``errors="mask"`` NaN, where cos A has no inverse."""
+    return _ratio("tan", value, -1, errors)
 
 
 def sinh(value: Multivector) -> Multivector:
@@ -57,9 +58,9 @@ def cosh(value: Multivector) -> Multivector:
     return _pair("cosh", value, 1)[0]
 
 
-def tanh(value: Multivector) -> Multivector:
-    """``sinh A (cosh A)⁻¹``; a ValueError where the cosine has no inverse. See `sin`."""
-    return _ratio("tanh", value, 1)
+def tanh(value: Multivector, *, errors: Errors = "raise") -> Multivector:
+    """``sinh A (cosh A)⁻¹``; errors as of `tan`. See `sin`."""
+    return _ratio("tanh", value, 1, errors)
 
 
 def outer_exp(value: Multivector) -> Multivector:
@@ -83,7 +84,9 @@ def _one(value: Multivector) -> Multivector:
     return _native.Multivector._of(value._data[..., :1] * 0 + 1, 1, value.algebra)
 
 
-def _ratio(name: str, value: Multivector, sign: int) -> Multivector:
+def _ratio(name: str, value: Multivector, sign: int, errors: Errors) -> Multivector:
+    if errors != "raise":
+        return masked(errors, lambda rows: _ratio(name, rows, sign, "raise"), (value, 1))
     cosine, sine = _pair(name, value, sign)
     try:
         return sine * cosine.inverse()

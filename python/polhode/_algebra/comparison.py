@@ -9,6 +9,7 @@ import numpy as np
 from polhode._algebra.coefficients import common, namespace
 from polhode._algebra.grades import over_grades
 from polhode._algebra.products import coerced, common_algebra
+from polhode._generic import exact
 from polhode._support.arrays import is_complex
 
 if TYPE_CHECKING:
@@ -52,6 +53,20 @@ def is_close(a: Multivector, other: Any, rtol: float = 1e-9, atol: float = 0.0) 
         near = xp.isfinite(size) & near
     result = xp.logical_or(near, equal(a, b))
     return result[()] if isinstance(result, np.ndarray) else result
+
+
+def is_finite(value: Multivector) -> Any:
+    """Whether no component is NaN or infinite: a bool, or an array of the batch shape.
+
+    It finds the rows without a value in results with ``errors="mask"``.
+    """
+    data = value._data
+    if data.dtype == object:
+        result: Any = np.frompyfunc(exact.is_finite, 1, 1)(data).astype(bool).all(axis=-1)
+        return result[()]
+    xp = namespace(data)
+    finite = xp.all(xp.isfinite(data), axis=-1)
+    return finite[()] if isinstance(finite, np.ndarray) else finite
 
 
 def _length(xp: Any, x: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -11,6 +12,7 @@ import numpy as np
 from polhode._algebra.coefficients import as_coefficients, foreign_kind, kind_of
 from polhode._algebra.constructors import one_grade, vector
 from polhode._algebra.grades import stack
+from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._support.arrays import Shape, is_float
@@ -89,7 +91,9 @@ def _usable_weights(kind: Any, weights: Any, shape: Shape) -> Any:
     except (ValueError, RuntimeError):
         raise ValueError(message.format(shape, f"shape {tuple(given.shape)}")) from None
     xp = kind.xp
-    usable = xp.all(xp.isfinite(w) & (w >= 0)) & xp.any(w > 0)
+    usable = xp.all(xp.isfinite(w) & (w >= 0))
+    if math.prod(shape):
+        usable = usable & xp.any(w > 0)
     kind.require(usable, message.format(shape, given))
     return w
 
@@ -128,7 +132,7 @@ class Alignment(NamedTuple):
     covariance: Any
 
 
-def align(a: Any, b: Any, weights: Any = None) -> Alignment:
+def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> Alignment:
     """Return the rotation of a to b: the rotor R that minimises ``Σ w |b − R a ~R|²``.
 
     Wahba's problem, or Kabsch's for points relative to their centroids. The rotor is the eigenvector of the
@@ -152,9 +156,13 @@ def align(a: Any, b: Any, weights: Any = None) -> Alignment:
         covariance flags directions that are almost collinear.
 
     A ValueError, with the batch index, if the rotation is not unique: fewer than two directions, or b
-    a mirror image of a for which two rotations fit equally well. Arrays of JAX and other libraries keep
-    their type and have derivatives.
+    a mirror image of a for which two rotations fit equally well; with ``errors="mask"`` such rows are NaN.
+    Arrays of JAX and other libraries keep their type and have derivatives.
     """
+    if errors != "raise":
+        sets = [(_rows(a, "a"), 2), (_rows(b, "b"), 2)]
+        sets += [] if weights is None else [(weights, 1)]
+        return masked(errors, align, *sets)
     first, second = _rows(a, "a"), _rows(b, "b")
     given = [] if weights is None else [as_coefficients(weights, "weights")]
     kind = kind_of(first, second, *given)

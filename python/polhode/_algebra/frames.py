@@ -12,6 +12,7 @@ import numpy as np
 from polhode import _generic, _native
 from polhode._algebra.blade_names import generators_of
 from polhode._algebra.coefficients import kind_of
+from polhode._algebra.masking import Errors, masked
 from polhode._algebra.products import common_algebra
 from polhode._support.arrays import Array, at_index, first_index, is_float
 
@@ -22,13 +23,14 @@ if TYPE_CHECKING:
 _ROUNDING = 1e-10
 
 
-def factor(blade: Multivector) -> tuple[Multivector, ...]:
+def factor(blade: Multivector, *, errors: Errors = "raise") -> tuple[Multivector, ...]:
     """Return k orthogonal vectors whose product is this blade of grade k >= 1, ``B = a1 a2 … ak``.
 
     The first has the size and sign of B; the others have components with ``Σ c² = 1``, in any metric. In a
     Euclidean metric they are projections of the basis vectors of the largest component of B, made orthogonal
     in this order: of ``3 e1∧e2`` they are ``3 e1`` and ``e2``. Batches give batches. A ValueError, with the
-    batch index, for zero and for a value that is not a blade, such as ``e1∧e2 + e3∧e4``.
+    batch index, for zero and for a value that is not a blade, such as ``e1∧e2 + e3∧e4``; with
+    ``errors="mask"`` NaN there.
     """
     data, algebra = blade._data, blade.algebra
     held = blade._held() or blade._mask
@@ -40,6 +42,8 @@ def factor(blade: Multivector) -> tuple[Multivector, ...]:
             "arrays with np.asarray(A.components)"
         )
     k = held.bit_length() - 1
+    if errors != "raise":
+        return masked(errors, factor, (blade.grade(k), 1))
     part = blade.grade(k).astype(float)
     rows: Array = np.asarray(part)
     size = np.abs(rows).max(axis=-1, keepdims=True, initial=0)

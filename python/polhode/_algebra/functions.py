@@ -11,6 +11,7 @@ from polhode import _generic, _native
 from polhode._algebra import grades as _parts
 from polhode._algebra import motors as _motors
 from polhode._algebra.coefficients import common, kind_of, number_like, taken
+from polhode._algebra.masking import Errors, masked
 from polhode._algebra.products import coerced
 from polhode._support.arrays import Array, at_index, first_index, is_complex, is_float, mapped, new
 
@@ -54,8 +55,8 @@ def power(value: Multivector, n: Any) -> Multivector:
                 "(n * A.log()).exp() for others"
             ) from None
         logarithm: Multivector = value.log() * number_like(n, "the power", value._data)
-        power: Multivector = logarithm.exp()
-        return power
+        found: Multivector = logarithm.exp()
+        return found
     base = value.inverse() if exponent < 0 else value
     exponent = abs(exponent)
     if exponent == 0:
@@ -135,12 +136,14 @@ def _unit_and_size(data: Array, signs: Signs) -> tuple[Array, Array]:
         return unit, np.sqrt(np.abs(squares.sum(axis=-1, keepdims=True)))
 
 
-def normalized(value: Multivector) -> Multivector:
-    """Return ``A/|A|``; a ValueError for zero and non-finite values.
+def normalized(value: Multivector, *, errors: Errors = "raise") -> Multivector:
+    """Return ``A/|A|``; a ValueError for zero and non-finite values, or with ``errors="mask"`` NaN there.
 
     Even values of Cl(3,0,1) with scalars and bivectors, such as motors, are divided by the dual number
     ``√(M ~M)``, so that the result is a motor, with ``M ~M = 1``.
     """
+    if errors != "raise":
+        return masked(errors, normalized, (value, 1))
     unit = _over_norm(value)
     return _motors.without_excess(unit) if value._mask & _EVEN == _EVEN and _motors.is_motor(value) else unit
 

@@ -90,7 +90,7 @@ def reduce(
         + [np.argmax(np.abs(rows[k : k + step] @ both), axis=-1) for k in range(0, len(rows), step)]
     )
     i, j = (index.reshape(R.shape) for index in np.divmod(best, len(last)))
-    reduced = canonical(first[i] * R * last[j])
+    reduced = canonical(first[i] * R * last[j]).astype(R.dtype)
     if not return_indices:
         return reduced
     return reduced, None if left is None else i[()], None if right is None else j[()]

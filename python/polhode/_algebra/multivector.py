@@ -22,6 +22,7 @@ from polhode._algebra import symbols as _symbols
 from polhode._algebra import ufuncs as _ufuncs
 from polhode._algebra import versors as _versors
 from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.masking import Errors, masked
 from polhode._algebra.native import joins
 from polhode._algebra.products import coerced, product
 from polhode._support.arrays import Shape, copied
@@ -30,6 +31,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode._algebra.algebra import Algebra
+
+
+# Without a keyword, by the native methods.
+_inverse, _exp = _native.Multivector.inverse, _native.Multivector.exp
+_log, _sqrt = _native.Multivector.log, _native.Multivector.sqrt
 
 
 @joins(_native.Multivector)
@@ -332,8 +338,33 @@ class Multivector(_native.Multivector):
     norm = __abs__ = _functions.norm
     normalized = _functions.normalized
 
-    # --- functions; the first is called by native methods
+    # --- functions; with errors="mask", rows without a value are NaN: see `is_finite`
 
+    def inverse(self, *, errors: Errors = "raise") -> Multivector:
+        """``A⁻¹``, with ``A A⁻¹ = 1``. A ValueError, with the batch index, if A is singular."""
+        return _inverse(self) if errors == "raise" else masked(errors, _inverse, (self, 1))
+
+    def exp(self, *, errors: Errors = "raise") -> Any:
+        """``exp A``; of a bivector of 3-d space it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
+
+        A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
+        """
+        return _exp(self) if errors == "raise" else masked(errors, _exp, (self, 1))
+
+    def log(self, *, errors: Errors = "raise") -> Multivector:
+        """Return a logarithm: ``exp(log A) = A``.
+
+        The logarithm of an even element (scalar and bivector) is even, so ``log(−1) = π e1∧e2``; others have
+        the principal one. A ValueError, with the batch index, where A is singular. In other algebras it
+        exists for positive multiples of rotors and motors.
+        """
+        return _log(self) if errors == "raise" else masked(errors, _log, (self, 1))
+
+    def sqrt(self, *, errors: Errors = "raise") -> Multivector:
+        """Return a square root; of an even element the half-way one, ``√(−1) = e1∧e2``."""
+        return _sqrt(self) if errors == "raise" else masked(errors, _sqrt, (self, 1))
+
+    # Called by native methods.
     def _function(self, name: str) -> Multivector:
         return _functions.exp(self) if name == "exp" else _functions.function(name, self)
 
@@ -354,6 +385,7 @@ class Multivector(_native.Multivector):
         return not same if isinstance(same, bool) else ~same
 
     is_close = _comparison.is_close
+    is_finite = _comparison.is_finite
 
 
 def _rebuild(cls: type[Multivector], data: Any, mask: int, algebra: Algebra) -> Multivector:

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _generic
-from polhode._algebra.coefficients import as_coefficients, kind_of
+from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.constructors import from_axial, one_grade, vector
 from polhode._algebra.grades import held, with_grades
+from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
+from polhode._generic.exact import atan2, is_symbolic
 from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float
 
 if TYPE_CHECKING:
@@ -26,7 +28,7 @@ _RIGHT_ANGLE = 1e-7
 # --- axis and angle
 
 
-def from_axis_angle(axis: Any, angle: Any, degrees: bool = False) -> Rotor:
+def from_axis_angle(axis: Any, angle: Any, degrees: bool = False, *, errors: Errors = "raise") -> Rotor:
     """Turn by `angle` about `axis`, in the right-handed sense: ``exp(−I n θ/2)``.
 
     Parameters
@@ -36,8 +38,10 @@ def from_axis_angle(axis: Any, angle: Any, degrees: bool = False) -> Rotor:
     angle
         In radians, or degrees; batch shapes broadcast. Any size: a rotor distinguishes turns to 4π.
 
-    A ValueError for an axis of zero length, with its batch index.
+    A ValueError for an axis of zero length, with its batch index, or NaN with ``errors="mask"``.
     """
+    if errors != "raise":
+        return masked(errors, lambda n, theta: from_axis_angle(n, theta, degrees), (axis, 1), (angle, 0))
     given = (
         one_grade(axis, 1, "the axis") if isinstance(axis, Multivector) else vector(_triples(axis, "an axis"))
     )
@@ -47,7 +51,8 @@ def from_axis_angle(axis: Any, angle: Any, degrees: bool = False) -> Rotor:
             index = first_index(unusable)
             found = given._data[index].tolist()
             raise ValueError(f"the axis{at_index(index)} is {found}; it must be finite and not zero")
-    return Rotor.from_plane_angle(from_axial(given), _radians(angle, degrees))
+    turn = _radians(angle, degrees) if degrees else number_like(angle, "angle", given._data)
+    return Rotor.from_plane_angle(from_axial(given), turn)
 
 
 def angle(R: Rotor) -> Any:
@@ -69,11 +74,14 @@ def magnitude(R: Rotor) -> Any:
 # --- modified Rodrigues parameters
 
 
-def from_mrp(mrp: Any) -> Rotor:
+def from_mrp(mrp: Any, *, errors: Errors = "raise") -> Rotor:
     """From modified Rodrigues parameters (..., 3), ``tan(θ/4)`` along the axis; an array or vectors.
 
-    The rotor is the square of ``1 − I p`` divided by its norm, which turns by θ/2.
+    The rotor is the square of ``1 − I p`` divided by its norm, which turns by θ/2. A ValueError for NaN and
+    infinity, or NaN with ``errors="mask"``.
     """
+    if errors != "raise":
+        return masked(errors, from_mrp, (mrp, 1))
     p = one_grade(mrp, 1, "the parameters")._data if isinstance(mrp, Multivector) else mrp
     p = _triples(p, "modified Rodrigues parameters")
     kind = kind_of(p)
@@ -119,7 +127,7 @@ def from_davenport(axes: Any, order: str, angles: Any, degrees: bool = False) ->
     total, *others = turns[::-1] if intrinsic else turns
     for turn in others:
         total = turn * total
-    return total
+    return total.astype(theta.dtype) if is_float(theta) else total
 
 
 def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
@@ -136,23 +144,43 @@ def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
         first, third = third, first
     # The third axis is the first one turned by λ about the second, so that R times this turn is a product of
     # turns about the first, second and first axis.
-    lead: Any = np.arctan2((second * np.cross(first, third)).sum(axis=-1), (first * third).sum(axis=-1))
+    sine, cosine = (second * np.cross(first, third)).sum(axis=-1), (first * third).sum(axis=-1)
+    lead: Any = np.arctan2(sine, cosine)
     sign: Any = np.where(lead < 0, -1.0, 1.0)
-    second, lead = sign[..., np.newaxis] * second, np.abs(lead)
+    symbolic = kind_of(R._data).exact and any(map(is_symbolic, R._data.flat))
+    if symbolic:
+        numbers = (first, second, third, sine, cosine, sign)
+        first, second, third, sine, cosine, sign = map(_as_symbols, numbers)
+        lead = np.frompyfunc(atan2, 2, 1)(sine, cosine)
+    second, lead = sign[..., np.newaxis] * second, sign * lead
     frame = Rotor.from_matrix(np.stack([np.cross(second, first), second, first], axis=-1))
     proper = ~frame * R * from_axis_angle(second, lead) * frame
     angles = proper.to_euler("ZYZ" if intrinsic else "zyz")
     alpha, beta, gamma = (angles[..., k] for k in range(3))
-    if not lead.shape:
+    if not symbolic and not lead.shape:
         sign, lead = float(sign), float(lead)
     elif not isinstance(angles, np.ndarray):
         sign, lead = map(kind_of(angles).asarray, (sign, lead))
     found = kind_of(angles).stack([alpha, sign * (beta - lead), gamma])
+    if is_float(R._data):
+        found = found.astype(R.dtype)
     if not degrees:
         return found
     from polhode._algebra import euler
 
     return euler.to_degrees(found)
+
+
+def _as_symbols(x: Any) -> Any:
+    """Return whole numbers as SymPy's; a TypeError for others, with which angles would not be exact."""
+    import sympy
+
+    if (np.round(x) != x).any():
+        raise TypeError(
+            "Davenport angles of SymPy expressions need axes along e1, e2 and e3; for others substitute "
+            "numbers and convert the rotor with .astype(float)"
+        )
+    return np.asarray(np.frompyfunc(lambda value: sympy.Integer(int(value)), 1, 1)(x), dtype=object)
 
 
 def _davenport_axes(axes: Any, lengths: tuple[int, ...]) -> Array:
@@ -191,13 +219,15 @@ def _intrinsic(order: str) -> bool:
 # --- multivectors
 
 
-def from_multivector(M: Multivector, *, tolerance: float = 0.1) -> Rotor:
+def from_multivector(M: Multivector, *, tolerance: float = 0.1, errors: Errors = "raise") -> Rotor:
     """From an even multivector of 3-d space whose norm is near 1, divided by its norm.
 
     For sums and products that were rotors but for rounding or a small step, such as ``R − ½ R Ω dt``. Odd
     grades must be absent or zero. A ValueError if the norm differs from 1 by more than `tolerance`, which is
-    mostly a mistake: pass ``M.normalized()`` if it is not.
+    mostly a mistake: pass ``M.normalized()`` if it is not. With ``errors="mask"`` such rows are NaN.
     """
+    if errors != "raise":
+        return masked(errors, lambda x: from_multivector(x, tolerance=tolerance), (M, 1))
     if isinstance(M, Rotor):
         return M
     if not isinstance(M, Multivector):

@@ -12,6 +12,7 @@ from polhode._algebra import parameters as _parameters
 from polhode._algebra import signs as _signs
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, reshaped, taken
 from polhode._algebra.constructors import one_grade
+from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
 from polhode._algebra.products import aligned, common_algebra, result_array
@@ -44,6 +45,13 @@ def _components(values: Any, size: int, what: str) -> Any:
     return data
 
 
+def _triples(value: Any, grade: int, what: str) -> Any:
+    """Return the components (..., 3) of a value of this grade, or of an array or list of them."""
+    return (
+        one_grade(value, grade, what)._data if isinstance(value, Multivector) else _components(value, 3, what)
+    )
+
+
 def _computed(name: str, *operands: Any) -> Any:
     """Apply a function of rotors; batches broadcast. In the compiled core for floats, else generic."""
     if all(map(is_float, operands)):
@@ -54,6 +62,10 @@ def _computed(name: str, *operands: Any) -> Any:
         )
     kind = kind_of(*operands)
     return getattr(_generic.rotors, name)(kind, *map(kind.asarray, operands))
+
+
+# Without a keyword, by the native method.
+_rotor_log = _native.Rotor.log
 
 
 @joins(_native.Rotor)
@@ -86,31 +98,47 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*batch_shape(shape), 4)).copy())
 
     @staticmethod
-    def from_components(c4: Any) -> Rotor:
-        """From components (..., 4) over ``(1, e2e3, e3e1, e1e2)``, divided by their norm."""
+    def from_components(c4: Any, *, errors: Errors = "raise") -> Rotor:
+        """From components (..., 4) over ``(1, e2e3, e3e1, e1e2)``, divided by their norm.
+
+        A ValueError, with the batch index, where they are 0 or not finite. With ``errors="mask"``, here and
+        in the other constructors, such rows are NaN, and `is_finite` finds them; the other rows have the same
+        bits as without these.
+        """
+        if errors != "raise":
+            return masked(errors, Rotor.from_components, (c4, 1))
         return Rotor._from_rows(_computed("from_components", _components(c4, 4, "rotor")))
 
     @staticmethod
-    def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
-        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored."""
-        plane = one_grade(B, 2, "the plane")._data
+    def from_plane_angle(B: Any, theta: Any, *, errors: Errors = "raise") -> Rotor:
+        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored.
+
+        B is a bivector, or an array or list (..., 3) of its components over ``(e2e3, e3e1, e1e2)``, which are
+        those of the axis: ``[0, 0, 1]`` is the plane e1∧e2.
+        """
+        if errors != "raise":
+            return masked(errors, Rotor.from_plane_angle, (B, 1), (theta, 0))
+        plane = _triples(B, 2, "the plane")
         angle = number_like(theta, "angle", plane)
         if is_float(plane) and is_float(angle):
             angle = angle[..., np.newaxis]  # a column, beside the plane
         return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
 
     @staticmethod
-    def from_vectors(a: Multivector, b: Multivector) -> Rotor:
+    def from_vectors(a: Any, b: Any, *, errors: Errors = "raise") -> Rotor:
         """Turn the direction of a into that of b, the short way; lengths are ignored.
 
+        Each is a vector, or an array or list (..., 3): ``from_vectors([1, 0, 0], [0, 1, 0])``.
         For opposite directions the plane is not unique; it is taken through a and the basis vector farthest
         from a. `ph.align` finds the best rotation for many pairs.
         """
-        first, second = one_grade(a, 1, "the first direction"), one_grade(b, 1, "the second direction")
-        return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
+        if errors != "raise":
+            return masked(errors, Rotor.from_vectors, (a, 1), (b, 1))
+        first, second = _triples(a, 1, "the first direction"), _triples(b, 1, "the second direction")
+        return Rotor._from_rows(_computed("from_vectors", first, second))
 
     @staticmethod
-    def from_matrix(m: Any, nearest: bool = False) -> Rotor:
+    def from_matrix(m: Any, nearest: bool = False, *, errors: Errors = "raise") -> Rotor:
         """From rotation matrices (..., 3, 3) acting on columns; the nearest rotation, within 1e-4 of one.
 
         A ValueError for a reflection or anything farther off. The rotor's scalar part is >= 0.
@@ -120,6 +148,8 @@ class Rotor(_native.Rotor, Multivector):
         ``U diag(1, 1, det U Vᵀ) Vᵀ`` (Kabsch, Acta Cryst. A 34 (1978)). A ValueError, with the batch index,
         where it is not unique: where the two smallest singular values are 0, or equal in a reflection.
         """
+        if errors != "raise":
+            return masked(errors, lambda rows: Rotor.from_matrix(rows, nearest), (m, 2))
         matrices = as_coefficients(m, "rotation matrix")
         if tuple(matrices.shape[-2:]) != (3, 3):
             raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}")
@@ -130,16 +160,20 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor._from_rows(_computed("from_matrix", matrices))
 
     @staticmethod
-    def from_quaternion(q: Any, *, order: QuaternionOrder) -> Rotor:
+    def from_quaternion(q: Any, *, order: QuaternionOrder, errors: Errors = "raise") -> Rotor:
         """From quaternions (..., 4), Hamilton's and active, divided by their norm; `order` is required."""
+        if errors != "raise":
+            return masked(errors, lambda rows: Rotor.from_quaternion(rows, order=order), (q, 1))
         given = _components(q, 4, "quaternion")
         return Rotor._from_rows(_computed("from_quaternion", taken(given, _to_wxyz(order))))
 
     @staticmethod
-    def from_rotation_vector(v: Any) -> Rotor:
+    def from_rotation_vector(v: Any, *, errors: Errors = "raise") -> Rotor:
         """From vectors (..., 3) along the axis, of length the angle in radians; an array or a Multivector."""
-        array = one_grade(v, 1, "a rotation vector")._data if isinstance(v, Multivector) else v
-        return Rotor._from_rows(_computed("from_rotation_vector", _components(array, 3, "rotation vector")))
+        if errors != "raise":
+            return masked(errors, Rotor.from_rotation_vector, (v, 1))
+        given = _triples(v, 1, "a rotation vector")
+        return Rotor._from_rows(_computed("from_rotation_vector", given))
 
     @staticmethod
     def from_scipy(rot: Rotation) -> Rotor:
@@ -158,7 +192,7 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor.from_quaternion(quaternion.as_float_array(array), order="wxyz")
 
     @staticmethod
-    def from_euler(seq: str, angles: Any, degrees: bool = False) -> Rotor:
+    def from_euler(seq: str, angles: Any, degrees: bool = False, *, errors: Errors = "raise") -> Rotor:
         """From Euler angles (..., n) about n = 1 to 3 axes, in radians; named as SciPy names them.
 
         ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes of the body,
@@ -168,6 +202,9 @@ class Rotor(_native.Rotor, Multivector):
         """
         from polhode._algebra import euler
 
+        if errors != "raise":
+            last = 1 if np.ndim(angles) else 0
+            return masked(errors, lambda rows: Rotor.from_euler(seq, rows, degrees), (angles, last))
         axes = euler.axes_of(seq, (1, 2, 3))
         theta = as_coefficients(angles, "angles")
         if not theta.shape:
@@ -311,15 +348,19 @@ class Rotor(_native.Rotor, Multivector):
         _native.rotor_log(data, result)
         return Multivector._of(result, _BIVECTOR)
 
-    def inverse(self) -> Rotor:
+    def log(self, *, errors: Errors = "raise") -> Multivector:
+        """Return the bivector −Bθ/2 of size at most π, for which ``exp(−Bθ/2) = R``; for −1 it is π e1∧e2."""
+        return _rotor_log(self) if errors == "raise" else masked(errors, _rotor_log, (self, 1))
+
+    def inverse(self, *, errors: Errors = "raise") -> Rotor:
         """``~R``."""
         return ~self
 
-    def sqrt(self) -> Rotor:
+    def sqrt(self, *, errors: Errors = "raise") -> Rotor:
         """Return the rotor of half the angle, whose square is R."""
-        return self**0.5
+        return self**0.5 if errors == "raise" else masked(errors, lambda R: R**0.5, (self, 1))
 
-    def normalized(self) -> Rotor:
+    def normalized(self, *, errors: Errors = "raise") -> Rotor:
         """Return the rotor itself, which has norm 1."""
         return self
 

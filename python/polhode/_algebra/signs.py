@@ -48,12 +48,12 @@ def continuous(R: Rotor, axis: int = 0) -> Rotor:
         what = "a single rotor" if not count else f"rotors of batch shape {R.shape}"
         raise ValueError(f"axis {axis} is out of range for {what}")
     data, place = R._data, place % count
-    before, after = ((slice(None),) * place + (part,) for part in (slice(None, -1), slice(1, None)))
+    before, after = ((slice(None),) * place + (part, ...) for part in (slice(None, -1), slice(1, None)))
     if data.dtype == object:
         data = R.astype(float)._data  # to find the signs
-    apart = (data[before] * data[after]).sum(-1) < -half_turn(data)
-    # Whole numbers of changes of sign, from the first rotor on.
     xp = kind_of(data).xp
+    apart = xp.sum(data[before] * data[after], axis=-1) < -half_turn(data)
+    # Whole numbers of changes of sign, from the first rotor on.
     first = data[(slice(None),) * place + (slice(0, 1), ..., 0)] * 0
     changes = xp.concat([first, xp.where(apart, first + 1, first)], axis=place)
     total = np.cumsum(changes, axis=place) if xp is np else xp.cumulative_sum(changes, axis=place)

@@ -16,7 +16,7 @@ from polhode._algebra.motors import columns, is_motor, of_columns, places
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.screws import adjoint_matrix, screw_parameters
-from polhode._support.arrays import Array, Shape
+from polhode._support.arrays import Array, Shape, is_float
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
@@ -290,7 +290,9 @@ class RigidTransform:
         """``exp(n log T)``: n times the screw of at most half a turn, for any real n or array of them."""
         powers = number_like(n, "the power of a transform", self.rotor._data)
         coords = self.as_exp_coords()
-        return RigidTransform.from_exp_coords(coords * namespace(coords).asarray(powers)[..., None])
+        if not is_float(coords):
+            coords, powers = common(coords, powers)
+        return RigidTransform.from_exp_coords(coords * powers[..., None])
 
     def interpolate(self, other: RigidTransform, t: Any) -> RigidTransform:
         """Return the transforms on the screw from this one (t = 0) to another (t = 1), the short way."""

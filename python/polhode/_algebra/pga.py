@@ -115,11 +115,9 @@ class PGA(Algebra):
     def point_and_direction(self, line: Multivector) -> tuple[Multivector, Multivector]:
         """Return the point of lines nearest to the origin and the unit direction, as vectors."""
         unit = self._unit(require_value(self, line, "a line", (self.dimension - 2,)))
-        _, *parts = columns(unit.wedge(as_precise(self.e0, unit)).left_complement())
-        kind = kind_of(unit._data)
-        if self.dimension % 2:  # e0∧L = −L∧e0 for an odd number of planes
-            parts = [-x for x in parts]
-        along = self._space.vector(kind.stack([-x for x in parts]))
+        # The line meets the plane at infinity in its direction.
+        _, *parts = columns(-as_precise(self.e0, unit).wedge(unit).left_complement())
+        along = self._space.vector(kind_of(unit._data).stack(parts))
         return self.down(self.embed(along).wedge(unit)), along
 
     def normalized(self, X: Multivector) -> Multivector:

@@ -196,6 +196,12 @@ def test_a_map_of_vectors_times_one_of_bivectors():
     assert same((J + J)(e2 ^ e3), 2 * J(e2 ^ e3))
     assert J.trace() == 6
     assert J.algebra is ph.algebra(3)
+    R, S = J.polar()
+    assert same(R.canonical().components, [1, 0, 0, 0])
+    assert same(S.matrix, J.matrix)
+    assert same(J.svd()[1], [3, 2, 1])
+    with pytest.raises(TypeError, match=r"from_principal_moments\(1, 1, 1\)"):
+        ph.Inertia.identity()
     with pytest.raises(TypeError, match="no sum; add their bivector_matrix"):
         F + J
 

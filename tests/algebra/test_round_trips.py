@@ -146,7 +146,7 @@ def fields(**changed):
         (fields(shape=[-1, -1]), None),
         (fields(shape=[1.0]), None),
         (fields(shape="()"), None),
-        (fields(dtype="int64"), "dtype must be one of float64, float32, object"),
+        (fields(dtype="int64"), "dtype must be one of float64, float32, complex128, complex64, object"),
         (fields(dtype="O"), "dtype must be one of"),
         (fields(dtype=None), "dtype must be one of"),
         (fields(components=[1, 2, 3]), "do not fit 3 components"),

@@ -259,6 +259,17 @@ def test_norms_are_those_of_magnitudes(signature):
     assert same(abs(M), M.norm())
 
 
+def test_infinities_follow_ieee_as_floats_do():
+    a = ph.vector([complex(np.inf, 0), 0, 0])
+    assert np.isinf((2j * a)["e1"]) or np.isnan((2j * a)["e1"])
+    assert not np.isfinite((a * e1)["1"])
+    for f in ("exp", "inverse", "cos"):
+        with pytest.raises(ValueError, match="NaN or infinite"):
+            getattr(a, f)()
+    with pytest.raises(ValueError, match="beyond the range"):
+        ph.vector([1000, 1j, 0]).exp()
+
+
 def test_norms_of_large_and_small_values():
     a = ph.vector([3e200j, 4e200, 0])
     assert abs(a.norm() / 5e200 - 1) <= 4 * EPS
@@ -378,6 +389,13 @@ def test_rotors_are_real():
         lambda: R**0.5j,
         lambda: ph.LinearMap.from_function(lambda v: 1j * v),
         lambda: ph.State(R, B),
+        lambda: ph.RigidTransform(R, a),
+        lambda: ph.RigidTransform(R, [1j, 0, 0]).apply(a),
+        lambda: ph.left_jacobian(a),
+        lambda: ph.Rotor.from_axis_angle(a, 1.0),
+        lambda: ph.Rotor.from_mrp(a),
+        lambda: ph.align(ph.stack([a, e1]), ph.stack([e1, e2])),
+        lambda: ph.formula("a·a").grad("a")(a=a),
         lambda: ph.torque.constant_body(B),
     ):
         with pytest.raises(TypeError, match=r"real"):

@@ -57,6 +57,12 @@ def as_coefficients(values: Any, what: str, dtype: Any = None, *, complex_too: b
     return array if is_float(array) else as_floats(array, what)
 
 
+def require_real(data: Any, what: str) -> None:
+    """Raise a TypeError for complex coefficients."""
+    if is_complex(data):
+        raise TypeError(f"{what} must be real, got {data.dtype}; take .real or .imag of the value")
+
+
 def namespace(array: Any) -> Any:
     """Return the namespace of an array; NumPy for exact coefficients."""
     kind = kind_of(array)
@@ -113,8 +119,9 @@ def scalars(value: Any, like: Any) -> Any:
     floating = like is not None and like.dtype != object
     if type(value) in (int, float) and floating:
         number = as_floats(value, "scalar")[np.newaxis]
-        ours = is_float(like) or is_complex(like)
-        return number.astype(np.finfo(like.dtype).dtype) if ours else number  # float32 stays float32
+        if is_complex(like):
+            return number.astype(np.finfo(like.dtype).dtype)
+        return number.astype(like.dtype) if is_float(like) else number  # float32 stays float32
     if isinstance(value, complex):
         single = isinstance(like, np.ndarray) and like.dtype in (np.float32, np.complex64)
         return np.array([value], np.complex64 if single and type(value) is complex else np.complex128)
@@ -188,8 +195,8 @@ def _converted(values: Any, what: str, dtype: Any, complex_too: bool) -> Any:
     if not isinstance(given, np.ndarray):
         return _converted_foreign(given, what, dtype)
     wanted = np.dtype(dtype)
-    if is_complex(given) and wanted.kind != "c":
-        raise TypeError(f"{what} must be real, got {given.dtype}; take .real or .imag of the value")
+    if wanted.kind != "c":
+        require_real(given, what)
     if wanted.kind == "O":
         # Whole floats become integers, so that results stay exact.
         return kind_of(np.empty(0, dtype=object)).asarray(given)

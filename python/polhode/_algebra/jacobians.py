@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from polhode import _generic
-from polhode._algebra.coefficients import as_coefficients, kind_of
+from polhode._algebra.coefficients import as_coefficients, kind_of, require_real
 from polhode._algebra.multivector import Multivector
 
 
@@ -46,6 +46,7 @@ def _jacobian(v: Any, sign: int, inverse: bool) -> Any:
         if v.algebra.signature != (3, 0, 0) or v.grades not in ((1,), (2,)):
             raise TypeError(f"a rotation vector is a vector or a bivector of 3-d space, got {v!r}")
         given = v._data
+        require_real(given, "a rotation vector")
     else:
         given = as_coefficients(v, "rotation vector")
     if not given.shape or given.shape[-1] != 3:

@@ -25,7 +25,8 @@ def product(name: str, left: Multivector, right: Multivector, out: Any = None) -
             raise TypeError(f"out needs factors of floats, got {left.dtype} and {right.dtype}")
         terms, _ = algebra._terms(name, left._mask, right._mask)
         kind = kind_of(a, b)
-        result = _generic.products.product(kind, terms, size, kind.asarray(a), kind.asarray(b))
+        with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the core
+            result = _generic.products.product(kind, terms, size, kind.asarray(a), kind.asarray(b))
         if rotors:
             return _native.Rotor._from_rows(_generic.rotors.from_components(kind, result))
         return _native.Multivector._of(result, mask, algebra)

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._algebra.algebra import Algebra, algebra
-from polhode._algebra.coefficients import as_coefficients, common, kind_of, namespace, number_like
+from polhode._algebra.coefficients import (
+    as_coefficients,
+    common,
+    kind_of,
+    namespace,
+    number_like,
+    require_real,
+)
 from polhode._algebra.constructors import one_grade, scalar, vector
 from polhode._algebra.estimation import mean
 from polhode._algebra.grades import concatenate, stack
@@ -364,7 +371,9 @@ class RigidTransform:
 
 
 def _as_vector(value: Any, what: str) -> Multivector:
-    return one_grade(value, 1, what) if isinstance(value, Multivector) else vector(value)
+    given = one_grade(value, 1, what) if isinstance(value, Multivector) else vector(value)
+    require_real(given._data, what)
+    return given
 
 
 def _spread(value: Any, shape: Shape) -> Any:

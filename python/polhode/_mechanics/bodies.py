@@ -58,6 +58,14 @@ class Inertia(LinearMap):
         return Inertia.from_matrix(LinearMap.from_function(f, grade=2).matrix)
 
     @staticmethod
+    def identity(*_: Any, **__: Any) -> LinearMap:
+        """Raise a TypeError: an inertia has moments, such as ``from_principal_moments(1, 1, 1)``."""
+        raise TypeError(
+            "an inertia has moments; use Inertia.from_principal_moments(1, 1, 1), or "
+            "LinearMap.identity(grade=2)"
+        )
+
+    @staticmethod
     def from_points(masses: Any, positions: Any) -> Inertia:
         """Return the inertia of masses (n,) in kg at positions (n, 3) in m, about their centre of mass."""
         return Inertia(_native.Inertia.from_points(*_points(masses, positions)))

@@ -218,9 +218,10 @@ class RigidTransform:
     def as_exp_coords(self) -> Any:
         """Return exponential coordinates (..., 6): rotation vector of at most π, then the velocity."""
         nearer = self._nearer()
-        if not is_float(nearer.rotor._data):  # the motor of these has no logarithm
+        given = nearer.rotor._data, nearer.translation._data
+        if not all(map(is_float, given)):  # the motor of these has no logarithm
             v = nearer.rotor.to_rotation_vector()
-            inverse, moved = common(left_jacobian(v, inverse=True), nearer.translation._data)
+            inverse, v, moved = common(left_jacobian(v, inverse=True), v, given[1])
             xp = namespace(inverse)
             return xp.concat([v, xp.matmul(inverse, moved[..., None])[..., 0]], axis=-1)
         screw = nearer.to_motor().log()

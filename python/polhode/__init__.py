@@ -104,13 +104,22 @@ _LATER = {
     for name in names.split()
 }
 _MODULES = ("event", "force", "jax", "torque")
+# What other libraries call them.
+_HABITS = {
+    "Cl": "algebra",
+    "MultiVector": "multivector",
+    "Rotation": "Rotor",
+    "RotationSpline": "RotorSpline",
+    "Slerp": "slerp",
+}
 
 
 def __getattr__(name: str) -> Any:
     if name in _MODULES:
         return importlib.import_module(f"polhode.{name}")
     if name not in _LATER:
-        raise AttributeError(f"module 'polhode' has no attribute {name!r}")
+        hint = f"; see polhode.{_HABITS[name]}" if name in _HABITS else ""
+        raise AttributeError(f"module 'polhode' has no attribute {name!r}{hint}")
     value = getattr(importlib.import_module(f"polhode.{_LATER[name]}"), name)
     globals()[name] = value
     return value

@@ -279,6 +279,8 @@ def test_screws_of_other_arrays(name, transforms):
             (transforms[0].interpolate(transforms, 0.5), theirs[0].interpolate(theirs, 0.5)),
         ):
             assert np.allclose(np.asarray(found.as_matrix()), ours.as_matrix(), rtol=0, atol=64 * EPS)
+        moved = RigidTransform.from_translation(xp.asarray([1.0, 2.0, 3.0]))  # beside a rotor of NumPy
+        np.testing.assert_array_equal(np.asarray(moved.as_exp_coords()), [0, 0, 0, 1, 2, 3])
         with pytest.raises(ValueError, match="last row"):
             RigidTransform.from_matrix(xp.ones((4, 4)))
 

@@ -309,3 +309,32 @@ def test_the_package_lists_public_names_only():
     for module in (ph.torque, ph.force, ph.event):
         listed = {name for name in dir(module) if not name.startswith("_")}
         assert listed == set(module.__all__)
+
+
+# --- names of other libraries
+
+
+@pytest.mark.parametrize(
+    ("use", "remedy"),
+    [
+        (lambda: ph.Rotor.from_quat([0, 0, 0, 1]), "from_quaternion"),
+        (lambda: ph.Rotor.identity().as_matrix(), "to_matrix"),
+        (lambda: ph.Rotor.identity().inv(), "~R"),
+        (lambda: (1 + e1).inv(), "inverse"),
+        (lambda: (1 + e1).mag2(), "norm_squared"),
+        (lambda: (e1 * e2).e12, 'A\\["e12"\\]'),
+        (lambda: ph.Rotation, "polhode.Rotor"),
+    ],
+)
+def test_names_of_other_libraries_are_errors_that_name_ours(use, remedy):
+    with pytest.raises(AttributeError, match=f"; (write|see) .*{remedy}"):
+        use()
+
+
+def test_names_of_other_libraries_are_not_listed():
+    R = ph.Rotor.identity()
+    assert not hasattr(R, "as_quat")
+    assert {"to_quaternion", "shape"} <= {*dir(R)}
+    assert {"as_quat", "inv", "e12"}.isdisjoint(dir(R))
+    with pytest.raises(TypeError, match=r"for the part of grade k \.grade\(k\)"):
+        (1 + e1)(1)

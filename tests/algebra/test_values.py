@@ -155,7 +155,7 @@ def test_indexing_errors_name_the_batch_shape():
     for index in [2, (0, 3), (0, 0, 0), 1.5]:
         with pytest.raises(IndexError, match=r"batch shape \(2, 3\)"):
             A[index]
-    with pytest.raises(IndexError, match=r"batch shape \(\)\); .*components"):
+    with pytest.raises(IndexError, match=r"no batch to index, got \[0\]; .*components"):
         e1[0]
 
 

@@ -168,3 +168,20 @@ def test_an_unpickled_motion_has_its_methods_in_a_new_process():
     run = [sys.executable, "-c", read]
     done = processes.run(run, input=pickle.dumps(motion), encoding=None)
     assert b"save" in done.stdout
+
+
+def test_names_of_other_libraries_are_errors_that_name_ours():
+    motion = ph.simulate(BODY, START, [0.0, 1.0])
+    for name, ours in (("t", "time"), ("omega", "omega_body"), ("to_pandas", "to_dataframe")):
+        with pytest.raises(AttributeError, match=f"no attribute '{name}'; see {ours}"):
+            getattr(motion, name)
+    with pytest.raises(IndexError, match=r"of one motion is at\(t\)"):
+        motion[0]
+    with pytest.raises(TypeError, match="a constant torque is constant_body"):
+        ph.simulate(BODY, START, [1.0], torque=[0, 0, 1])
+    with pytest.raises(TypeError, match=r"see Rotor\.from_quaternion"):
+        ph.State([1, 0, 0, 0], [0, 0, 1])
+    with pytest.raises(TypeError, match=r"use Inertia\.from_principal_moments"):
+        ph.Inertia(1, 2, 3)
+    with pytest.raises(TypeError, match=r"see Inertia\.from_matrix"):
+        ph.Body(1.0, np.eye(3))

@@ -16,6 +16,7 @@ from polhode._algebra import conjugates as _conjugates
 from polhode._algebra import frames as _frames
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
+from polhode._algebra import habits as _habits
 from polhode._algebra import products as _products
 from polhode._algebra import subspaces as _subspaces
 from polhode._algebra import symbols as _symbols
@@ -128,6 +129,8 @@ class Multivector(_native.Multivector):
     subs = _symbols.subs
     simplify = _symbols.simplify
 
+    __dir__ = _habits.listed
+
     def __bool__(self) -> bool:
         raise TypeError("a multivector has no truth value; compare it with == or is_close")
 
@@ -159,8 +162,12 @@ class Multivector(_native.Multivector):
                 _grades.check_index(self.shape, parts)
             picked = self._data[(*parts, *rest, slice(None))]
         except IndexError as error:
-            remedy = "" if self.shape else "; for the numbers of a single value use .components"
-            raise IndexError(f"{error} (batch shape {self.shape}){remedy}") from None
+            if self.shape:
+                raise IndexError(f"{error} (batch shape {self.shape})") from None
+            raise IndexError(
+                f"a single value has no batch to index, got [{index!r}]; its numbers are .components or "
+                '["e12"], its part of grade k is .grade(k)'
+            ) from None
         return self._like(picked)
 
     def __iter__(self) -> Iterator[Self]:

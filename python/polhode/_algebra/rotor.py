@@ -12,6 +12,7 @@ from polhode._algebra import parameters as _parameters
 from polhode._algebra import signs as _signs
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, reshaped, taken
 from polhode._algebra.constructors import one_grade
+from polhode._algebra.habits import add_to
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
@@ -378,6 +379,9 @@ class Rotor(_native.Rotor, Multivector):
         turn = self.log() * powers
         power: Rotor = turn.exp()
         return power
+
+
+add_to(Multivector, Rotor)
 
 
 def _nearest_rotation(m: Any) -> Array:

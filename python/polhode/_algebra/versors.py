@@ -26,8 +26,8 @@ def act(V: Multivector, X: Multivector) -> Multivector:
     """
     if not isinstance(X, _native.Multivector):
         raise TypeError(
-            f"a versor acts on multivectors, got {type(X).__name__}; wrap arrays with ph.vector, and for a "
-            "product with numbers write *"
+            f"a versor acts on multivectors, got {type(X).__name__}; wrap arrays with ph.vector, for a "
+            "product with numbers write *, for the part of grade k .grade(k)"
         )
     common_algebra(V, X)
     held = V._held()

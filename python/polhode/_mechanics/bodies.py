@@ -33,10 +33,10 @@ class Inertia(LinearMap):
 
     __slots__ = ("_core",)
 
-    def __init__(self, core: _native.Inertia) -> None:
-        if not isinstance(core, _native.Inertia):
+    def __init__(self, *core: _native.Inertia) -> None:
+        if len(core) != 1 or not isinstance(core[0], _native.Inertia):
             raise TypeError("use Inertia.from_principal_moments, from_matrix, from_function or from_points")
-        self._core = core
+        self._core = core[0]
 
     @staticmethod
     def from_principal_moments(i1: float, i2: float, i3: float) -> Inertia:
@@ -149,7 +149,9 @@ class Body:
 
     def __init__(self, mass: float, inertia: Inertia, center_of_mass: Any = 0) -> None:
         if not isinstance(inertia, Inertia):
-            raise TypeError(f"inertia must be an Inertia, got {type(inertia).__name__}")
+            raise TypeError(
+                f"inertia must be an Inertia, got {type(inertia).__name__}; see Inertia.from_matrix"
+            )
         center = as_point(center_of_mass, "the centre of mass")
         self._core = _native.Body(as_float(mass, "the mass"), inertia._core, center)
 
@@ -285,7 +287,9 @@ class Body:
         """Return the body moved rigidly: its points x go to ``R x ~R + position``."""
         turn = Rotor.identity() if rotor is None else rotor
         if not isinstance(turn, Rotor) or turn.shape:
-            raise TypeError(f"rotor must be a single Rotor, got {turn!r}; see Rotor.from_components")
+            raise TypeError(
+                f"rotor must be a single Rotor, got {turn!r}; see Rotor.from_quaternion, from_matrix"
+            )
         return Body._of(self._core.moved(turn._data, as_point(position, "the position")))
 
     def __add__(self, other: Body) -> Body:

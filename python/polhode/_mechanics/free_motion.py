@@ -328,7 +328,9 @@ def _batch(inertia: Any, rotor: Any, omega_body: Any) -> tuple[_native.FreeMotio
     """Return the motions and inertias of arguments that may be batches."""
     inertias = objects_of(inertia, (Inertia,), "inertia must be an Inertia", "; see Body.inertia")
     if not isinstance(rotor, Rotor):
-        raise TypeError(f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_components")
+        raise TypeError(
+            f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_quaternion, from_matrix"
+        )
     turns = as_coefficients(rotor._data, "the rotor", float)
     rates = angular_velocity(omega_body)._data
     shapes = inertias.shape, turns.shape[:-1], rates.shape[:-1]

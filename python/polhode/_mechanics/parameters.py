@@ -79,7 +79,9 @@ def rotors(value: Rotor | None, name: str) -> tuple[float, ...] | Batch:
     if value is None:
         return (1.0, 0.0, 0.0, 0.0)
     if not isinstance(value, Rotor):
-        raise TypeError(f"{name} must be a Rotor, got {type(value).__name__}; see Rotor.from_components")
+        raise TypeError(
+            f"{name} must be a Rotor, got {type(value).__name__}; see Rotor.from_quaternion, from_matrix"
+        )
     return rows(as_coefficients(value._data, name, float), name)
 
 

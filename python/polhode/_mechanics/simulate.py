@@ -297,7 +297,10 @@ def as_torque(torque: Any) -> Torque | None:
     own = getattr(torque, "__module__", None) == function.__module__
     if callable(torque) and not own and not isinstance(torque, Multivector):
         return function(torque)
-    raise TypeError(f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}")
+    raise TypeError(
+        f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}; a constant "
+        "torque is constant_body(N) or constant_space(N)"
+    )
 
 
 def _tolerance(rtol: float | None, atol: float | None) -> float | None:

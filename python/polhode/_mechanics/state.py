@@ -66,7 +66,9 @@ class State:
         omega_space: Multivector | ArrayLike | None = None,
     ) -> None:
         if not isinstance(rotor, Rotor):
-            raise TypeError(f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_components")
+            raise TypeError(
+                f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_quaternion, from_matrix"
+            )
         if (omega_body is None) == (omega_space is None):
             raise TypeError("give either omega_body or omega_space, the angular velocity in rad/s")
         if omega_space is not None:

@@ -22,6 +22,20 @@ if TYPE_CHECKING:
     from polhode._mechanics.problem import Problem
     from polhode._scene.scene import Scene
 
+# What other libraries call the attributes.
+_HABITS = {
+    "t": "time",
+    "times": "time",
+    "y": "rotor and omega_body",
+    "omega": "omega_body and omega_space",
+    "momentum": "momentum_body and momentum_space",
+    "states": "at(t)",
+    "to_pandas": "to_dataframe()",
+    "to_csv": "save(path)",
+    "to_parquet": "save(path)",
+    "to_netcdf": "save(path)",
+}
+
 
 @hands_out_copies("time", "energy")
 @dataclass(frozen=True, eq=False)
@@ -87,7 +101,8 @@ class Trajectory:
         def __getattr__(self, name: str) -> Any:
             drift = self.__dict__.get("_drift")
             if drift is None or name not in ("position", "velocity"):
-                raise AttributeError(f"a Trajectory has no attribute {name!r}")
+                hint = f"; see {_HABITS[name]}" if name in _HABITS else ""
+                raise AttributeError(f"a Trajectory has no attribute {name!r}{hint}")
             return getattr(drift, name)(self.time)
 
     @staticmethod
@@ -173,7 +188,11 @@ class Trajectory:
 
     def __getitem__(self, index: Any) -> Trajectory:
         """Return the motions of some bodies of a batch, by an index of NumPy over the batch's axes."""
-        parts, rows, picked = batch_index(index, self.shape)
+        try:
+            parts, rows, picked = batch_index(index, self.shape)
+        except IndexError as error:
+            remedy = "" if self.shape else "; the state at a time t of one motion is at(t)"
+            raise IndexError(f"{error}{remedy}") from None
         drift = None if self._drift is None else self._drift[parts]
         center: list[Any] = [None, None] if drift else [self.position[rows], self.velocity[rows]]
         return replace(

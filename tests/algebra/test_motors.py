@@ -273,3 +273,24 @@ def test_other_values_have_no_screw():
 def test_motors_of_other_algebras_are_refused():
     with pytest.raises(ValueError, match=r"signature \(3, 0, 1\), got Cl\(4,1\)"):
         RigidTransform().to_motor(ph.algebra(4, 1))
+
+
+@pytest.mark.skipif(not hasattr(ph, "pga"), reason="needs the algebra with the null vector first")
+def test_the_null_vector_may_come_first():
+    P, T = ph.pga(3), transforms((3,), seed=12)
+    M = T.to_motor(P)
+    assert M.algebra is P
+    null, *others = P.basis_vectors
+    a, b, c = others
+    x = np.array([1.0, -2.0, 0.5])
+    at = (a * b * c - x[0] * b * c * null - x[1] * c * a * null - x[2] * a * b * null).grade(3)
+    y = T.apply(x)
+    for k in range(3):
+        p = y[k]
+        moved = (a * b * c - p[0] * b * c * null - p[1] * c * a * null - p[2] * a * b * null).grade(3)
+        assert near(M[k](at), moved, 64, 8)
+    assert np.all(RigidTransform.from_motor(M).is_close(T, rtol=64 * EPS, atol=64 * EPS))
+    for x, y in zip(ph.screw_parameters(M), T.screw_parameters(), strict=True):
+        np.testing.assert_array_equal(np.asarray(x), np.asarray(y))
+    np.testing.assert_array_equal(ph.adjoint_matrix(M), T.adjoint())
+    assert near(M**0.5 * M**0.5, M, 64)

@@ -75,3 +75,38 @@ def test_latex_of_sympy():
     assert sympy.latex(2 * e1 - 0.5 * (e1 ^ e2)) == r"2 e_{1} - 0.5\,e_{1}{\wedge}e_{2}"
     assert sympy.latex([x, e1]) == r"\left[ x, \  e_{1}\right]"
     assert r"\begin{array}" in sympy.latex(ph.stack([e1, e2]))
+
+
+def test_latex_in_containers_of_sympy():
+    A = x**2 * e1 + y / 2 * (e1 ^ e2)
+    alone = sympy.latex(A)
+    assert alone == r"x^{2} e_{1} + \frac{y}{2}\,e_{1}{\wedge}e_{2}"
+    for container in ([x, A], (A, [A, x]), {x: A}, sympy.Tuple(x, A)):
+        text = sympy.latex(container)
+        assert alone in text
+        assert "$" not in text
+    # The settings of the printer hold for the coefficients.
+    assert sympy.latex([A], symbol_names={x: "x_0"}, fold_short_frac=True) == (
+        r"\left[ x_0^{2} e_{1} + y / 2\,e_{1}{\wedge}e_{2}\right]"
+    )
+    assert sympy.latex(A, mode="equation") == rf"\begin{{equation}}{alone}\end{{equation}}"
+    motor = x * ph.algebra(3, 0, 1).basis_vectors[3]
+    assert sympy.latex([motor]) == r"\left[ x e_{4}\right]"
+
+
+def test_rotors_and_batches_of_symbols():
+    R = ph.Rotor.from_plane_angle(e1 ^ e2, t)
+    many = ph.stack([R, R * R])
+    turned = many.subs(t, sympy.pi).simplify()
+    assert isinstance(turned, ph.Rotor)
+    assert np.all(turned == ph.stack([-(e1 ^ e2), ph.scalar(-1)]))
+    rates = many.diff(t)
+    assert type(rates) is ph.Multivector
+    assert rates.shape == (2,)
+    # R' = −½ Ω R with Ω = e1∧e2 for the first, 2 e1∧e2 for the second.
+    expected = ph.stack([-(e1 ^ e2) * R / 2, -(e1 ^ e2) * (R * R)])
+    assert np.all((rates - expected).simplify() == 0)
+    assert (R.diff(t, 2) + R / 4).simplify() == 0
+    assert (many.simplify() * many.reshape(2, 1)).shape == (2, 2)
+    assert r"\cos{\left(t \right)}" in sympy.latex([many.simplify()])
+    assert sympy.latex({x: R}).startswith(r"\left\{ x : \cos")

@@ -43,15 +43,25 @@ def value(name: str, data: Any, blades: Sequence[str], spec: str = "") -> str:
     return f"{name} of shape {batch}:\n[{lines}]"
 
 
-def latex(name: str, data: Any, blades: Sequence[str]) -> str | None:
-    """Return LaTeX for notebooks; None, so that the text is shown, if the values are not known."""
+def latex(
+    name: str, data: Any, blades: Sequence[str], show: Callable[[Any], str] | None = None
+) -> str | None:
+    """Return LaTeX for notebooks; None, so that the text is shown, if the values are not known.
+
+    `show` writes expressions, by default as ``sympy.latex`` does.
+    """
     array = _numbers(data)
-    return None if array is None else _displayed(name, array, 1, lambda row: _sum(row, blades, _LATEX))
+    if array is None:
+        return None
+    notation = _LATEX._replace(coefficient=lambda x: _sign_and_latex(x, show))
+    return _displayed(name, array, 1, lambda row: _sum(row, blades, notation))
 
 
-def bare_latex(name: str, data: Any, blades: Sequence[str]) -> str | None:
+def bare_latex(
+    name: str, data: Any, blades: Sequence[str], show: Callable[[Any], str] | None = None
+) -> str | None:
     """Return LaTeX without dollar signs; None if the values are not known."""
-    text = latex(name, data, blades)
+    text = latex(name, data, blades, show)
     return None if text is None else text.strip("$")
 
 
@@ -170,10 +180,10 @@ _TEXT = _Notation(_sign_and_size, lambda blade: (" ", blade), "…")
 # --- LaTeX
 
 
-def _sign_and_latex(x: Any) -> tuple[bool, str]:
+def _sign_and_latex(x: Any, show: Callable[[Any], str] | None = None) -> tuple[bool, str]:
     """Return the sign and magnitude in LaTeX; a sum is bracketed."""
     if is_symbolic(x):
-        return _symbolic_latex(x)
+        return _symbolic_latex(x, show)
     if isinstance(x, complex | np.complexfloating):
         negative, size = _complex(complex(x), "{}{}{} i", lambda part: _sign_and_latex(part)[1])
         return negative, rf"\left{size[:-1]}\right)" if size.startswith("(") else size
@@ -189,13 +199,14 @@ def _sign_and_latex(x: Any) -> tuple[bool, str]:
     return negative, power if digits == "1" else rf"{digits} {{\times}} {power}"
 
 
-def _symbolic_latex(x: Any) -> tuple[bool, str]:
+def _symbolic_latex(x: Any, show: Callable[[Any], str] | None) -> tuple[bool, str]:
     import sympy
 
+    show = show or sympy.latex
     if x.is_Add or x.is_Piecewise:
-        return False, rf"\left({sympy.latex(x)}\right)"
+        return False, rf"\left({show(x)}\right)"
     negative = x.could_extract_minus_sign()
-    return negative, sympy.latex(-x if negative else x)
+    return negative, show(-x if negative else x)
 
 
 def _signed_latex(x: Any) -> str:

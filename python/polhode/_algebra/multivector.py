@@ -229,12 +229,13 @@ class Multivector(_native.Multivector):
 
         return _format.latex(type(self).__name__, self._data, self.algebra._names(self._mask))
 
-    def _latex(self, *_: Any, **__: Any) -> str:
-        """Return LaTeX without dollar signs, for ``sympy.latex``."""
+    def _latex(self, printer: Any = None, *_: Any, **__: Any) -> str:
+        """Return LaTeX without dollar signs, for ``sympy.latex``: its printer writes the coefficients."""
         from polhode._algebra import format as _format
 
         names = self.algebra._names(self._mask)
-        return _format.bare_latex(type(self).__name__, self._data, names) or rf"\text{{{self!r}}}"
+        show = getattr(printer, "_print", None)
+        return _format.bare_latex(type(self).__name__, self._data, names, show) or rf"\text{{{self!r}}}"
 
     # --- helpers of methods
 

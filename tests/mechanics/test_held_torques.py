@@ -13,7 +13,8 @@ START = ph.State(R0, [0.3, -0.5, 1.0])
 DT = 0.125
 TIMES = DT * np.arange(17)
 ROWS = np.random.default_rng(3).standard_normal((17, 3))
-METHODS = ["rk4", "dop853", "strang", "kahan_li8", "midpoint", "dmv"]
+# The stages of yoshida4 lie beyond both ends of a step.
+METHODS = ["rk4", "dop853", "strang", "yoshida4", "kahan_li8", "midpoint", "dmv"]
 
 
 def held(times=TIMES, rows=ROWS, frame="body"):

@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 import polhode as ph
 from motions import EPS, R0
+from polhode._report.output import is_own
 
 T = ph.torque
 BODY = ph.Inertia.from_matrix([[10, 0.5, 0.2], [0.5, 12, -0.3], [0.2, -0.3, 8]])
@@ -264,3 +265,24 @@ def test_laws_are_values():
     assert wheels() == wheels() != wheels(speeds=0.0)
     assert pickle.loads(pickle.dumps(wheels())) == wheels()
     assert repr(wheels()) == "reaction_wheels(4 wheels, 4 rows of torques)"
+
+
+def test_tables_have_the_speeds(tmp_path):
+    pytest.importorskip("pandas")
+    xr = pytest.importorskip("xarray")
+    motion = ph.simulate(BODY, START, WHEN[:5], wheels())
+    frame = motion.to_dataframe()
+    names = [f"wheel_speed_{k}" for k in range(4)]
+    np.testing.assert_array_equal(frame[names].to_numpy(), motion.wheel_speed)
+    assert frame.attrs["units"]["wheel_speed_3"] == "rad/s"
+    motion.save(tmp_path / "motion.csv")
+    saved = np.genfromtxt(tmp_path / "motion.csv", delimiter=",", names=True)
+    np.testing.assert_array_equal(saved["wheel_speed_2"], motion.wheel_speed[:, 2])
+    motion.save(tmp_path / "motion.nc")
+    with xr.open_dataset(tmp_path / "motion.nc", engine="h5netcdf") as dataset:
+        assert dataset["wheel_speed"].dims == ("time", "wheel")
+        np.testing.assert_array_equal(dataset["wheel_speed"], motion.wheel_speed)
+    assert is_own(tmp_path / "motion.csv")
+    many = ph.simulate(BODY, ph.State(R0, np.stack([SPIN, -SPIN])), WHEN[:5], wheels())
+    np.testing.assert_array_equal(many.to_xarray()["wheel_speed"], many.wheel_speed)
+    np.testing.assert_array_equal(many.to_dataframe()[names].to_numpy(), many.wheel_speed.reshape(-1, 4))

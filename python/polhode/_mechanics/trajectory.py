@@ -158,7 +158,8 @@ class Trajectory:
     def wheel_speed(self) -> Array:
         """Speeds Ω of the reaction wheels relative to the body, (n, k) in rad/s, in the order of the laws.
 
-        Without `polhode.torque.reaction_wheels`, and for a motion read from a file, k is 0.
+        Tables and files have them too. Without `polhode.torque.reaction_wheels`, and for a motion read from
+        a file, k is 0.
         """
         return self._of_wheels(1)
 
@@ -168,12 +169,14 @@ class Trajectory:
         return self._of_wheels(0)
 
     def _of_wheels(self, which: int) -> Array:
+        shape = self.omega_body.shape
+        if not self._wheels:
+            return np.zeros((*shape, 0))
         omegas = np.ascontiguousarray(self.omega_body._data)
-        shape = omegas.shape[:-1]
         times = np.ascontiguousarray(np.broadcast_to(self.time, shape).ravel())
         found = [law.wheels(times, omegas.reshape(-1, 3)) for law in self._wheels]
         parts = [numbers[which].reshape(*shape, -1) for numbers in found if numbers is not None]
-        return np.concatenate([np.zeros((*shape, 0)), *parts], axis=-1)
+        return np.concatenate(parts, axis=-1)
 
     def __len__(self) -> int:
         if not self.shape:

@@ -64,6 +64,12 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
         values = components(trajectory, name)
         flat = values.reshape(count, *values.shape[len(shape) :]) if shape else values
         variables[name] = _quantity(name, ("body", "time") if shape else ("time",), flat)
+    speeds = trajectory.wheel_speed
+    if speeds.shape[-1]:
+        along = ("body", "time", "wheel") if shape else ("time", "wheel")
+        flat = speeds.reshape(count, *speeds.shape[-2:]) if shape else speeds
+        text = "speed of reaction wheels relative to the body"
+        variables["wheel_speed"] = _variable(along, flat, "rad/s", text)
     if isinstance(trajectory.inertia, np.ndarray):
         matrices = np.array([inertia.matrix for inertia in trajectory.inertia.flat]).reshape(count, 3, 3)
         variables["inertia"] = _quantity("inertia", ("body",), matrices)

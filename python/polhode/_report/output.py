@@ -56,7 +56,8 @@ def is_own(path: Path) -> bool:
         case ".parquet":
             return _source_of_parquet(path).startswith("polhode ")
         case ".csv":
-            return head.splitlines()[0].decode(errors="replace") in (table.header(False), table.header(True))
+            line = head.splitlines()[0].decode(errors="replace").partition(",wheel_speed_0")[0]
+            return line in (table.header(False), table.header(True))
         case ".png":
             return head.startswith(b"\x89PNG") and b"tEXtSoftware\0Polhode" in head
         case ".html" | ".htm":

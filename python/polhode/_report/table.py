@@ -36,6 +36,12 @@ def _units() -> dict[str, str]:
 UNITS = _units()
 
 
+def units_of(trajectory: Trajectory) -> dict[str, str]:
+    """Return the unit of each column of a motion; the speeds of reaction wheels follow the others."""
+    wheels = trajectory.wheel_speed.shape[-1]
+    return UNITS | {f"wheel_speed_{k}": "rad/s" for k in range(wheels)}
+
+
 def values_of(trajectory: Trajectory) -> Array:
     """Return the columns of a motion (rows, columns); of a batch body after body, in C order."""
     shape = (*trajectory.shape, len(trajectory.time))
@@ -44,7 +50,8 @@ def values_of(trajectory: Trajectory) -> Array:
         for name, (dims, _, _) in MOTION.items()
         if name != "inertia"
     ]
-    return np.concatenate(parts, axis=-1).reshape(math.prod(shape), len(UNITS))
+    parts.append(trajectory.wheel_speed)
+    return np.concatenate(parts, axis=-1).reshape(math.prod(shape), len(units_of(trajectory)))
 
 
 def to_dataframe(trajectory: Trajectory) -> pandas.DataFrame:
@@ -55,9 +62,10 @@ def to_dataframe(trajectory: Trajectory) -> pandas.DataFrame:
         index = pd.MultiIndex.from_product([bodies, trajectory.time], names=["body", "time"])
     else:
         index = pd.Index(trajectory.time, name="time")
-    frame: pandas.DataFrame = pd.DataFrame(values_of(trajectory), index, list(UNITS))
+    units = units_of(trajectory)
+    frame: pandas.DataFrame = pd.DataFrame(values_of(trajectory), index, list(units))
     attributes = {name: _plain(x) for name, x in attributes_of(trajectory).items()}
-    frame.attrs |= {**attributes, "units": {"time": "s", **UNITS}}
+    frame.attrs |= {**attributes, "units": {"time": "s", **units}}
     return frame
 
 
@@ -67,7 +75,7 @@ def _plain(x: Any) -> Any:
 
 
 def header(many: bool) -> str:
-    """Return the first line of a CSV file, of one body or of a batch."""
+    """Return the first line of a CSV file, of one body or of a batch, without wheels."""
     return ",".join([*(["body"] if many else []), "time", *UNITS])
 
 
@@ -77,7 +85,7 @@ def csv(trajectory: Trajectory) -> bytes:
     times = [repr(t) for t in trajectory.time.tolist()]
     many = bool(trajectory.shape)
     text = io.StringIO()
-    text.write(header(many) + "\n")
+    text.write(",".join([header(many), *list(units_of(trajectory))[len(UNITS) :]]) + "\n")
     for start in range(0, len(values), _BLOCK):
         for k, row in enumerate(values[start : start + _BLOCK].tolist(), start):
             labels = f"{k // n},{times[k % n]}" if many else times[k]

@@ -91,6 +91,8 @@ pub(crate) struct Laws<'t, const W: usize, const F: bool> {
     moments: Three<W, F>,
     wheel: Three<W, F>,
     laws: Vec<Law<'t, W, F>>,
+    /// Of the step, in s.
+    middle: Lanes<W, F>,
 }
 
 /// A law, or the sum of several of one kind, with the parameters of each body.
@@ -300,10 +302,14 @@ fn place(orbit: &Orbit, time: f64) -> [f64; 3] {
 
 impl CachedTable<'_> {
     /// The torques at the places of all bodies, NaN where the table has none.
-    fn at<const W: usize, const F: bool>(&mut self, place: &Place<W, F>) -> Three<W, F> {
+    fn at<const W: usize, const F: bool>(
+        &mut self,
+        place: &Place<W, F>,
+        middle: &Lanes<W, F>,
+    ) -> Three<W, F> {
         let mut torques = [Lanes::ZERO; 3];
         for l in 0..W {
-            let at = [place.time.0[l], place.middle.0[l]];
+            let at = [place.time.0[l], middle.0[l]];
             if at != self.at {
                 self.at = at;
                 self.torque = self.table.within(at[0], at[1]).map_or([f64::NAN; 3], |torque| torque.0);
@@ -328,14 +334,14 @@ impl<'t, const W: usize, const F: bool> Laws<'t, W, F> {
             }
         }
         let (moments, wheel) = (in_lanes(|l| gyrostats[l].moments), in_lanes(|l| gyrostats[l].wheel.0));
-        Laws { gyrostats, moments, wheel, laws }
+        Laws { gyrostats, moments, wheel, laws, middle: Lanes::ZERO }
     }
 
     /// The same without borrowed laws; none if a law borrows a table, formula or function.
     pub fn kept(self) -> Option<Laws<'static, W, F>> {
-        let Laws { gyrostats, moments, wheel, laws } = self;
+        let Laws { gyrostats, moments, wheel, laws, middle } = self;
         let laws = laws.into_iter().map(Law::kept).collect::<Option<_>>()?;
-        Some(Laws { gyrostats, moments, wheel, laws })
+        Some(Laws { gyrostats, moments, wheel, laws, middle })
     }
 }
 
@@ -345,6 +351,7 @@ fn lane_by_lane<const W: usize, const F: bool>(
     gyrostats: &[Gyrostat; W],
     each: &[&Torque; W],
     at: &Place<W, F>,
+    middle: &Lanes<W, F>,
 ) -> Three<W, F> {
     in_lanes(|l| {
         let (body, rotor) = (&gyrostats[l], at.rotor.map(|lanes| lanes.0[l]));
@@ -354,7 +361,7 @@ fn lane_by_lane<const W: usize, const F: bool>(
         }
         let momentum = body.momentum(Bivector(at.omega.map(|lanes| lanes.0[l])));
         let phase = Phase { rotor: Rotor::from_unit_components(rotor), momentum, time: at.time.0[l] };
-        each[l].value_within(body, &phase, at.middle.0[l]).map_or([f64::NAN; 3], |torque| torque.0)
+        each[l].value_within(body, &phase, middle.0[l]).map_or([f64::NAN; 3], |torque| torque.0)
     })
 }
 
@@ -364,6 +371,7 @@ struct Term<'a, 't, const W: usize, const F: bool> {
     moments: &'a Three<W, F>,
     wheel: &'a Three<W, F>,
     at: &'a Place<W, F>,
+    middle: &'a Lanes<W, F>,
 }
 
 impl<const W: usize, const F: bool> Work for Term<'_, '_, W, F> {
@@ -375,7 +383,7 @@ impl<const W: usize, const F: bool> Work for Term<'_, '_, W, F> {
         if FUSED != F {
             return [Lanes::ZERO; 3];
         }
-        let Term { law, moments, wheel, at } = self;
+        let Term { law, moments, wheel, at, middle } = self;
         match law {
             // γ∧c: its axial vector is γ x c.
             Law::Heavy(c) => cross(&vertical(&at.rotor), c),
@@ -400,7 +408,7 @@ impl<const W: usize, const F: bool> Work for Term<'_, '_, W, F> {
                 cross(&momentum, &seen(&at.rotor, b))
             }
             Law::Tabulated(cached) => {
-                let torque = cached.at(at);
+                let torque = cached.at(at, middle);
                 if cached.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
             }
             Law::Formula(formulas) => formulas.torque(at),
@@ -412,13 +420,18 @@ impl<const W: usize, const F: bool> Work for Term<'_, '_, W, F> {
 impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
     const ACTS: bool = true;
 
+    #[inline(always)]
+    fn begin(&mut self, middle: Lanes<W, F>) {
+        self.middle = middle;
+    }
+
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
-        let Laws { gyrostats, moments, wheel, laws } = self;
+        let Laws { gyrostats, moments, wheel, laws, middle } = self;
         let mut sum = [Lanes::ZERO; 3];
         for law in laws {
             let torque = match law {
-                Law::Other(each) => lane_by_lane(gyrostats, each, at),
-                law => fastest(Term { law, moments, wheel, at }),
+                Law::Other(each) => lane_by_lane(gyrostats, each, at, middle),
+                law => fastest(Term { law, moments, wheel, at, middle }),
             };
             add(&mut sum, &torque);
         }

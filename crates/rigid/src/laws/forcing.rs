@@ -19,8 +19,6 @@ pub(crate) struct Place<const W: usize, const F: bool> {
     pub omega: [Lanes<W, F>; 3],
     /// In s.
     pub time: Lanes<W, F>,
-    /// The middle of the step, in s, on whose side of a jump the laws are taken.
-    pub middle: Lanes<W, F>,
 }
 
 /// Torques and accelerations of bodies in lanes.
@@ -30,6 +28,11 @@ pub(crate) trait Forcing<const W: usize, const F: bool> {
 
     /// Whether there may be wheels.
     const WHEELS: bool = true;
+
+    /// Begins a step with this middle, in s: laws that jump in time are taken on its side of the jump. By default laws
+    /// do not jump.
+    #[inline(always)]
+    fn begin(&mut self, _: Lanes<W, F>) {}
 
     /// The torque in principal axes, without damping `−g I(Ω)` and the reaction of a wheel.
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
@@ -54,6 +57,8 @@ pub(crate) struct BodyForcing<'a> {
     translation: Option<&'a Translation>,
     /// Wheels with motors, whose momentum the steps carry.
     wheels: &'a [Torque],
+    /// Of the step.
+    middle: f64,
     failure: Option<SimulateError>,
 }
 
@@ -64,7 +69,7 @@ impl<'a> BodyForcing<'a> {
         torques: &'a [Torque],
         translation: Option<&'a Translation>,
     ) -> BodyForcing<'a> {
-        BodyForcing { body, torques, translation, wheels: &[], failure: None }
+        BodyForcing { body, torques, translation, wheels: &[], middle: f64::NAN, failure: None }
     }
 
     /// The same with wheels, whose momentum the steps carry, instead of their torque on the body.
@@ -95,11 +100,15 @@ impl<'a> BodyForcing<'a> {
 impl Forcing<1, false> for BodyForcing<'_> {
     const ACTS: bool = true;
 
+    fn begin(&mut self, middle: One) {
+        self.middle = middle.0[0];
+    }
+
     fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
         if self.torques.is_empty() || self.failure.is_some() {
             return [One::ZERO; 3];
         }
-        let torque = total_torque(self.torques, self.body, &self.phase(at), at.middle.0[0]);
+        let torque = total_torque(self.torques, self.body, &self.phase(at), self.middle);
         self.noted(torque.map(|torque| torque.0))
     }
 

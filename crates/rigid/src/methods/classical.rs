@@ -91,13 +91,14 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     let (half, whole) = (Lanes::all(0.5 * h), Lanes::all(h));
     let (sixth, third) = (Lanes::all(h / 6.0), Lanes::all(h / 3.0));
     let (begin, middle, end) = (Lanes::all(time), Lanes::all(time + 0.5 * h), Lanes::all(time + h));
-    let k = slope(bodies, forcing, y, begin, middle);
+    forcing.begin(middle);
+    let k = slope(bodies, forcing, y, begin);
     let mut sum = moved(y, &k, sixth);
-    let k = slope(bodies, forcing, &moved(y, &k, half), middle, middle);
+    let k = slope(bodies, forcing, &moved(y, &k, half), middle);
     sum = moved(&sum, &k, third);
-    let k = slope(bodies, forcing, &moved(y, &k, half), middle, middle);
+    let k = slope(bodies, forcing, &moved(y, &k, half), middle);
     sum = moved(&sum, &k, third);
-    let k = slope(bodies, forcing, &moved(y, &k, whole), end, middle);
+    let k = slope(bodies, forcing, &moved(y, &k, whole), end);
     sum = moved(&sum, &k, sixth);
     renormalize(&mut sum);
     *y = sum;
@@ -125,7 +126,6 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     forcing: &mut E,
     y: &State<N, W, F>,
     time: Lanes<W, F>,
-    middle: Lanes<W, F>,
 ) -> State<N, W, F> {
     let minus_half = Lanes::all(-0.5);
     let (r, w) = ([y[0], y[1], y[2], y[3]], [y[4], y[5], y[6]]);
@@ -137,7 +137,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
         slope[4 + k] = bodies.coupling[k] * products[k];
     }
     if E::ACTS {
-        let mut torque = forcing.torque(&Place { rotor: r, omega: w, time, middle });
+        let mut torque = forcing.torque(&Place { rotor: r, omega: w, time });
         if E::WHEELS {
             let h = bodies.wheel;
             torque[0] += h[2].times_from(w[1], h[1] * w[2]);
@@ -151,7 +151,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     }
     if N == 13 {
         let center = [y[7], y[8], y[9], y[10], y[11], y[12]];
-        let acceleration = forcing.acceleration(&Place { rotor: r, omega: w, time, middle }, &center);
+        let acceleration = forcing.acceleration(&Place { rotor: r, omega: w, time }, &center);
         slope[7..10].copy_from_slice(&y[10..]);
         slope[10..].copy_from_slice(&acceleration);
     }

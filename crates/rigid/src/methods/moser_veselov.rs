@@ -24,10 +24,11 @@ use super::midpoint::{cayley, cross, newton, solved};
 use super::momentum::{fixed_momentum, restore_momentum};
 use super::splitting::turns::{Spin, Turns};
 use crate::error::SimulateError;
-use crate::laws::forcing::BodyForcing;
+use crate::laws::forcing::{BodyForcing, Forcing};
 use crate::laws::torque::{Torque, damping_rate};
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::Bivector;
+use polhode_ga::simd::lanes::Lanes;
 
 /// Newton's method converges in four or five iterations, near the longest step in a few times as many.
 const MOST_ITERATIONS: u32 = 40;
@@ -68,8 +69,9 @@ impl MoserVeselov {
             return Ok(());
         }
         let mut acting = BodyForcing::new(&self.body, &self.torques, None);
+        acting.begin(Lanes::all(middle));
         let mut spin = Spin::alone(state, Bivector::default());
-        self.kicks.kick(&mut acting, &mut spin, [state.time, middle], h);
+        self.kicks.kick(&mut acting, &mut spin, state.time, h);
         state.momentum = spin.one_momentum();
         acting.finish()
     }

@@ -111,6 +111,11 @@ impl<E: Forcing<W, F>, const F: bool> Forcing<W, F> for Holding<'_, E, F> {
     const WHEELS: bool = E::ACTS;
 
     #[inline(always)]
+    fn begin(&mut self, middle: Lanes<W, F>) {
+        self.laws.begin(middle);
+    }
+
+    #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> Three<W, F> {
         let mut sum = if self.in_space { seen(&at.rotor, &self.held) } else { self.held };
         if E::ACTS {

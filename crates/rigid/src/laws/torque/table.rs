@@ -87,19 +87,20 @@ impl Table {
         self.within(time, time)
     }
 
-    /// The torque at a time of a step whose middle is given. A step ends at a jump at the latest: there, and a rounding
-    /// beyond, the torque is that of its middle.
+    /// The torque at a time of a step whose middle is given. A step ends at a jump at the latest, and a held torque is
+    /// that of its middle for all stages, which may lie beyond its ends.
     pub(crate) fn within(&self, time: f64, middle: f64) -> Result<Bivector, TorqueError> {
         let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
         // A step to the last time may end a rounding after it.
         let rounding = 4.0 * f64::EPSILON * first.abs().max(last.abs());
+        let time = if self.kind == Kind::Previous { middle } else { time };
         if !(first - rounding..=last + rounding).contains(&time) {
             return Err(TorqueError(format!(
                 "the table of torques spans {first} s to {last} s; add rows for all times of the simulation"
             )));
         }
         if self.kind == Kind::Previous {
-            let row = self.times.partition_point(|t| *t <= middle).max(1) - 1;
+            let row = self.times.partition_point(|t| *t <= time).max(1) - 1;
             return Ok(self.torques[row]);
         }
         let time = time.clamp(first, last);

@@ -55,7 +55,7 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     let nothing = Lanes::all(f64::NAN);
     let mut slopes = [Change([Lanes::ZERO; N]); STAGES];
     let mut widest = Lanes::ZERO;
-    let middle = h.times_plus(Lanes::all(0.5), from.time);
+    forcing.begin(h.times_plus(Lanes::all(0.5), from.time));
     for stage in 0..STAGES {
         let change = Change::combined(ROWS[stage], &slopes, h);
         let turned = change.part(0);
@@ -65,7 +65,7 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
             return (*from, nothing);
         }
         let dt = Lanes::all(NODES[stage]) * h;
-        slopes[stage] = change.slope(bodies, forcing, from, square, (dt, middle));
+        slopes[stage] = change.slope(bodies, forcing, from, square, dt);
     }
     let change = Change::combined(WEIGHTS, &slopes, h);
     let mut to = change.moved(from, h);
@@ -147,7 +147,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         to
     }
 
-    /// σ' and L' at `from` changed by σ, whose square is given, and ΔL, a time dt later; the middle is that of the step.
+    /// σ' and L' at `from` changed by σ, whose square is given, and ΔL.
     #[inline(always)]
     fn slope<E: Forcing<W, F>>(
         &self,
@@ -155,7 +155,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         forcing: &mut E,
         from: &Points<W, F>,
         square: Lanes<W, F>,
-        (dt, middle): (Lanes<W, F>, Lanes<W, F>),
+        dt: Lanes<W, F>,
     ) -> Self {
         let turned = self.part(0);
         let (turn, cotangent) = exponential(&turned, square);
@@ -165,7 +165,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         let momentum = mapped_back(&axes, &at.momentum);
         let wheel = forcing.wheel(&bodies.wheel, &at.time);
         let omega = bodies.omega_beside(&momentum, &wheel);
-        let place = Place { rotor, omega, time: at.time, middle };
+        let place = Place { rotor, omega, time: at.time };
         let omega = mapped(&axes, &omega);
         let first = cross(&turned, &omega);
         let second = cross(&turned, &first);

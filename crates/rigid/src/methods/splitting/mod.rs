@@ -31,7 +31,7 @@ pub(crate) mod turns;
 use super::momentum::fixed_momentum;
 use crate::error::SimulateError;
 use crate::exact::free::FreeMotion;
-use crate::laws::forcing::BodyForcing;
+use crate::laws::forcing::{BodyForcing, Forcing};
 use crate::laws::torque::{Torque, damping_rate};
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::Bivector;
@@ -65,13 +65,14 @@ impl Splitting {
         let mut spin = Spin::alone(state, *lost);
         let (stages, last) = &self.stages;
         if self.exact_drift {
-            let (mut time, middle) = (state.time, state.time + 0.5 * h);
+            let mut time = state.time;
+            acting.begin(One::all(time + 0.5 * h));
             for &(kick, drift) in stages {
-                self.turns.kick(&mut acting, &mut spin, [time, middle], kick * h);
+                self.turns.kick(&mut acting, &mut spin, time, kick * h);
                 self.drift(&mut spin, drift * h);
                 time += drift * h;
             }
-            self.turns.kick(&mut acting, &mut spin, [time, middle], last * h);
+            self.turns.kick(&mut acting, &mut spin, time, last * h);
             self.turns.finish(&mut spin);
         } else {
             self.turns.step((stages, *last), &mut acting, &mut spin, state.time, h);

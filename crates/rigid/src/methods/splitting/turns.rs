@@ -157,6 +157,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         time: f64,
         h: f64,
     ) {
+        forcing.begin(Lanes::all(time + 0.5 * h));
         // A turn about a constant L commutes with the rest of the step.
         if self.fixed.is_some() {
             self.about_momentum(spin, h);
@@ -165,7 +166,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         for k in 0..=stages.len() {
             let (kick, drift) = if k < stages.len() { stages[k] } else { (last, 0.0) };
             if self.fixed.is_none() {
-                self.kick(forcing, spin, [now, time + 0.5 * h], kick * h);
+                self.kick(forcing, spin, now, kick * h);
             }
             if k < stages.len() {
                 if self.fixed.is_none() {
@@ -198,20 +199,12 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         spin.rotor = composed(&turn, &spin.rotor);
     }
 
-    /// Solves `m' = N − g (m − h)` for a time t: `m − h` becomes `(m − h) e^(−gt) + N (1 − e^(−gt))/g`. N is taken at
-    /// this time of a step with this middle.
+    /// Solves `m' = N − g (m − h)` for a time t: `m − h` becomes `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
     #[inline(always)]
-    pub fn kick<E: Forcing<W, F>>(
-        &self,
-        forcing: &mut E,
-        spin: &mut Spin<W, F>,
-        [time, middle]: [f64; 2],
-        h: f64,
-    ) {
+    pub fn kick<E: Forcing<W, F>>(&self, forcing: &mut E, spin: &mut Spin<W, F>, time: f64, h: f64) {
         let m = &mut spin.momentum;
         let omega = self.bodies.omega(m);
-        let [time, middle] = [time, middle].map(Lanes::all);
-        let torque = forcing.torque(&Place { rotor: spin.rotor, omega, time, middle });
+        let torque = forcing.torque(&Place { rotor: spin.rotor, omega, time: Lanes::all(time) });
         let mut impulse = Lanes::all(h);
         if self.damped {
             let lost;

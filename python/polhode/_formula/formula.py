@@ -23,6 +23,7 @@ from polhode._support.arrays import is_float, new, rows
 __all__ = ["Agreement", "Formula", "FormulaError", "evaluate", "formula"]
 
 _G3 = algebra_of(3)
+_LANGUAGES = ("python", "c", "rust", "glsl")
 
 
 class Formula:
@@ -105,6 +106,45 @@ class Formula:
         """Return the steps of the computation for names of these kinds, as for `tree`."""
         program = self._program(kinds)
         return described(self.text, steps_of(program), program.names)
+
+    def code(self, language: str, function: str = "formula", /, **kinds: Any) -> str:
+        """Return the source of a function that computes the formula, for names of these kinds.
+
+        A comment in the source gives the arguments, in the order of `kinds`, and the components of each:
+        scalars are numbers, other values arrays as `Multivector.components`, linear maps matrices by rows. A
+        scalar result is returned; other results are returned as an array, or in C and GLSL written to the
+        last argument. Equal parts are computed once.
+
+        Functions become those of the language, without the special cases of Polhode: division by zero and
+        the root or logarithm of a negative number give NaN or infinity, that of the rotor −1 gives 0.
+        Functions of multivectors are written out where they have a formula in numbers: exp of values whose
+        square is a number, log and sqrt of rotors, inverses in at most five dimensions.
+
+        Parameters
+        ----------
+        language
+            ``"python"`` (NumPy, also for batches), ``"c"`` (C99, double), ``"rust"`` (f64), ``"glsl"`` (GLSL
+            ES 3.00, float), or ``"latex"``: the formula itself, for math mode.
+        function
+            The name of the function.
+        kinds
+            The kinds of the names, as for `tree`. Unused names are not arguments.
+
+        Raises
+        ------
+        ValueError
+            If the language is unknown or the name cannot be that of a function.
+        FormulaError
+            If grades do not fit; for an equation, and for a function without a formula in numbers.
+        """
+        if language == "latex":
+            return self.spelled("latex", **kinds)
+        if language not in _LANGUAGES:
+            known = ", ".join(map(repr, _LANGUAGES))
+            raise ValueError(f"language must be one of {known}, 'latex', got {language!r}")
+        if not isinstance(function, str):
+            raise TypeError(f"the name of the function must be a string, got {type(function).__name__}")
+        return self._core.code(language, function, *kinds_of(self._core.algebra, kinds))
 
     def _program(self, kinds: dict[str, Any]) -> _native.Program:
         algebra, items = kinds_of(self._core.algebra, kinds)

@@ -21,6 +21,7 @@
 //! formula is parsed and compiled in bounded time, memory and stack: see [`MAX_NODES`] and [`MAX_DEPTH`].
 
 mod agreement;
+mod code;
 mod compile;
 mod print;
 mod run;
@@ -28,14 +29,15 @@ pub mod session;
 mod syntax;
 
 pub use agreement::{Agreement, Arithmetic, Magnitude, term_size, tolerance};
+pub use code::{Language, is_function_name};
 pub use compile::define::{define, heading};
 pub use compile::program::{Id, Input, InputKind, Op, Program, Step};
 pub use compile::{compile, types};
 pub use print::Style;
 pub use run::RowError;
+pub use run::general::RowRunner;
 pub use run::side_by_side::Beside;
 pub use run::single::Runner;
-pub use run::general::RowRunner;
 pub use run::steps::Given;
 pub use syntax::names::{Definition, Meaning, Names, Type};
 pub use syntax::number::Number;

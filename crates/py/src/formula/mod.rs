@@ -12,8 +12,8 @@ use crate::support::arrays::bad;
 use crate::support::face::CALL_FORMULA;
 use calls::Calls;
 use polhode_ga::formula::{
-    Kind, Meaning, Names, Node, RowRunner, Runner, Space, Style, Tree, Type, canonical, compile, define,
-    heading, parse, types,
+    Kind, Language, Meaning, Names, Node, RowRunner, Runner, Space, Style, Tree, Type, canonical, compile,
+    define, heading, is_function_name, parse, types,
 };
 use polhode_ga::product::Grades;
 use program::{Place, Program, characters, error};
@@ -92,6 +92,30 @@ impl Formula {
             "ascii" => tree.text(Style::Ascii),
             _ => tree.text(Style::Unicode),
         })
+    }
+
+    /// The source of a function of this name in a language, for values of these kinds.
+    fn code(
+        &self,
+        py: Python<'_>,
+        language: &str,
+        function: &str,
+        algebra: Py<Algebra>,
+        given: Vec<NameKind>,
+    ) -> PyResult<String> {
+        let language = Language::from_name(language).ok_or_else(|| bad("unknown language"))?;
+        if !is_function_name(function) {
+            let message = "must be an ASCII identifier that no language reserves";
+            return Err(bad(format!("the name of the function {message}, got {function:?}")));
+        }
+        let (tree, _) = self.read(py, &algebra, names(&given)?.0)?;
+        let program = self.program(py, algebra.clone_ref(py), given)?;
+        let Program { program, order, .. } = program.get();
+        let mut sorted: Vec<usize> = (0..order.len()).collect();
+        sorted.sort_by_key(|&input| order[input]);
+        let text = tree.text(Style::Ascii);
+        let code = language.code(program, &algebra.get().table, &sorted, (function, &text));
+        code.map_err(|e| error(py, &self.text, &e))
     }
 
     /// The program for values of these kinds, in this algebra.

@@ -169,6 +169,23 @@ fn number(x: &Number) -> String {
     }
 }
 
+/// A name in ASCII letters, digits and single `_`: `Omega_B` for `Ω_B`, `R_prime` for `R'`.
+pub(crate) fn plain_name(name: &str) -> String {
+    let apart = |c| decomposed(c).map_or([Some(c), None], |(letter, mark)| [Some(letter), Some(mark)]);
+    let mut plain = String::new();
+    for c in name.chars().flat_map(apart).flatten() {
+        match (c, command(LETTERS, c), command(ACCENTS, c)) {
+            ('\'', ..) => plain += "_prime",
+            ('∥' | '⊥', Some(word), _) | (_, _, Some(word)) => plain += &format!("_{word}"),
+            (_, Some(word), _) => plain += word.trim_start_matches("var"),
+            _ if c.is_ascii_alphanumeric() => plain.push(c),
+            _ if c.is_ascii() => plain.push('_'),
+            _ => plain += &format!("u{:x}", u32::from(c)),
+        }
+    }
+    plain.split('_').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_")
+}
+
 // --- names: letters, accents, indices, primes and labels
 
 /// The letters of a name before its indices, primes and label.

@@ -5,6 +5,8 @@
 
 mod latex;
 
+pub(crate) use latex::plain_name;
+
 use super::syntax::letters::raised;
 use super::syntax::number::{FRACTIONS, Number};
 use super::syntax::tree::{Kind, Named, Node, Tight, Tree, is_numeric, listed};

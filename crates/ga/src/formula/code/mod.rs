@@ -3,6 +3,7 @@
 //! A program becomes straight-line arithmetic on numbers, the same for all languages (`walk`), which is then written down in
 //! one of them (`languages`).
 
+mod functions;
 mod languages;
 mod scalars;
 #[cfg(test)]

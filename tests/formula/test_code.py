@@ -88,7 +88,7 @@ def compiled_c(folder, text, *options):
     if compiler is None:
         left_out("a C compiler was not found")
     (folder / "code.c").write_text(text)
-    command = [compiler, "-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", *options]
+    command = [compiler, "-std=c99", "-Wall", "-Wextra", "-Werror", *options]
     command += ["-shared", "-fPIC", "-o", str(folder / "code.so"), str(folder / "code.c"), "-lm"]
     done = processes.run(command)
     assert done.returncode == 0, done.stderr
@@ -179,6 +179,10 @@ def test_errors():
     ) as info:
         motor.code("c", B=2, x=1)
     assert info.value.span == (0, 6)
+    full = tuple(range(9))
+    long = ph.formula("M N M N M", algebra=ph.algebra(8))
+    with pytest.raises(ph.FormulaError, match="the code would have more than 200000 terms"):
+        long.code("c", M=full, N=full)
     with pytest.raises(ph.FormulaError, match="an equation has no value"):
         ph.formula("a b = c").code("c", a=1, b=1, c=(0, 2))
     with pytest.raises(ph.FormulaError, match="grade 2"):

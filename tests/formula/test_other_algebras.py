@@ -55,9 +55,12 @@ def test_bits_of_the_operators(algebra, text, shapes):
     shape = np.broadcast_shapes(*(x.shape for name, x in given.items() if name in text))
     expected = FORMULAS[text](**given)
     if 0 in shape:
-        assert ph.evaluate(text, given).shape == shape
-    else:
-        require_equal(ph.evaluate(text, given), expected)
+        assert ph.evaluate(text, given).shape == ph.evaluate(text, **given).shape == shape
+        return
+    # Keywords alone are read by the core.
+    for got in (ph.evaluate(text, given), ph.evaluate(text, **given)):
+        require_equal(got, expected)
+        assert got.algebra is given["A"].algebra
 
 
 @pytest.mark.parametrize("threads", ["1", "3"])
@@ -85,8 +88,18 @@ def test_rows_without_a_value_are_named():
     s = np.ones((2, 60))
     s[1, 33] = 0
     with pytest.raises(ph.FormulaError, match=r"division of a multivector by zero.*1, 33"):
-        ph.evaluate("a/s + a", a=a, s=s)
+        ph.evaluate("a/s + a", a=a, s=ph.Multivector._of(s[..., None], 1, space))
     ph.evaluate("a/s + a", a=a[0], s=s[0])
+
+
+def test_values_of_other_algebras_are_refused_or_ignored():
+    a, b = (random(ph.algebra(*signature), [1], (9,)) for signature in [(3, 0, 1), (4, 1)])
+    with pytest.raises(TypeError, match="values must be of one algebra"):
+        ph.evaluate("a b", a=a, b=b)
+    assert np.all(ph.evaluate("2 a", a=a, b=b) == 2 * a)
+    assert ph.evaluate("2 s", s=1.5, a=a).algebra is ph.algebra(3)
+    with pytest.raises(TypeError, match="values must be of one algebra"):
+        ph.formula("2 a", algebra=ph.algebra(4, 1))(a=a)
 
 
 def test_functions_work_as_before():

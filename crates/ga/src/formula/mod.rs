@@ -29,7 +29,7 @@ pub mod session;
 mod syntax;
 
 pub use agreement::{Agreement, Arithmetic, Magnitude, term_size, tolerance};
-pub use code::{Language, is_free};
+pub use code::{Language, is_function_name};
 pub use compile::define::{define, heading};
 pub use compile::program::{Id, Input, InputKind, Op, Program, Step};
 pub use compile::{compile, types};

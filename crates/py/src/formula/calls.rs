@@ -5,6 +5,7 @@
 
 use super::program::Program;
 use super::{Formula, NameKind};
+use crate::algebra::signature::g3;
 use crate::algebra::value::{Operand, Storage, operand, scalar, wrap};
 use crate::support::face::LINEAR_MAP;
 use polhode_ga::Graded;
@@ -68,7 +69,7 @@ impl Calls {
             kinds.push(argument.named(name.extract()?));
             arguments.push((name.unbind(), argument));
         }
-        let Some(program) = formula.for_floats(named.py(), kinds) else { return Ok(false) };
+        let Some(program) = formula.for_floats(named.py(), g3(named.py())?, kinds) else { return Ok(false) };
         let Program { order, program: steps, .. } = program.get();
         let mut inputs = vec![Given::Determinant(0.0); order.len()];
         for (place, (input, &i)) in steps.inputs.iter().zip(order).enumerate() {

@@ -13,7 +13,7 @@ use crate::support::face::CALL_FORMULA;
 use calls::Calls;
 use polhode_ga::formula::{
     Kind, Language, Meaning, Names, Node, RowRunner, Runner, Space, Style, Tree, Type, canonical, compile,
-    define, heading, is_free, parse, types,
+    define, heading, is_function_name, parse, types,
 };
 use polhode_ga::product::Grades;
 use polhode_ga::table::Signature;
@@ -105,7 +105,7 @@ impl Formula {
         given: Vec<NameKind>,
     ) -> PyResult<String> {
         let language = Language::from_name(language).ok_or_else(|| bad("unknown language"))?;
-        if !is_free(function) {
+        if !is_function_name(function) {
             let message = "must be an ASCII identifier that no language reserves";
             return Err(bad(format!("the name of the function {message}, got {function:?}")));
         }
@@ -162,14 +162,21 @@ impl Formula {
 }
 
 impl Formula {
-    /// The program for values of 3-d space over floats; `None` for an equation, for another algebra, and for an
-    /// error, which the general way reports.
-    pub(crate) fn for_floats(&self, py: Python<'_>, kinds: Vec<NameKind>) -> Option<Py<Program>> {
-        if self.algebra.as_ref().is_some_and(|algebra| !algebra.get().is_g3()) {
+    /// The program for values of an algebra over floats; `None` for an equation, for another algebra than that of the
+    /// formula, for functions outside 3-d space, and for an error, which the general way reports.
+    pub(crate) fn for_floats(
+        &self,
+        py: Python<'_>,
+        algebra: &Py<Algebra>,
+        kinds: Vec<NameKind>,
+    ) -> Option<Py<Program>> {
+        if self.algebra.as_ref().is_some_and(|own| !own.is(algebra)) {
             return None;
         }
-        let program = self.program(py, g3(py).ok()?.clone_ref(py), kinds).ok()?;
-        (!program.get().program.is_equation()).then_some(program)
+        let program = self.program(py, algebra.clone_ref(py), kinds).ok()?;
+        let Program { program: steps, runner, rows, .. } = program.get();
+        let runs = !steps.is_equation() && (runner.is_some() || rows.is_some());
+        runs.then_some(program)
     }
 
     fn algebra_or_g3<'a>(&'a self, py: Python<'a>) -> PyResult<&'a Py<Algebra>> {

@@ -110,8 +110,12 @@ impl Program {
         inputs: Vec<Bound<'py, PyAny>>,
         out: &Bound<'py, PyAny>,
     ) -> PyResult<bool> {
-        if let Some(rows) = &self.rows {
-            return fill_any(py, rows, &inputs, out);
+        if self.rows.is_some() {
+            let mut out: RowsToFill<'_, f64> = out.extract()?;
+            let inputs: Vec<Rows<'_, f64>> =
+                inputs.iter().map(|input| input.extract()).collect::<Result<_, _>>()?;
+            let data: Vec<&[f64]> = inputs.iter().map(numbers).collect::<PyResult<_>>()?;
+            return self.fill_rows_elsewhere(py, &data, numbers_to_fill(&mut out)?);
         }
         if out.cast::<PyArrayDyn<f32>>().is_ok() {
             self.fill::<f32>(py, &inputs, out)?;
@@ -166,6 +170,31 @@ impl Program {
         Ok(())
     }
 
+    /// Fills rows in another algebra than 3-d space, from inputs of one row or of all; false if some row may have no value.
+    pub(crate) fn fill_rows_elsewhere(
+        &self,
+        py: Python<'_>,
+        data: &[&[f64]],
+        out: &mut [f64],
+    ) -> PyResult<bool> {
+        let runner = self.rows.as_ref().ok_or_else(|| bad("the program does not run on arrays"))?;
+        let count = out.len() / runner.size_of_result();
+        let fits = |(x, size): (&&[f64], &usize)| x.len() == *size || x.len() == count * size;
+        let whole = out.len() == count * runner.size_of_result() && data.len() == runner.sizes().len();
+        if !whole || !data.iter().zip(runner.sizes()).all(fits) {
+            return Err(bad("the arrays do not fit the program"));
+        }
+        let threads = threads(count.saturating_mul(runner.weight()) / 16)?;
+        for first in (0..count).step_by(PIECE) {
+            let piece = first..count.min(first + PIECE);
+            if !py.detach(|| runner.run(threads, data, &mut *out, piece)) {
+                return Ok(false);
+            }
+            py.check_signals()?;
+        }
+        Ok(true)
+    }
+
     /// The type of the value; `None` of an equation.
     pub(crate) fn ty(&self) -> Option<Type> {
         let [results] = &self.program.results[..] else { return None };
@@ -192,34 +221,6 @@ impl Program {
         let message = format!("{}{}", place(found.row, batch), found.error);
         error(py, &self.text, &formula::Error { message, span: self.program.steps[found.step].span })
     }
-}
-
-/// Fills rows of a formula of another algebra than 3-d space; false if some row may have no value.
-fn fill_any(
-    py: Python<'_>,
-    runner: &RowRunner,
-    inputs: &[Bound<'_, PyAny>],
-    out: &Bound<'_, PyAny>,
-) -> PyResult<bool> {
-    let mut out: RowsToFill<'_, f64> = out.extract()?;
-    let out = numbers_to_fill(&mut out)?;
-    let inputs: Vec<Rows<'_, f64>> = inputs.iter().map(|input| input.extract()).collect::<Result<_, _>>()?;
-    let data: Vec<&[f64]> = inputs.iter().map(numbers).collect::<PyResult<_>>()?;
-    let count = out.len() / runner.size_of_result();
-    let fits = |(x, size): (&&[f64], &usize)| x.len() == *size || x.len() == count * size;
-    let whole = out.len() == count * runner.size_of_result();
-    if !whole || data.len() != runner.sizes().len() || !data.iter().zip(runner.sizes()).all(fits) {
-        return Err(bad("the arrays do not fit the program"));
-    }
-    let threads = threads(count.saturating_mul(runner.weight()) / 16)?;
-    for first in (0..count).step_by(PIECE) {
-        let piece = first..count.min(first + PIECE);
-        if !py.detach(|| runner.run(threads, &data, &mut *out, piece)) {
-            return Ok(false);
-        }
-        py.check_signals()?;
-    }
-    Ok(true)
 }
 
 /// The name of an operation, and its constant, input or power.

@@ -48,12 +48,12 @@ const RESERVED: &str = "auto break case char const continue default do double el
     and assert class def del elif except finally from global import is lambda None nonlocal not or pass raise with True \
     False inout out attribute buffer centroid coherent discard flat highp invariant layout lowp mediump patch precision \
     sample shared smooth subroutine uniform varying bool uint active asm cast common external filter fixed half input \
-    interface namespace noinline output partition public resource superp template this using \
+    interface namespace noinline output partition public resource superp template this using vec2 vec3 vec4 mat2 mat3 mat4 \
     delete explicit export friend mutable new operator private protected throw typeid typename catch \
     abs atan atan2 cos cosh exp fabs fmax log main max np result sin sinh sqrt tan f64";
 
 /// Whether a function may have this name: an ASCII identifier that no language reserves.
-pub fn is_free(name: &str) -> bool {
+pub fn is_function_name(name: &str) -> bool {
     let letters = name.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_');
     let reserved = RESERVED.split_ascii_whitespace().any(|word| word == name) || name.starts_with("gl_");
     let number = name.strip_prefix('t').filter(|rest| !rest.is_empty());
@@ -106,9 +106,8 @@ impl Language {
 
     /// The source of a function.
     pub(super) fn write(self, function: &Function) -> String {
-        let mut text: String =
-            function.about.iter().map(|line| format!("{} {line}\n", self.comment())).collect();
-        text = text.replace(" \n", "\n");
+        let comment = |line: &String| format!("{} {line}", self.comment()).trim_end().to_owned() + "\n";
+        let mut text: String = function.about.iter().map(comment).collect();
         text += &self.head(function);
         let (before, after) = self.local();
         for (line, number) in function.lines.iter().zip(&function.numbers) {

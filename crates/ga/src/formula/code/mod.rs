@@ -3,13 +3,14 @@
 //! A program becomes straight-line arithmetic on numbers, the same for all languages (`walk`), which is then written down in
 //! one of them (`languages`).
 
+mod functions;
 mod languages;
 mod scalars;
 #[cfg(test)]
 mod tests;
 mod walk;
 
-pub use languages::{Language, is_free};
+pub use languages::{Language, is_function_name};
 
 use super::Error;
 use super::compile::program::{Input, InputKind, Program};
@@ -98,7 +99,7 @@ fn argument(name: &str, kind: InputKind, shared: bool, others: &[Argument]) -> S
         InputKind::Determinant => name += "_determinant",
         _ => {}
     }
-    while !is_free(&name) || others.iter().any(|other| other.name == name) {
+    while !is_function_name(&name) || others.iter().any(|other| other.name == name) {
         name += if name.ends_with('_') { "1" } else { "_" };
     }
     name

@@ -71,7 +71,7 @@ impl Scalar {
 
     /// ±1 times the number.
     pub fn signed(self, sign: i8) -> Scalar {
-        Scalar { negative: self.negative ^ (sign < 0), ..self }
+        Scalar { negative: self.negative ^ (sign < 0 && !self.is_zero()), ..self }
     }
 }
 

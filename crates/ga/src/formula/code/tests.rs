@@ -1,7 +1,7 @@
 //! Shape of the generated code; that it computes the formulas is tested from Python, where it is compiled.
 
 use super::Language;
-use crate::formula::{Meaning, Names, Space, Type, compile, is_free, parse};
+use crate::formula::{Meaning, Names, Space, Type, compile, is_function_name, parse};
 use crate::general::Calculus;
 use crate::product::Grades;
 use crate::table::{Algebra, Signature};
@@ -55,6 +55,7 @@ fn what_has_no_formula_is_named() {
     let message = written(Language::C, "exp(B)", &bivector, space).unwrap_err();
     assert!(message.starts_with("`exp` of grade 2 in Cl(3,0,1) has no formula in numbers"), "{message}");
     assert!(written(Language::C, "exp(2 e12) B", &bivector, space).is_ok());
+    assert!(!written(Language::C, "-⟨B B⟩_4 + B", &bivector, space).unwrap().contains("-0.0"));
     let message = written(Language::C, "B = 2 B", &bivector, space).unwrap_err();
     assert!(message.starts_with("an equation has no value"), "{message}");
 }
@@ -70,6 +71,6 @@ fn names_are_identifiers_of_all_languages() {
         ("é", false),
         ("", false),
     ] {
-        assert_eq!(is_free(name), free, "{name}");
+        assert_eq!(is_function_name(name), free, "{name}");
     }
 }

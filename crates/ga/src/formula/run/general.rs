@@ -61,10 +61,15 @@ struct Builder<'a> {
     nodes: Vec<Node>,
     /// The node of each step.
     places: Vec<usize>,
+    /// The terms of all products.
+    terms: usize,
 }
 
+/// Maximum number of terms of all products, 32 bytes each.
+const MAX_TERMS: usize = 1 << 20;
+
 impl RowRunner {
-    /// Prepares a program; `None` for an equation and if a step is a function.
+    /// Prepares a program; `None` for an equation, if a step is a function, and if products have too many terms.
     pub fn new(program: &Program, algebra: &Algebra) -> Option<RowRunner> {
         let [sides] = &program.results[..] else { return None };
         let &[result] = &sides[..] else { return None };
@@ -73,7 +78,7 @@ impl RowRunner {
             let InputKind::Value(ty) = input.kind else { return None };
             sizes.push(ty.grades.indices(algebra).len());
         }
-        let mut builder = Builder { program, algebra, nodes: Vec::new(), places: Vec::new() };
+        let mut builder = Builder { program, algebra, nodes: Vec::new(), places: Vec::new(), terms: 0 };
         for step in &program.steps {
             let place = builder.step(step)?;
             builder.places.push(place);
@@ -219,6 +224,10 @@ impl Builder<'_> {
             }
             Op::Product(product, a, b) => {
                 let plan = Plan::new(self.algebra, product, self.grades(a), self.grades(b));
+                self.terms += plan.terms.len();
+                if self.terms > MAX_TERMS {
+                    return None;
+                }
                 if matches!(plan.engine, Engine::Terms) {
                     return Some(self.product(plan.part(self.algebra, grades), [a, b]));
                 }

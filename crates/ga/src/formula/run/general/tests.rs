@@ -67,3 +67,20 @@ fn functions_are_left_to_the_caller() {
     assert_eq!(out, [1.0, 2.0, 0.5, 1.0]);
     assert!(!quotient.run(Threads::ONE, &[&[1.0, 2.0], &[1.0, 0.0]], &mut out, 0..2));
 }
+
+#[test]
+fn long_formulas_in_large_algebras_are_left_to_the_caller() {
+    let algebra = Algebra::new(Signature { p: 8, q: 0, r: 0 }).unwrap();
+    let calculus = Calculus::new(&algebra);
+    let space = Space::new(&algebra, &calculus);
+    let mut names = Names::new([]);
+    for name in ["M", "N"] {
+        names.bind(name.to_owned(), Meaning::Value(Type::of(Grades(0b1_1111_1111))));
+    }
+    let runner = |text: &str| {
+        let program = compile(&parse(text, space, &names).unwrap(), space, &names).unwrap();
+        RowRunner::new(&program, &algebra)
+    };
+    assert!(runner("M N").is_some());
+    assert!(runner(&"M N ".repeat(9)).is_none());
+}

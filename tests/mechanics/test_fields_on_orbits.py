@@ -29,6 +29,9 @@ def test_positions_are_those_of_kepler():
     found = ORBIT.position(times).components
     expected = [[place(ORBIT, t) for t in row] for row in times]
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14 * ORBIT.semi_major_axis * 10)
+    circle = T.KeplerOrbit(7e6)
+    assert (circle.position(0.0).components == [7e6, 0, 0]).all()
+    np.testing.assert_allclose(circle.position(300.0).components, place(circle, 300.0), rtol=0, atol=1e-7)
     assert ORBIT.rate == pytest.approx(np.sqrt(ORBIT.mu / ORBIT.semi_major_axis**3), rel=4 * EPS)
     assert ORBIT.period == pytest.approx(2 * np.pi / ORBIT.rate, rel=4 * EPS)
 

@@ -60,23 +60,18 @@ impl Orbit {
     /// long orbit; with `v = 2 sin²(E/2) = 1 − cos E` they are `(1−e) + e v` and `(1−e) − v`, whose `1 − e`
     /// is exact there.
     pub fn place(&self, time: f64) -> (Vector, f64) {
-        let (direction, distance) = self.at(time);
-        (direction, 1.0 / (distance * distance * distance))
-    }
-
-    /// The direction u, and `r/a`.
-    fn at(&self, time: f64) -> (Vector, f64) {
         let (e, mean) = (self.eccentricity, self.mean_anomaly(time));
         if e == 0.0 {
             let (sin, cos) = sin_cos(mean);
             return (Vector([cos, sin, 0.0]), 1.0);
         }
-        let anomaly = eccentric_anomaly(reduced(mean), e);
-        let versine = 2.0 * (0.5 * anomaly).sin() * (0.5 * anomaly).sin();
-        let distance = (1.0 - e) + e * versine;
-        let along = (1.0 - e) - versine;
-        let across = ((1.0 - e) * (1.0 + e)).sqrt() * anomaly.sin();
-        (Vector([along / distance, across / distance, 0.0]), distance)
+        let (direction, distance) = on_ellipse(mean, e);
+        (direction, 1.0 / (distance * distance * distance))
+    }
+
+    /// The direction u, and `r/a`.
+    fn at(&self, time: f64) -> (Vector, f64) {
+        on_ellipse(self.mean_anomaly(time), self.eccentricity)
     }
 
     /// `(a/r)³` at the periapsis.
@@ -88,6 +83,16 @@ impl Orbit {
     fn mean_anomaly(&self, time: f64) -> DoubleDouble {
         DoubleDouble::two_product(self.rate, time) + self.anomaly.into()
     }
+}
+
+/// The direction u, and `r/a`, see [`Orbit::place`].
+fn on_ellipse(mean: DoubleDouble, e: f64) -> (Vector, f64) {
+    let anomaly = eccentric_anomaly(reduced(mean), e);
+    let versine = 2.0 * (0.5 * anomaly).sin() * (0.5 * anomaly).sin();
+    let distance = (1.0 - e) + e * versine;
+    let along = (1.0 - e) - versine;
+    let across = ((1.0 - e) * (1.0 + e)).sqrt() * anomaly.sin();
+    (Vector([along / distance, across / distance, 0.0]), distance)
 }
 
 /// An orbit with its size.

@@ -13,17 +13,17 @@ from polhode._algebra import blade_names as _blade_names
 from polhode._algebra import circular as _circular
 from polhode._algebra import comparison as _comparison
 from polhode._algebra import conjugates as _conjugates
+from polhode._algebra import foreign_names as _foreign_names
 from polhode._algebra import frames as _frames
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
-from polhode._algebra import habits as _habits
 from polhode._algebra import products as _products
 from polhode._algebra import subspaces as _subspaces
 from polhode._algebra import symbols as _symbols
 from polhode._algebra import ufuncs as _ufuncs
 from polhode._algebra import versors as _versors
 from polhode._algebra.coefficients import as_coefficients
-from polhode._algebra.masking import Errors, masked
+from polhode._algebra.masking import masked
 from polhode._algebra.native import joins
 from polhode._algebra.products import coerced, product
 from polhode._support.arrays import Shape, copied
@@ -32,11 +32,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode._algebra.algebra import Algebra
-
-
-# Without a keyword, by the native methods.
-_inverse, _exp = _native.Multivector.inverse, _native.Multivector.exp
-_log, _sqrt = _native.Multivector.log, _native.Multivector.sqrt
 
 
 @joins(_native.Multivector)
@@ -129,7 +124,7 @@ class Multivector(_native.Multivector):
     subs = _symbols.subs
     simplify = _symbols.simplify
 
-    __dir__ = _habits.listed
+    __dir__ = _foreign_names.listed
 
     def __bool__(self) -> bool:
         raise TypeError("a multivector has no truth value; compare it with == or is_close")
@@ -348,29 +343,9 @@ class Multivector(_native.Multivector):
 
     # --- functions; with errors="mask", rows without a value are NaN: see `is_finite`
 
-    def inverse(self, *, errors: Errors = "raise") -> Multivector:
-        """``A⁻¹``, with ``A A⁻¹ = 1``. A ValueError, with the batch index, if A is singular."""
-        return _inverse(self) if errors == "raise" else masked(errors, _inverse, (self, 1))
-
-    def exp(self, *, errors: Errors = "raise") -> Any:
-        """``exp A``; of a bivector of 3-d space it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
-
-        A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
-        """
-        return _exp(self) if errors == "raise" else masked(errors, _exp, (self, 1))
-
-    def log(self, *, errors: Errors = "raise") -> Multivector:
-        """Return a logarithm: ``exp(log A) = A``.
-
-        The logarithm of an even element (scalar and bivector) is even, so ``log(−1) = π e1∧e2``; others have
-        the principal one. A ValueError, with the batch index, where A is singular. In other algebras it
-        exists for positive multiples of rotors and motors.
-        """
-        return _log(self) if errors == "raise" else masked(errors, _log, (self, 1))
-
-    def sqrt(self, *, errors: Errors = "raise") -> Multivector:
-        """Return a square root; of an even element the half-way one, ``√(−1) = e1∧e2``."""
-        return _sqrt(self) if errors == "raise" else masked(errors, _sqrt, (self, 1))
+    def _masked(self, function: str, errors: str) -> Any:
+        """Return ``inverse``, ``exp``, ``log`` or ``sqrt`` with these errors, for the native methods."""
+        return masked(errors, operator.methodcaller(function), (self, 1))
 
     # Called by native methods.
     def _function(self, name: str) -> Multivector:

@@ -12,7 +12,7 @@ from polhode._algebra import parameters as _parameters
 from polhode._algebra import signs as _signs
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, reshaped, taken
 from polhode._algebra.constructors import one_grade
-from polhode._algebra.habits import add_to
+from polhode._algebra.foreign_names import add_to
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
@@ -63,10 +63,6 @@ def _computed(name: str, *operands: Any) -> Any:
         )
     kind = kind_of(*operands)
     return getattr(_generic.rotors, name)(kind, *map(kind.asarray, operands))
-
-
-# Without a keyword, by the native method.
-_rotor_log = _native.Rotor.log
 
 
 @joins(_native.Rotor)
@@ -348,10 +344,6 @@ class Rotor(_native.Rotor, Multivector):
         result = new((*self.shape, 3), data.dtype)
         _native.rotor_log(data, result)
         return Multivector._of(result, _BIVECTOR)
-
-    def log(self, *, errors: Errors = "raise") -> Multivector:
-        """Return the bivector −Bθ/2 of size at most π, for which ``exp(−Bθ/2) = R``; for −1 it is π e1∧e2."""
-        return _rotor_log(self) if errors == "raise" else masked(errors, _rotor_log, (self, 1))
 
     def inverse(self, *, errors: Errors = "raise") -> Rotor:
         """``~R``."""

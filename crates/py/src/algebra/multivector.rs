@@ -190,15 +190,19 @@ impl Multivector {
     }
 
     /// ``A⁻¹``. Raises a ValueError, with the batch index, where A is singular to rounding (``1 + e1``).
-    fn inverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        function(slf, Function::Inverse)
+    ///
+    /// With ``errors="mask"``, here and in exp, log and sqrt, such rows are NaN: see ``is_finite``.
+    #[pyo3(signature = (*, errors="raise"))]
+    fn inverse<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
+        function(slf, Function::Inverse, errors)
     }
 
     /// ``exp A``; of a bivector of 3-d space it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
     ///
     /// A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
-    fn exp<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        function(slf, Function::Exp)
+    #[pyo3(signature = (*, errors="raise"))]
+    fn exp<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
+        function(slf, Function::Exp, errors)
     }
 
     /// Return a logarithm: ``exp(log A) = A``.
@@ -206,13 +210,15 @@ impl Multivector {
     /// The logarithm of an even element (scalar and bivector) is even, so ``log(−1) = π e1∧e2``; others have the
     /// principal one. Raises a ValueError, with the batch index, where A is singular. In other algebras it exists
     /// for positive multiples of rotors and motors.
-    fn log<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        function(slf, Function::Log)
+    #[pyo3(signature = (*, errors="raise"))]
+    fn log<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
+        function(slf, Function::Log, errors)
     }
 
     /// Return a square root; of an even element the half-way one, ``√(−1) = e1∧e2``.
-    fn sqrt<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        function(slf, Function::Sqrt)
+    #[pyo3(signature = (*, errors="raise"))]
+    fn sqrt<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
+        function(slf, Function::Sqrt, errors)
     }
 
     /// ``A B``, the geometric product by name.
@@ -297,7 +303,11 @@ impl Rotor {
     }
 
     /// Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``.
-    fn log<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+    #[pyo3(signature = (*, errors="raise"))]
+    fn log<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
+        if errors != "raise" {
+            return function(slf.as_super(), Function::Log, errors);
+        }
         match slf.as_super().get().single() {
             Some(value) => {
                 let log = Graded::new(&unit_rotor(value).log().0, Grades::BIVECTOR);

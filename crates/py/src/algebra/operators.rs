@@ -99,8 +99,11 @@ pub(crate) fn named<'py>(
 
 /// A function here for single values; by the method `_function` of the Python half for all others. Of a
 /// bivector, `exp` is a Rotor.
-pub(crate) fn function<'py>(value: This<'_, 'py>, f: Function) -> Object<'py> {
+pub(crate) fn function<'py>(value: This<'_, 'py>, f: Function, errors: &str) -> Object<'py> {
     let py = value.py();
+    if errors != "raise" {
+        return value.call_method1(intern!(py, "_masked"), (f.name(), errors));
+    }
     let Some(value) = value.get().single() else {
         return value.call_method1(intern!(py, "_function"), (f.name(),));
     };

@@ -41,7 +41,7 @@ _ROTOR = {
 }
 
 
-class Habit:
+class ForeignName:
     """A name that a class does not have: an AttributeError, also for `hasattr`, that says what to write."""
 
     __slots__ = ("name", "ours", "owner")
@@ -58,11 +58,11 @@ def add_to(multivector: type, rotor: type) -> None:
     for kind, title, names in ((multivector, "Multivector", _MULTIVECTOR), (rotor, "Rotor", _ROTOR)):
         for name, ours in names.items():
             if not hasattr(kind, name):
-                setattr(kind, name, Habit(title, name, ours))
+                setattr(kind, name, ForeignName(title, name, ours))
 
 
 def listed(value: object) -> Iterable[str]:
     """Return the names for ``dir(value)``, without those of other libraries."""
     kinds = type(value).__mro__
     names = {name: member for kind in reversed(kinds) for name, member in vars(kind).items()}
-    return sorted(name for name, member in names.items() if not isinstance(member, Habit))
+    return sorted(name for name, member in names.items() if not isinstance(member, ForeignName))

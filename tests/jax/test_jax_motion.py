@@ -340,6 +340,10 @@ def test_traced_times_need_a_number_of_steps():
     ("torque", "message"),
     [
         (ph.torque.function(lambda t, R, Ω: Ω), "JAX cannot trace a law of polhode.torque.function"),
+        (
+            ph.torque.reaction_wheels([[0, 0, 1]], [0.01], 1e-3),
+            "JAX has no law reaction_wheels; give a function",
+        ),
         (3.0, "torque must be a law of polhode.jax.torque, such as heavy"),
     ],
 )
@@ -349,6 +353,9 @@ def test_invalid_torques_raise(torque, message):
 
 
 def test_formulas_are_checked_at_construction():
+    orbit = ph.torque.KeplerOrbit(7e6)
+    with pytest.raises(TypeError, match="JAX has no law magnetic with orbit; give a function"):
+        ph.jax.torque.magnetic([0, 0, 1], [0, 1, 0], orbit=orbit)
     with pytest.raises(ph.FormulaError, match="a torque must be a bivector"):
         ph.jax.torque.formula("~R e3 R")
     with pytest.raises(ValueError, match="frame is 'moon'"):

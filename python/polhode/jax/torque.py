@@ -69,7 +69,14 @@ def _law(
     def law(*args: P.args, **kwargs: P.kwargs) -> Torque:
         bound = signature.bind(*args, **kwargs)
         bound.apply_defaults()
-        given = zip(entry.arguments, bound.arguments.values(), strict=True)
+        # Arguments that the registry does not have, such as an orbit, select laws that JAX does not have.
+        for name in [*bound.arguments][len(entry.arguments) :]:
+            if bound.arguments[name] is not None:
+                raise TypeError(
+                    f"JAX has no law {constructor.__name__} with {name}; give a function of t, rotor and "
+                    "omega_body in jax.numpy"
+                )
+        given = zip(entry.arguments, bound.arguments.values(), strict=False)
         values = {x.name: _CONVERSIONS[x.shape](value, x.name) for x, value in given}
         if kernel is not None:
             return Torque((kernel(*values.values()),))

@@ -7,7 +7,16 @@ from typing import Any
 
 from polhode._algebra.algebra import Algebra, algebra
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
-from polhode._algebra.euclidean import columns, dimension_of, require, require_value, unit_in, vector_in
+from polhode._algebra.euclidean import (
+    columns,
+    dimension_of,
+    point_and_unit,
+    position_in,
+    require,
+    require_value,
+    unit_in,
+    vector_in,
+)
 from polhode._algebra.functions import as_precise
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.relabel import embedded, relabelled
@@ -111,14 +120,7 @@ class CGA(Algebra):
 
     def line(self, point: Any, through: Any = None, *, direction: Any = None) -> Multivector:
         """Return the line ``P∧d∧einf`` from `point` to `through`, or along `direction`, of norm 1."""
-        if (through is None) == (direction is None):
-            raise TypeError("a line needs a point, and either the point `through` or a `direction`")
-        start = self._position(point, "the point")
-        if direction is None:
-            given, what = self._position(through, "the point through") - start, "the way to the point through"
-        else:
-            given, what = direction, "the direction"
-        along = unit_in(self._space, given, what)
+        start, along = point_and_unit(self, point, through, direction)
         return self.up(start).wedge(self.embed(along)).wedge(as_precise(self.einf, along))
 
     def plane(self, normal: Any, distance: Any = 0.0) -> Multivector:
@@ -135,8 +137,8 @@ class CGA(Algebra):
 
     def point_pair(self, a: Any, b: Any) -> Multivector:
         """Return the pair ``A∧B`` of two points."""
-        return self.up(self._position(a, "the first point")).wedge(
-            self.up(self._position(b, "the second point"))
+        return self.up(position_in(self, a, "the first point")).wedge(
+            self.up(position_in(self, b, "the second point"))
         )
 
     def circle(self, center: Any, normal: Any, radius: Any) -> Multivector:
@@ -155,7 +157,7 @@ class CGA(Algebra):
         return self._round(center, self._space.I, radius)
 
     def _round(self, center: Any, blade: Multivector, radius: Any) -> Multivector:
-        place = self._position(center, "the center")
+        place = position_in(self, center, "the center")
         r = number_like(radius, "the radius", place._data)
         kind = kind_of(r)
         if not kind.exact:
@@ -276,7 +278,7 @@ class CGA(Algebra):
         D = self.scalar(even) + self.scalar(odd) * (self.basis_vectors[-1] * self.basis_vectors[-2])
         if center is None:
             return D
-        shift = self.translator(self._position(center, "the center"))
+        shift = self.translator(position_in(self, center, "the center"))
         return shift * D * ~shift
 
     def motor(self, rotor: Rotor | RigidTransform | None = None, translation: Any = None) -> Multivector:
@@ -298,11 +300,6 @@ class CGA(Algebra):
     def _restricted(self, value: Multivector) -> Multivector:
         """Return the Euclidean part of a value."""
         return relabelled(value, self._space, [*range(self._n), None, None])
-
-    def _position(self, point: Any, what: str) -> Multivector:
-        if isinstance(point, Multivector) and point.algebra is self:
-            return self.down(point)
-        return vector_in(self._space, point, what)
 
 
 def cga(n: int = 3) -> CGA:

@@ -39,6 +39,25 @@ def unit_in(space: Algebra, x: Any, what: str) -> Multivector:
         raise ValueError(f"{what} is not a direction: {error}") from None
 
 
+def position_in(algebra: Any, point: Any, what: str) -> Multivector:
+    """Return the position of a point: one of the plane-based or conformal algebra, a vector or an array."""
+    if isinstance(point, Multivector) and point.algebra == algebra:
+        position: Multivector = algebra.down(point)
+        return position
+    return vector_in(algebra._space, point, what)
+
+
+def point_and_unit(algebra: Any, point: Any, through: Any, direction: Any) -> tuple[Multivector, Multivector]:
+    """Return a point of a line and its unit direction, to the point `through` or along `direction`."""
+    if (through is None) == (direction is None):
+        raise TypeError("a line needs a point, and either the point `through` or a `direction`")
+    start = position_in(algebra, point, "the point")
+    if direction is not None:
+        return start, unit_in(algebra._space, direction, "the direction")
+    way = position_in(algebra, through, "the point through") - start
+    return start, unit_in(algebra._space, way, "the way to the point through")
+
+
 def columns(value: Multivector) -> list[Any]:
     """Return the components of the grades held, one by one."""
     return [value._data[..., k] for k in range(value._data.shape[-1])]

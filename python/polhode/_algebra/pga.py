@@ -7,7 +7,15 @@ from typing import Any
 
 from polhode._algebra.algebra import Algebra, algebra
 from polhode._algebra.coefficients import common, kind_of, number_like
-from polhode._algebra.euclidean import columns, dimension_of, require, require_value, unit_in, vector_in
+from polhode._algebra.euclidean import (
+    columns,
+    dimension_of,
+    point_and_unit,
+    require,
+    require_value,
+    unit_in,
+    vector_in,
+)
 from polhode._algebra.functions import as_precise
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.relabel import embedded, relabelled
@@ -83,14 +91,7 @@ class PGA(Algebra):
         Points are positions, or points of this algebra. ``exp(−θ/2 L)`` of a line turns about it by θ in the
         right-handed sense. A ValueError for two equal points and for a direction of zero.
         """
-        if (through is None) == (direction is None):
-            raise TypeError("a line needs a point, and either the point `through` or a `direction`")
-        start = self._position(point, "the point")
-        if direction is None:
-            given, what = self._position(through, "the point through") - start, "the way to the point through"
-        else:
-            given, what = direction, "the direction"
-        along = unit_in(self._space, given, what)
+        start, along = point_and_unit(self, point, through, direction)
         return self.point(start).vee(self.direction(along))
 
     # --- back
@@ -209,11 +210,6 @@ class PGA(Algebra):
         weight, rows = common(first, rest._data)
         parts = [rows[..., k] for k in range(rows.shape[-1])]
         return self.vector(kind_of(rows).stack([weight[..., 0], *parts]))
-
-    def _position(self, point: Any, what: str) -> Multivector:
-        if isinstance(point, Multivector) and point.algebra is self:
-            return self.down(point)
-        return vector_in(self._space, point, what)
 
 
 def pga(n: int = 3) -> PGA:

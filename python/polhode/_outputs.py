@@ -220,6 +220,7 @@ def run_into(
     store: str | os.PathLike[str],
     resume: bool,
     bodies: tuple[int, int] | None,
+    cluster: str | None,
     progress: Callable[[int, float], object] | None,
     threads: int | None,
 ) -> xarray.Dataset:
@@ -228,7 +229,7 @@ def run_into(
     from polhode._support.extras import optional
 
     reader: Any = optional("xarray", "zarr", "a Zarr store")
-    fill(self, store, resume=resume, bodies=bodies, progress=progress, threads=threads)
+    fill(self, store, resume=resume, bodies=bodies, cluster=cluster, progress=progress, threads=threads)
     dataset: xarray.Dataset = reader.open_zarr(store, chunks=None)
     return dataset
 

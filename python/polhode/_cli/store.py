@@ -60,6 +60,12 @@ def add(run: argparse.ArgumentParser) -> None:
         "disjoint ranges may fill one store at the same time",
     )
     run.add_argument(
+        "--cluster",
+        metavar="local[:N] | ADDRESS | FILE.json",
+        help="compute the blocks of FILE.zarr as tasks of a Dask cluster: N processes of this machine, the "
+        "scheduler at an address, or that of a scheduler file",
+    )
+    run.add_argument(
         "--status",
         metavar="FILE.zarr",
         help="verify a store and print the blocks that are done, missing and corrupt; the exit code is 1 "
@@ -72,7 +78,7 @@ def check_usage(options: argparse.Namespace) -> None:
     if options.scene is None:
         options.parser.error("the following arguments are required: SCENE.toml")
     if not is_store(options.output):
-        for name in ("resume", "bodies"):
+        for name in ("resume", "bodies", "cluster"):
             if getattr(options, name):
                 options.parser.error(f"--{name} needs a store: -o FILE.zarr")
 
@@ -91,6 +97,7 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
             path,
             resume=options.resume,
             bodies=options.bodies,
+            cluster=options.cluster,
             replace=options.force and not options.resume and options.bodies is None,
             progress=report,
             threads=options.threads,

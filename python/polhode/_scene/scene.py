@@ -190,6 +190,7 @@ class Scene:
         store: str | os.PathLike[str],
         resume: bool = ...,
         bodies: tuple[int, int] | None = ...,
+        cluster: str | None = ...,
     ) -> xarray.Dataset: ...
 
     def run(
@@ -200,6 +201,7 @@ class Scene:
         store: str | os.PathLike[str] | None = None,
         resume: bool = False,
         bodies: tuple[int, int] | None = None,
+        cluster: str | None = None,
     ) -> Trajectory | xarray.Dataset:
         """Return the motion at the output times, or those of all bodies of an ensemble, a batch (number,).
 
@@ -220,6 +222,12 @@ class Scene:
         bodies
             ``(first, end)``: compute the blocks that begin in this range only, in a new store or in one that
             others fill too. Processes with disjoint ranges can fill a store at the same time.
+        cluster
+            A Dask cluster that computes the blocks as its tasks, each with `threads` threads, 1 by default:
+            ``"local"`` or ``"local:N"`` starts N processes on this machine (a script then needs
+            ``if __name__ == "__main__"``); else the address of a scheduler or the path of its
+            ``scheduler.json``. All workers need the same version of polhode, and the files of scene and
+            store at the same paths. None for the threads of this process.
 
         Returns
         -------
@@ -232,14 +240,15 @@ class Scene:
             another scene, seed or version of polhode.
         OSError
             If the store exists and `resume` is false, if another process computes the same bodies, or if a
-            block cannot be written, such as to a full disk; complete blocks are kept.
+            block cannot be written, such as to a full disk, or the cluster is lost; complete blocks are kept.
         ImportError
-            Without the libraries of a store: ``pip install 'polhode[zarr]'``.
+            Without the libraries of a store, ``pip install 'polhode[zarr]'``, or of a cluster,
+            ``pip install 'polhode[cluster]'``.
         """
         if store is not None:
-            return self._run_into(store, resume, bodies, progress, threads)
-        if resume or bodies is not None:
-            raise ValueError("resume and bodies need a store")
+            return self._run_into(store, resume, bodies, cluster, progress, threads)
+        if resume or bodies is not None or cluster is not None:
+            raise ValueError("resume, bodies and cluster need a store")
         if self.ensemble is not None:
             return self._drawn(slice(0, self.ensemble.number), progress, threads)
         check_progress(progress)

@@ -5,16 +5,15 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
+from polhode._report.ensemble.block import Report, compute_block
+from polhode._report.ensemble.cluster import ClusterError, check_address, compute_on, connected
 from polhode._report.ensemble.netcdf import bytes_of_file
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._scene.scene import Scene
 from polhode._support import memory
 from polhode._support.files import check_target
-
-Report = Callable[[int, float], object]
 
 
 class InterruptedRunError(KeyboardInterrupt):
@@ -27,6 +26,7 @@ def fill(
     *,
     resume: bool = False,
     bodies: tuple[int, int] | None = None,
+    cluster: str | None = None,
     replace: bool = False,
     progress: Report | None = None,
     threads: int | None = None,
@@ -35,14 +35,22 @@ def fill(
 
     `replace` removes an existing store first.
     """
+    if cluster is not None:
+        check_address(cluster)
     store = _opened(scene, Path(path), resume or bodies is not None, replace, bodies)
     blocks = store.blocks_of(bodies)
     with store.locked(blocks):
         store.mend(scene)
         try:
-            _compute(store, scene, blocks, progress, threads)
+            if cluster is None:
+                _compute(store, scene, blocks, progress, threads)
+            else:
+                with connected(cluster) as client:
+                    compute_on(client, store, scene, blocks, progress, threads)
         except KeyboardInterrupt:
             raise InterruptedRunError(f"interrupted; {_kept(store)}") from None
+        except ClusterError as error:
+            raise ClusterError(f"{error}; {_kept(store)}") from error
         except OSError as error:
             why = error.strerror or error
             raise OSError(f"cannot write {store.path}: {why}; {_kept(store)}") from error
@@ -117,13 +125,6 @@ def _part_of(progress: Report | None, done: int, count: int) -> Report | None:
         return None
     report = progress
     return lambda number, fraction: report(number, (done + fraction) / count)
-
-
-def compute_block(
-    store: EnsembleStore, scene: Scene, index: int, progress: Report | None, threads: int | None
-) -> None:
-    """Compute a block and write it."""
-    store.write(index, scene, scene._drawn(store.rows(index), progress, threads))
 
 
 def _kept(store: EnsembleStore) -> str:

@@ -17,25 +17,10 @@ import pytest
 import polhode as ph
 import processes
 from command_line import POLHODE, SCENE, polhode
+from stores import NUMBER, TEXT, content, status
 
 pytest.importorskip("zarr")
 xr = pytest.importorskip("xarray")
-
-# Four blocks of bodies: 512, 512, 512 and 464. Damping has no closed form with a magnetic torque.
-ENSEMBLE = """
-[ensemble]
-number = 2000
-seed = 5
-attitude = "uniform"
-spin = { direction = "uniform", relative = 0.1 }
-moments = { relative = 0.05 }
-velocity = { normal = [1, "2 m/s", 0] }
-torque.damping = { relative = 0.3 }
-torque.magnetic.field = { uniform = 0.5 }
-"""
-LAWS = "[torque]\ndamping = 0.2\nmagnetic = { dipole = [1, 0, 0], field = [0, 1, 2] }\n"
-TEXT = SCENE.replace("[run]", LAWS + "[run]") + ENSEMBLE
-BLOCKS, NUMBER = 4, 2000
 
 
 @pytest.fixture(scope="module")
@@ -55,22 +40,6 @@ def serial(scene, folder):
     """The content of a store that was filled in one go."""
     scene.run(store=folder / "serial.zarr", threads=1).close()
     return content(folder / "serial.zarr")
-
-
-def content(store):
-    """The bytes of each file of a store, locks and unfinished blocks apart."""
-    files = (path for path in store.rglob("*") if path.is_file())
-    names = {path.relative_to(store).as_posix(): path for path in files}
-    passing = (".polhode/locks/", ".polhode/parts/")
-    return {name: path.read_bytes() for name, path in names.items() if not name.startswith(passing)}
-
-
-def status(store):
-    done = polhode("run", "--status", store, "--json")
-    assert done.returncode in (0, 1), done.stderr
-    result = json.loads(done.stdout)
-    assert done.returncode == (0 if result["complete"] else 1)
-    return result
 
 
 def test_a_store_has_the_layout_of_the_netcdf_file(scene, folder, serial):
@@ -283,7 +252,7 @@ def test_wrong_usage(arguments, message, tmp_path):
 
 
 def test_resume_and_bodies_need_a_store(scene):
-    with pytest.raises(ValueError, match="resume and bodies need a store"):
+    with pytest.raises(ValueError, match="resume, bodies and cluster need a store"):
         scene.run(resume=True)
 
 

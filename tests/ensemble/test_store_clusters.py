@@ -141,7 +141,7 @@ def test_addresses_of_no_cluster(cluster, message, folder, tmp_path):
     assert (tmp_path / "a.zarr").exists() == cluster.startswith("tcp")
 
 
-CHANCES = [pytest.param(seed, marks=pytest.mark.slow) for seed in range(20)]
+CHANCES = [pytest.param(seed, marks=pytest.mark.slow) for seed in range(5)]
 
 
 @pytest.mark.parametrize("seed", CHANCES)

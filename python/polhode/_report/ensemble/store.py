@@ -19,6 +19,8 @@ from polhode._mechanics.simulate import METHODS
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.ensemble.layout import LABELS, EnsembleLayout, Variable, failures, flags
 from polhode._scene.scene import Scene
+from polhode._support.arrays import Array
+from polhode._support.checksums import digests, seal, sealed
 from polhode._support.extras import optional
 from polhode._support.locks import Lock, held, locked
 
@@ -57,6 +59,7 @@ class EnsembleStore:
         self.number, self.block = int(identity["number"]), int(identity["block"])
         self.blocks = -(-self.number // self.block)
         self.drift_bound = float(identity["drift_bound"])
+        self._metadata: dict[str, bytes] = {}
 
     @staticmethod
     def exists(path: Path) -> bool:
@@ -75,7 +78,7 @@ class EnsembleStore:
         if not path.exists():
             raise FileNotFoundError(f"{path}: no such store")
         try:
-            return EnsembleStore(path, _sealed(path / OWN / "run.json"))
+            return EnsembleStore(path, sealed(path / OWN / "run.json"))
         except (OSError, ValueError, KeyError) as error:
             raise StoreError(f"{path} is not a store of an ensemble that polhode wrote: {error}") from None
 
@@ -93,7 +96,7 @@ class EnsembleStore:
                 (part / OWN / name).mkdir(parents=True)
             (part / OWN / _META).write_text(json.dumps(_GROUP | {"attributes": {}}))
             identity = identity_of(scene)
-            _seal(part / OWN / "run.json", identity | {"files": _digests(part, _files(part, own=False))})
+            seal(part / OWN / "run.json", identity | {"files": digests(part, _files(part, own=False))})
             made = EnsembleStore(part, identity)
             made.consolidate()
             try:
@@ -147,8 +150,8 @@ class EnsembleStore:
         if not mark.exists():
             return "missing"
         try:
-            found = _sealed(mark)
-            right = _digests(self.path, found["files"]) == found["files"]
+            found = sealed(mark)
+            right = digests(self.path, found["files"]) == found["files"]
         except (OSError, ValueError, KeyError, TypeError):
             return "corrupt"
         return "done" if right else "corrupt"
@@ -157,27 +160,34 @@ class EnsembleStore:
         """Yield what the marks of blocks say, in order: bodies, failures, methods, drifts."""
         for index in range(self.blocks) if blocks is None else blocks:
             with contextlib.suppress(OSError, ValueError):
-                yield _sealed(self._mark(index))
+                yield sealed(self._mark(index))
 
     def write(self, index: int, scene: Scene, trajectory: Trajectory) -> None:
         """Write a block and mark it done."""
         rows = self.rows(index)
         with self._part() as part:
-            group = zarr().open_group(part, mode="w", zarr_format=3)
             codes = [_METHODS.index(name) - 1 for name in _methods(trajectory)]
             method = Variable("method", (), np.array(codes, np.int8), "1", "method", flags(_METHODS, -1))
             for variable in (method, *EnsembleLayout(scene).of_bodies(rows, trajectory)):
-                extra = flags(["complete", "failed"]) if variable.name == "failed" else {}
-                shape = (self.number, *variable.values.shape[1:])
-                chunks = (self.block, *variable.values.shape[1:])
-                dims = ("body", *variable.dims)
-                array = _array(group, variable, shape, chunks, dims, extra)
-                array[rows] = variable.values
+                (part / variable.name).mkdir()
+                (part / variable.name / _META).write_bytes(self._metadata_of(variable))
+                _write_chunk(part / variable.name, index, self.block, variable.values)
             files = _files(part)
-            digests = _digests(part, files)
+            found = digests(part, files)
             self._publish(part, files)
-            self._publish_mark(part, index, {"files": digests, **_outcome(rows, trajectory)})
+            self._publish_mark(part, index, {"files": found, **_outcome(rows, trajectory)})
         self.consolidate()
+
+    def _metadata_of(self, variable: Variable) -> bytes:
+        """Return the metadata of the array of a variable, as the library writes it."""
+        if variable.name not in self._metadata:
+            extra = flags(["complete", "failed"]) if variable.name == "failed" else {}
+            sizes, dims = variable.values.shape[1:], ("body", *variable.dims)
+            with self._part() as part:
+                group = zarr().open_group(part, mode="w", zarr_format=3)
+                _array(group, variable, (self.number, *sizes), (self.block, *sizes), dims, extra)
+                self._metadata[variable.name] = (part / variable.name / _META).read_bytes()
+        return self._metadata[variable.name]
 
     def finish(self) -> bool:
         """Write the failures and the number of complete bodies if all blocks are done; return whether so."""
@@ -200,7 +210,7 @@ class EnsembleStore:
     def shares(self) -> bool:
         """Whether the variables that all bodies share have their checksums."""
         files = self.identity["files"]
-        return bool(_digests(self.path, files) == files)
+        return bool(digests(self.path, files) == files)
 
     def mend(self, scene: Scene) -> None:
         """Write variables that all bodies share again if their files are corrupt."""
@@ -233,7 +243,7 @@ class EnsembleStore:
         return self.path / OWN / "blocks" / f"{index:0{len(str(self.blocks - 1))}d}.json"
 
     def _publish_mark(self, part: Path, index: int, content: dict[str, Any]) -> None:
-        _seal(part / "mark.json", content)
+        seal(part / "mark.json", content)
         os.replace(part / "mark.json", self._mark(index))
 
     @contextlib.contextmanager
@@ -296,7 +306,7 @@ def _array(
     dims: tuple[str, ...],
     extra: dict[str, Any] | None = None,
 ) -> Any:
-    """Return a new array; unwritten numbers are NaN, or -1."""
+    """Return a new array."""
     dtype = np.asarray(variable.values).dtype
     attributes = variable.labels | (extra or {})
     return group.create_array(
@@ -305,17 +315,37 @@ def _array(
         chunks=chunks,
         dtype=dtype,
         dimension_names=dims,
-        fill_value=np.nan if dtype.kind == "f" else -1,
+        fill_value=_fill(dtype),
+        compressors=None,  # the last digits do not compress, and bytes must not depend on a library's version
         attributes={name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in attributes.items()},
-        config={"write_empty_chunks": True},  # so that every chunk has a checksum
     )
+
+
+def _write_chunk(array: Path, index: int, block: int, values: Array) -> None:
+    """Write the chunk of a block: its numbers in C order, little-endian, the last chunk filled up."""
+    missing = (block - len(values), *values.shape[1:])
+    whole = np.concatenate([values, np.full(missing, _fill(values.dtype), values.dtype)])
+    path = array.joinpath("c", str(index), *["0"] * (values.ndim - 1))
+    path.parent.mkdir(parents=True)
+    path.write_bytes(whole.astype(whole.dtype.newbyteorder("<"), order="C", copy=False).tobytes())
+
+
+def _fill(dtype: np.dtype[Any]) -> float | int:
+    """Return the value of numbers that are not written: NaN, or -1."""
+    return np.nan if dtype.kind == "f" else -1
 
 
 def _labels(group: Any, name: str, texts: list[str], dim: str, attributes: dict[str, Any]) -> None:
     """Write an array of texts."""
     count = (len(texts),)
     array = group.create_array(
-        name, shape=count, chunks=count, dtype=str, dimension_names=(dim,), attributes=attributes
+        name,
+        shape=count,
+        chunks=count,
+        dtype=str,
+        compressors=None,
+        dimension_names=(dim,),
+        attributes=attributes,
     )
     array[:] = np.array(texts, dtype=object)
 
@@ -344,39 +374,8 @@ def _outcome(rows: slice, trajectory: Trajectory) -> dict[str, Any]:
     }
 
 
-# --- files and checksums
-
-
 def _files(folder: Path, own: bool = True) -> list[str]:
     """Return the files of the arrays in a folder, relative to it."""
     files = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.parent != folder)
     names = [path.relative_to(folder).as_posix() for path in files]
     return [name for name in names if own or not name.startswith(f"{OWN}/")]
-
-
-def _digests(folder: Path, files: Any) -> dict[str, str]:
-    """Return the checksum of each file; of a missing one "missing"."""
-    return {name: _digest(folder / name) for name in files}
-
-
-def _digest(path: Path) -> str:
-    try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()
-    except FileNotFoundError:
-        return "missing"
-
-
-def _seal(path: Path, content: dict[str, Any]) -> None:
-    """Write a JSON file with the checksum of its content."""
-    text = json.dumps(content)
-    seal = hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
-    path.write_text(f"{text}\n{seal}\n", encoding="utf-8")
-
-
-def _sealed(path: Path) -> dict[str, Any]:
-    """Return the content of such a file; a ValueError if it is damaged."""
-    text, _, seal = path.read_text(encoding="utf-8").partition("\n")
-    if hashlib.blake2b(text.encode(), digest_size=16).hexdigest() != seal.strip():
-        raise ValueError(f"{path} is damaged")
-    return dict(json.loads(text))

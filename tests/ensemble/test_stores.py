@@ -72,7 +72,7 @@ def test_run_returns_the_motions_of_all_bodies(scene, folder):
 
 
 def test_ranges_filled_by_processes_at_once_are_the_serial_store(folder, serial):
-    """As the tasks of a Slurm array; none of the bounds is one of a block."""
+    """As the tasks of a Slurm array; the bounds lie inside blocks."""
     store, bounds = folder / "ranges.zarr", [0, 700, 1300, NUMBER]
     pieces = list(itertools.pairwise(bounds))[::-1]
     tasks = [
@@ -321,18 +321,20 @@ os.execv(sys.argv[2], sys.argv[2:])
 """
 
 
-def test_a_full_disk_keeps_the_complete_blocks(folder, serial, tmp_path):
+# The largest chunk, attitudes, has 180 kB; a lock has more than 50 bytes.
+@pytest.mark.parametrize("size", ["100000", "50"])
+def test_a_full_disk_keeps_the_complete_blocks(size, folder, serial, tmp_path):
     store = tmp_path / "a.zarr"
     assert polhode("run", folder / "a.toml", "-o", store, "--bodies", "0:1000").returncode == 0
     before = content(store)
-    # The largest chunk, attitudes, has 180 kB.
-    through = [sys.executable, "-c", LIMITED, "100000"]
+    through = [sys.executable, "-c", LIMITED, size]
     done = polhode("run", folder / "a.toml", "-o", store, "--resume", through=through)
     assert done.returncode == 1
     assert f"polhode: error: cannot write {store}: File too large" in done.stderr
     assert "a.zarr has 1024 of 2000 bodies; continue with resume (--resume)" in done.stderr
     assert content(store) == before
     assert not list((store / ".polhode" / "parts").iterdir())
+    assert not list((store / ".polhode" / "locks").iterdir())
     assert polhode("run", folder / "a.toml", "-o", store, "--resume").returncode == 0
     assert content(store) == serial
 

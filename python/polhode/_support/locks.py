@@ -70,8 +70,12 @@ def locked(folder: Path, first: int, end: int, what: str) -> Iterator[None]:
     """
     folder.mkdir(parents=True, exist_ok=True)
     handle, part = tempfile.mkstemp(prefix=f"{first}-{end}.", dir=folder)
-    with open(handle, "w") as file:
-        json.dump(asdict(Lock.own(first, end)), file)
+    try:
+        with open(handle, "w") as file:
+            json.dump(asdict(Lock.own(first, end)), file)
+    except OSError:
+        os.unlink(part)
+        raise
     own = folder / f"{Path(part).name}.lock"
     os.rename(part, own)
     try:

@@ -14,6 +14,7 @@ from polhode._report.ensemble.store import EnsembleStore
 from polhode._scene.scene import Scene
 from polhode._support import memory
 from polhode._support.files import check_target
+from polhode._support.locks import LockedError
 
 
 class InterruptedRunError(KeyboardInterrupt):
@@ -39,22 +40,24 @@ def fill(
         check_address(cluster)
     store = _opened(scene, Path(path), resume or bodies is not None, replace, bodies)
     blocks = store.blocks_of(bodies)
-    with store.locked(blocks):
-        store.mend(scene)
-        try:
+    try:
+        with store.locked(blocks):
+            store.mend(scene)
             if cluster is None:
                 _compute(store, scene, blocks, progress, threads)
             else:
                 with connected(cluster) as client:
                     compute_on(client, store, scene, blocks, progress, threads)
-        except KeyboardInterrupt:
-            raise InterruptedRunError(f"interrupted; {_kept(store)}") from None
-        except ClusterError as error:
-            raise ClusterError(f"{error}; {_kept(store)}") from error
-        except OSError as error:
-            why = error.strerror or error
-            raise OSError(f"cannot write {store.path}: {why}; {_kept(store)}") from error
-        store.finish()
+            store.finish()
+    except KeyboardInterrupt:
+        raise InterruptedRunError(f"interrupted; {_kept(store)}") from None
+    except LockedError:
+        raise
+    except ClusterError as error:
+        raise ClusterError(f"{error}; {_kept(store)}") from error
+    except OSError as error:
+        why = error.strerror or error
+        raise OSError(f"cannot write {store.path}: {why}; {_kept(store)}") from error
     return store
 
 

@@ -215,10 +215,30 @@ def view_of(self: Any, duration: float | None = None) -> Viewer:
     return view(self, duration=duration)
 
 
+def run_into(
+    self: Any,
+    store: str | os.PathLike[str],
+    resume: bool,
+    bodies: tuple[int, int] | None,
+    cluster: str | None,
+    progress: Callable[[int, float], object] | None,
+    threads: int | None,
+) -> xarray.Dataset:
+    """Fill a Zarr store, as `Scene.run` does, and return its dataset."""
+    from polhode._report.ensemble.fill import fill
+    from polhode._support.extras import optional
+
+    reader: Any = optional("xarray", "zarr", "a Zarr store")
+    fill(self, store, resume=resume, bodies=bodies, cluster=cluster, progress=progress, threads=threads)
+    dataset: xarray.Dataset = reader.open_zarr(store, chunks=None)
+    return dataset
+
+
 for _method in (to_xarray, to_dataframe, save, plot, film, _repr_html_):
     setattr(Trajectory, _method.__name__, _method)
 setattr(Trajectory, "read", staticmethod(read))  # noqa: B010, declared for type checkers only
 for _kind in (Trajectory, Scene, FreeMotion, ClosedForm):
     setattr(_kind, "view", view_of)  # noqa: B010
+setattr(Scene, "_run_into", run_into)  # noqa: B010
 for _public in (Trajectory, Scene, FreeMotion, SymmetricTop, DampedTop, LagrangeTop, LarmorSphere):
     _public.__module__ = "polhode"  # unpickling imports the class from there, with these methods

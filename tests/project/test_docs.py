@@ -42,6 +42,7 @@ PAGES = [
     "formulas",
     "motion",
     "jax",
+    "scenes",
     pytest.param("viewer", marks=needs_bundle),
 ]
 # The pages of a day each use several extras.

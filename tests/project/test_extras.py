@@ -38,6 +38,24 @@ def test_the_extra_is_named(module, extra, use, trajectory, tmp_path, monkeypatc
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("module", ["xarray", "zarr"])
+def test_the_extra_of_stores_is_named(module, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, module, None)
+    scene = ph.Scene.read(EXAMPLE.with_name("toutatis-uncertain.toml"))
+    with pytest.raises(ImportError, match=rf"a Zarr store needs {module}: pip install 'polhode\[zarr\]'"):
+        scene.run(store=tmp_path / "a.zarr")
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_extra_of_clusters_is_named(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    scene = ph.Scene.read(EXAMPLE.with_name("toutatis-uncertain.toml"))
+    expected = r"a run on a cluster needs distributed: pip install 'polhode\[cluster\]'"
+    with pytest.raises(ImportError, match=expected):
+        scene.run(store=tmp_path / "a.zarr", cluster="local")
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("module", ["xarray", "h5netcdf", "matplotlib"])
 def test_the_command_names_the_extra_before_the_run(module, tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, module, None)

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli import check, common
+from polhode._cli import check, common, store
 from polhode._cli.common import add_amount, add_command, file_name, progress, read_scene, whole_number
 from polhode._native import SceneError, __version__
 from polhode._support.files import UnreadableError
@@ -106,14 +106,15 @@ def _parser() -> argparse.ArgumentParser:
 
 def _add_scenes(commands: Any) -> None:
     run = add_command(commands, "run", _run, help="run a scene: summary, data, figures")
-    run.add_argument("scene", metavar="SCENE.toml", help="the scene file; - is standard input")
+    run.add_argument("scene", metavar="SCENE.toml", nargs="?", help="the scene file; - is standard input")
     run.add_argument(
         "-o",
         "--output",
         metavar="FILE",
-        type=file_name("a motion"),
+        type=store.output_name,
         help="write the motion to FILE.nc (netCDF), FILE.csv or FILE.parquet, all motions of an ensemble to "
-        "FILE.nc, and figures next to it (FILE-motion.png …)",
+        "FILE.nc, and figures next to it (FILE-motion.png …); or those of an ensemble of any size to the "
+        "store FILE.zarr, which can be resumed",
     )
     run.add_argument(
         "--html",
@@ -132,6 +133,7 @@ def _add_scenes(commands: Any) -> None:
         type=whole_number("number of threads", 1, float("inf")),
         help="number of threads for ensembles, default all cores; results do not depend on it",
     )
+    store.add(run)
 
     check.add(commands)
 
@@ -220,7 +222,12 @@ def _repl(_: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    if options.status is not None:
+        return store.status(options)
+    store.check_usage(options)
     scene = read_scene(options.scene)
+    if store.is_store(options.output):
+        return store.run(scene, options)
     targets = _checked_targets(options, scene)
     pages = [] if options.html is None else [Path(options.html)]
     if pages:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -24,6 +24,8 @@ from polhode.force import Force
 from polhode.torque import Torque
 
 if TYPE_CHECKING:
+    import xarray
+
     from polhode import _outputs
 
 DRIFT_BOUND = 1e-8
@@ -170,13 +172,83 @@ class Scene:
         """The kind of motion, by the torques: free, heavy, gyrostat, damped, satellite or torqued."""
         return self._core.kind
 
+    @overload
     def run(
-        self, progress: Callable[[int, float], object] | None = None, threads: int | None = None
-    ) -> Trajectory:
+        self,
+        progress: Callable[[int, float], object] | None = ...,
+        threads: int | None = ...,
+        *,
+        store: None = ...,
+    ) -> Trajectory: ...
+
+    @overload
+    def run(
+        self,
+        progress: Callable[[int, float], object] | None = ...,
+        threads: int | None = ...,
+        *,
+        store: str | os.PathLike[str],
+        resume: bool = ...,
+        bodies: tuple[int, int] | None = ...,
+        cluster: str | None = ...,
+    ) -> xarray.Dataset: ...
+
+    def run(
+        self,
+        progress: Callable[[int, float], object] | None = None,
+        threads: int | None = None,
+        *,
+        store: str | os.PathLike[str] | None = None,
+        resume: bool = False,
+        bodies: tuple[int, int] | None = None,
+        cluster: str | None = None,
+    ) -> Trajectory | xarray.Dataset:
         """Return the motion at the output times, or those of all bodies of an ensemble, a batch (number,).
 
-        Errors, `progress` and `threads` as for `polhode.simulate`.
+        With `store` the motions of an ensemble are written to a Zarr store in blocks of `block` bodies, so
+        that they need not fit into memory. A block is checksummed and marked done when it is complete: an
+        interrupted run keeps all complete blocks. The bytes of the store do not depend on threads,
+        interruptions and the order of the blocks.
+
+        Parameters
+        ----------
+        progress, threads
+            As for `polhode.simulate`.
+        store
+            Path of the store, by convention ``*.zarr``.
+        resume
+            Continue a store: skip the blocks whose checksums are right, and compute missing and corrupt
+            ones. Without a store, begin one.
+        bodies
+            ``(first, end)``: compute the blocks that begin in this range only, in a new store or in one that
+            others fill too. Processes with disjoint ranges can fill a store at the same time.
+        cluster
+            A Dask cluster that computes the blocks as its tasks, each with `threads` threads, 1 by default:
+            ``"local"`` or ``"local:N"`` starts N processes on this machine (a script then needs
+            ``if __name__ == "__main__"``); else the address of a scheduler or the path of its
+            ``scheduler.json``. All workers need the same version of polhode, and the files of scene and
+            store at the same paths. None for the threads of this process.
+
+        Returns
+        -------
+        Trajectory, or with `store` an `xarray.Dataset` that reads the store when its values are used.
+
+        Raises
+        ------
+        ValueError
+            As for `polhode.simulate`; for a store without an ensemble, with bodies out of range, or with
+            another scene, seed or version of polhode.
+        OSError
+            If the store exists and `resume` is false, if another process computes the same bodies, or if a
+            block cannot be written, such as to a full disk, or the cluster is lost; complete blocks are kept.
+        ImportError
+            Without the libraries of a store, ``pip install 'polhode[zarr]'``, or of a cluster,
+            ``pip install 'polhode[cluster]'``.
         """
+        if store is not None:
+            return self._run_into(store, resume, bodies, cluster, progress, threads)
+        if resume or bodies is not None or cluster is not None:
+            raise ValueError("resume, bodies and cluster need a store")
         if self.ensemble is not None:
             return self._drawn(slice(0, self.ensemble.number), progress, threads)
         check_progress(progress)
@@ -192,6 +264,7 @@ class Scene:
 
     if TYPE_CHECKING:
         view = _outputs.view_of
+        _run_into = _outputs.run_into
 
     def run_blocks(
         self,

@@ -1,0 +1,189 @@
+"""Stores filled by Dask clusters of processes, which are killed."""
+
+import contextlib
+import random
+import signal
+import sys
+import time
+
+import pytest
+
+import polhode as ph
+import processes
+from command_line import POLHODE, polhode
+from stores import TEXT, content, status
+
+pytest.importorskip("zarr")
+pytest.importorskip("xarray")
+pytest.importorskip("distributed")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("clusters")
+    (path / "a.toml").write_text(TEXT)
+    return path
+
+
+@pytest.fixture(scope="module")
+def serial(folder):
+    ph.Scene.read(folder / "a.toml").run(store=folder / "serial.zarr", threads=1).close()
+    return content(folder / "serial.zarr")
+
+
+# A worker that takes its time for each block, and reports it; the second argument is its version of polhode.
+WORKER = """
+import sys, time
+from polhode import _native
+from polhode._report.ensemble import cluster
+from distributed.cli.dask_worker import main
+_native.__version__ = sys.argv[1] or _native.__version__
+compute = cluster.compute_block
+def slow(*arguments):
+    print("block", flush=True)
+    time.sleep(0.2)
+    compute(*arguments)
+cluster.compute_block = slow
+main(sys.argv[2:])
+"""
+
+
+@contextlib.contextmanager
+def scheduler(folder):
+    """A scheduler, and the path of its file."""
+    file = folder / "scheduler.json"
+    module = ["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
+    command = [sys.executable, *module, "--scheduler-file", file]
+    with processes.start(command, stdout=processes.DEVNULL, stderr=processes.DEVNULL) as process:
+        until(file.exists)
+        yield process, file
+
+
+def worker(folder, file, version=""):
+    """A worker with one thread, without a nanny that starts it again."""
+    options = ["--scheduler-file", file, "--nthreads", "1", "--no-nanny", "--no-dashboard"]
+    command = [sys.executable, "-c", WORKER, version, *options, "--local-directory", folder / "dask"]
+    return processes.start(command, stderr=processes.DEVNULL)
+
+
+def run(folder, store, cluster):
+    """The command that fills a store."""
+    scene = folder / "a.toml"
+    return processes.start([POLHODE, "run", scene, "-o", store, "--resume", "--cluster", cluster])
+
+
+def until(happens, seconds=60.0):
+    end = time.monotonic() + seconds
+    while not happens():
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.02)
+
+
+def resumed(folder, store):
+    """Resume a store without a cluster, and return its content."""
+    done = polhode("run", folder / "a.toml", "-o", store, "--resume")
+    assert done.returncode == 0, done.stderr
+    return content(store)
+
+
+def test_local_processes_fill_a_store_with_the_same_bits(folder, serial, tmp_path):
+    done = polhode("run", folder / "a.toml", "-o", tmp_path / "a.zarr", "--cluster", "local:2")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert content(tmp_path / "a.zarr") == serial
+    assert status(tmp_path / "a.zarr")["running"] == []
+
+
+def test_the_blocks_of_a_killed_worker_are_computed_by_others(folder, serial, tmp_path):
+    store = tmp_path / "a.zarr"
+    with (
+        scheduler(tmp_path) as (_, file),
+        worker(tmp_path, file) as first,
+        worker(tmp_path, file),
+        run(folder, store, file) as client,
+    ):
+        assert first.stdout.readline() == "block\n"
+        first.kill()
+        output, errors = client.communicate(timeout=120)
+    assert client.returncode == 0, errors
+    assert "2000 of 2000 bodies" in output
+    assert content(store) == serial
+
+
+def test_a_worker_of_another_version_is_refused(folder, serial, tmp_path):
+    store = tmp_path / "a.zarr"
+    with (
+        scheduler(tmp_path) as (_, file),
+        worker(tmp_path, file, "9.9.9"),
+        run(folder, store, file) as client,
+    ):
+        _, errors = client.communicate(timeout=120)
+    assert client.returncode == 1
+    assert "polhode: error: worker tcp://127.0.0.1:" in errors
+    assert "was begun with another version of polhode: " in errors
+    assert ", here 9.9.9; continue it as it was begun" in errors
+    assert status(store)["missing"] == 4
+    assert resumed(folder, store) == serial
+
+
+@pytest.mark.parametrize(
+    ("cluster", "message"),
+    [
+        ("local:0", "got 'local:0'"),
+        ("local:many", "got 'local:many'"),
+        ("nowhere.json", "no cluster at nowhere.json: no such file"),
+        ("tcp:/nonsense", "no cluster at tcp:/nonsense: "),
+    ],
+)
+def test_addresses_of_no_cluster(cluster, message, folder, tmp_path):
+    done = polhode("run", folder / "a.toml", "-o", tmp_path / "a.zarr", "--cluster", cluster)
+    assert done.returncode == 1
+    assert message in done.stderr
+    assert (tmp_path / "a.zarr").exists() == cluster.startswith("tcp")
+
+
+CHANCES = [pytest.param(seed, marks=pytest.mark.slow) for seed in range(5)]
+
+
+@pytest.mark.parametrize("seed", CHANCES)
+@pytest.mark.parametrize("who", ["scheduler", "client", "all"])
+def test_a_killed_cluster_loses_the_blocks_in_flight_only(who, seed, folder, serial, tmp_path):
+    store, chance = tmp_path / "a.zarr", random.Random(seed)
+    with (
+        scheduler(tmp_path) as (process, file),
+        worker(tmp_path, file) as first,
+        worker(tmp_path, file) as second,
+        run(folder, store, file) as client,
+    ):
+        assert first.stdout.readline() == "block\n"
+        time.sleep(chance.uniform(0.0, 0.6))
+        killed = {"scheduler": [process], "client": [client], "all": [process, first, second, client]}[who]
+        for program in killed:
+            program.kill()
+        _, errors = client.communicate(timeout=120)
+        if who == "scheduler" and client.returncode:
+            assert client.returncode == 1
+            assert "polhode: error: " in errors
+            assert "continue with resume (--resume)" in errors
+        # The workers may still compute a block whose client has ended.
+        for program in (first, second):
+            program.kill()
+            program.wait()
+        found = status(store)
+        assert (found["corrupt"], found["running"]) == (0, [])
+        assert resumed(folder, store) == serial
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_a_local_cluster(folder, serial, tmp_path):
+    store = tmp_path / "a.zarr"
+    with run(folder, store, "local:2") as client:
+        until(
+            lambda: (store / ".polhode" / "locks").exists() and any((store / ".polhode" / "locks").iterdir())
+        )
+        time.sleep(2.0)  # the workers start
+        if client.poll() is None:
+            client.send_signal(signal.SIGINT)
+        _, errors = client.communicate(timeout=120)
+    assert client.returncode in (0, 130), errors
+    assert status(store)["running"] == []
+    assert resumed(folder, store) == serial

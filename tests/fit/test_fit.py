@@ -208,6 +208,19 @@ class TestUndetermined:
         assert abs(fit.omega_body.components[2] + fit.bias.components[2] - 5.02) < 4 * SIGMA / np.sqrt(200)
 
 
+def test_other_bodies_that_fit_are_reported():
+    """A steady rotation with noise: many bodies fit it, up to a chi-square of 25 above the best."""
+    times = np.linspace(0, 10, 200)
+    free = motion(BODY, ph.bivector([0, 0, 5.0]))
+    found = [
+        text
+        for seed in range(3)
+        for text in ph.fit(**measured("rates", np.random.default_rng(seed), times, free)).undetermined
+    ]
+    assert any(text.startswith("which body: moments ") for text in found)
+    assert sum("steady rotations" in text for text in found) == 3
+
+
 def test_a_fit_is_shown_and_written():
     fit = ph.fit(**measured("both", np.random.default_rng(9)), start=(BODY, OMEGA))
     text = fit.summary()

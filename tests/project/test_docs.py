@@ -41,6 +41,7 @@ PAGES = [
     "cga",
     "formulas",
     "motion",
+    "fitting",
     "jax",
     pytest.param("viewer", marks=needs_bundle),
 ]

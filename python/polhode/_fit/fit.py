@@ -90,11 +90,11 @@ def fit(
         raise ValueError(
             f"{dof + model.size} measured components cannot determine {model.size} parameters; give more data"
         )
-    found = solve(model, None if start is None else _start(start, model))
+    found, *others = solve(model, None if start is None else _start(start, model))
     sums = float((model.residuals(found) ** 2).sum())
     is_known = all(x.is_known for x in data.values())
     variance = 1.0 if is_known else sums / dof
-    facts = information(model, found, variance)
+    facts = information(model, found, variance, others)
     differences = dict(zip(data, model.differences(found), strict=True))
     return Fit(
         inertia=Inertia.from_principal_moments(*(found.moments / found.moments.max()).tolist()),

@@ -15,6 +15,9 @@ from polhode._support.arrays import Array
 _UNSURE = 0.5
 _PART = 0.35  # least component of a direction, relative to the largest, of parameters that are named
 _EQUAL = 2.0  # standard deviations within which moments count as equal
+# Other bodies are reported up to this increase of chi-square (5 standard deviations) if a ratio differs by so
+# much. Noise alone fits a small wobble of some frequency or other, with a decrease of about 2 ln n.
+_RIVAL, _APART = 25.0, 0.02
 _AXES = ("1", "2", "3")
 
 SCALE = "overall scale of the moments: free motion depends on their ratios only"
@@ -31,16 +34,16 @@ class Information:
     undetermined: tuple[str, ...]
 
 
-def information(model: Model, at: Parameters, variance: float) -> Information:
-    """Return the information of residuals of this variance at the best fit."""
+def information(model: Model, at: Parameters, variance: float, others: list[Parameters]) -> Information:
+    """Return the information of residuals of this variance at the best fit; `others` fit worse."""
     top = int(np.argmax(at.moments))
     ratios = at.moments / at.moments[top]
-    others = [k for k in range(3) if k != top]
+    rest = [k for k in range(3) if k != top]
     jacobian = model.jacobian(at)
     jacobian[:, :3] *= at.moments[top]
     jacobian = np.delete(jacobian, top, axis=1) / np.sqrt(variance)
-    names = [f"i{k + 1}/i{top + 1}" for k in others] + [f"omega_{k}" for k in _AXES]
-    values = [*ratios[others], *at.omega]
+    names = [f"i{k + 1}/i{top + 1}" for k in rest] + [f"omega_{k}" for k in _AXES]
+    values = [*ratios[rest], *at.omega]
     rate = model.rate
     sizes = [1.0] * 2 + [rate] * 3
     if at.rotor is not None:
@@ -63,9 +66,10 @@ def information(model: Model, at: Parameters, variance: float) -> Information:
         if error > _UNSURE
     ]
     unsure += _directions(names, rows, spread, singular <= least)
+    unsure += _rivals(model, at, variance, others)
     if unsure:
         unsure.append(_arc(model, at))
-    statements += unsure + list(_symmetries(ratios, covariance, others))
+    statements += unsure + list(_symmetries(ratios, covariance, rest))
     return Information(tuple(names), np.array(values), covariance, tuple(statements))
 
 
@@ -78,6 +82,19 @@ def _directions(names: list[str], rows: Array, spread: Array, none: Any) -> Iter
         named = [name for name, x in zip(names, parts, strict=True) if x >= _PART * parts.max()]
         which = named[0] if len(named) == 1 else f"a combination of {', '.join(named)}"
         yield f"{which}: " + ("no information" if is_free else f"uncertain by {100 * size:.2g} %")
+
+
+def _rivals(model: Model, at: Parameters, variance: float, others: list[Parameters]) -> Iterator[str]:
+    """Yield a statement for each other body that fits almost as well."""
+    best = float((model.residuals(at) ** 2).sum())
+    known = [at.moments / at.moments.max()]
+    for other in others:
+        moments = other.moments / other.moments.max()
+        worse = (float((model.residuals(other) ** 2).sum()) - best) / variance
+        if worse < _RIVAL and all(np.abs(moments - x).max() > _APART for x in known):
+            known.append(moments)
+            text = ", ".join(f"{x:.3g}" for x in moments)
+            yield f"which body: moments {text} fit almost as well, with a chi-square larger by {worse:.2g}"
 
 
 def _arc(model: Model, at: Parameters) -> str:

@@ -83,6 +83,11 @@ class Model:
         assert source is not None
         return float(np.sqrt(3 * np.mean(source.rates**2))) or 1.0
 
+    def scale(self) -> Array:
+        """Return sizes (k,) of steps after which the motion is quite another one."""
+        sizes = [1.0] * 2 + [self.rate] * 3 + [1.0] * 3 * (self.attitudes is not None)
+        return np.array(sizes + [0.1 * self.rate] * 3 * self.has_bias + [1 / self.rate] * self.has_offset)
+
     def moved(self, base: Parameters, step: Array) -> Parameters:
         """Return parameters moved by a step: the attitude turns by a rotation vector in space axes."""
         k, rotor, bias, offset = 5, base.rotor, base.bias, base.offset

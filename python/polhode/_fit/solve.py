@@ -17,7 +17,7 @@ from polhode._support.extras import optional
 _SHAPE, _BIAS = 10.0, 10.0
 # The bias is held closer to 0 on arcs that are too short to determine it.
 _BIAS_ON_ARC = 0.1
-_FIRST, _GROWTH = 6.0, 3.0  # rad of turn in the first arc; factor from arc to arc
+_FIRST, _GROWTH = 3.0, 2.5  # rad of turn in the first arc; factor from arc to arc
 _LEAST = 2  # samples per parameter in the first arc
 _KEPT, _WORSE = 3, 4.0  # starts that go on to the next arc, if their cost is less than so many times the best
 # Relative change of the sum of squares that ends the search: parameters then move by less than a hundredth of
@@ -25,8 +25,8 @@ _KEPT, _WORSE = 3, 4.0  # starts that go on to the next arc, if their cost is le
 _ENOUGH = 1e-9
 
 
-def solve(model: Model, start: Parameters | None) -> Parameters:
-    """Return the parameters of the best fit; a ValueError if no start leads to one."""
+def solve(model: Model, start: Parameters | None) -> list[Parameters]:
+    """Return the parameters of fits, best first; a ValueError if no start leads to one."""
     if start is not None:
         candidates = [start]
         ends: list[float] = []
@@ -34,7 +34,7 @@ def solve(model: Model, start: Parameters | None) -> Parameters:
         candidates, ends = starts(model), _arcs(model)
     for end in ends:
         candidates = _best(model.before(end), candidates, _BIAS_ON_ARC, 60)
-    return _best(model, candidates, _BIAS, 100)[0]
+    return _best(model, candidates, _BIAS, 100)
 
 
 def _arcs(model: Model) -> list[float]:
@@ -75,7 +75,11 @@ def _is_same(a: Parameters, b: Parameters) -> bool:
 
 
 def _solved(model: Model, base: Parameters, bias: float, calls: int) -> tuple[float, Parameters]:
-    """Return the cost and the solution by Levenberg–Marquardt from one start."""
+    """Return the cost and the solution from one start, by Levenberg and Marquardt's method.
+
+    ``"trf"`` without bounds, because the first step of MINPACK's ``"lm"`` is almost unlimited: it leaves the
+    start for flat bodies.
+    """
     optimize: Any = optional("scipy.optimize", "scipy", "a fit")
     weights = _prior(model, bias)
 
@@ -107,8 +111,8 @@ def _solved(model: Model, base: Parameters, bias: float, calls: int) -> tuple[fl
             residuals,
             np.zeros(model.size),
             jacobian,
-            method="lm",
-            x_scale="jac",
+            method="trf",
+            x_scale=model.scale(),
             xtol=1e-9,
             ftol=_ENOUGH,
             gtol=1e-12,

@@ -13,14 +13,14 @@ from polhode._support.arrays import Array
 # Second moments of mass of the bodies that are tried, in any order of the axes.
 _BODIES = tuple(itertools.permutations((0.6, 0.3, 0.1)))
 _LEAST = 0.02  # of a second moment of the linear estimate, relative to their sum
-_STEADY = 0.2  # rad of turn over which the first rates are averaged
+_STEADY, _FEWEST = 0.4, 3  # rad of turn, and least number, over which the first rates are averaged
 
 
 def starts(model: Model) -> list[Parameters]:
     """Return the start values: a linear estimate first, then each order of the moments."""
     source = model.rates or model.attitudes
     assert source is not None
-    n = max(1, int(np.searchsorted(source.turn(), _STEADY)))
+    n = max(_FEWEST, int(np.searchsorted(source.turn(), _STEADY)))
     omega = source.rates[:n].mean(axis=0)
     rotor = model.attitudes.values[0] if model.attitudes is not None else None
     bodies = [_linear(source, model.has_bias), *map(np.array, _BODIES)]

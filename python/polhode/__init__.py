@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from polhode._algebra.serialize import from_dict, to_dict
     from polhode._algebra.transform import RigidTransform
     from polhode._fit.fit import fit
+    from polhode._fit.periods import omega_from_periods
     from polhode._fit.result import Fit
     from polhode._formula.agreement import Agreement
     from polhode._formula.errors import FormulaError
@@ -68,10 +69,10 @@ __all__ = [
     "RotorSpline", "Scene", "SceneError", "Screw", "State", "Stepper", "SymmetricTop", "Trajectory",
     "adjoint_matrix", "algebra", "align", "attitude_from_rates", "axial", "bivector", "cga", "concatenate",
     "cross", "describe_free", "e1", "e2", "e3", "evaluate", "event", "fit", "force", "formula",
-    "from_axial", "from_dict", "from_pauli", "left_jacobian", "mean", "multivector", "pga",
-    "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf", "reciprocal_frame", "right_jacobian",
-    "scalar", "screw_parameters", "simulate", "simulate_blocks", "slerp", "split", "stack", "to_dict",
-    "to_pauli", "torque", "trivector", "vector", "view",
+    "from_axial", "from_dict", "from_pauli", "left_jacobian", "mean", "multivector", "omega_from_periods",
+    "pga", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf", "reciprocal_frame",
+    "right_jacobian", "scalar", "screw_parameters", "simulate", "simulate_blocks", "slerp", "split",
+    "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
 ]
 # fmt: on
 
@@ -91,6 +92,7 @@ _LATER = {
         "_algebra.serialize": "from_dict to_dict",
         "_algebra.transform": "RigidTransform",
         "_fit.fit": "fit",
+        "_fit.periods": "omega_from_periods",
         "_fit.result": "Fit",
         "_formula.agreement": "Agreement",
         "_formula.errors": "FormulaError",

@@ -41,6 +41,9 @@ if TYPE_CHECKING:
     from polhode._algebra.screws import Screw, adjoint_matrix, screw_parameters
     from polhode._algebra.serialize import from_dict, to_dict
     from polhode._algebra.transform import RigidTransform
+    from polhode._fit.fit import fit
+    from polhode._fit.periods import omega_from_periods
+    from polhode._fit.result import Fit
     from polhode._formula.agreement import Agreement
     from polhode._formula.errors import FormulaError
     from polhode._formula.formula import Formula, evaluate, formula
@@ -61,15 +64,15 @@ if TYPE_CHECKING:
 # fmt: off
 __all__ = [
     "CGA", "PGA", "Agreement", "Algebra", "Alignment", "Body", "Certificate", "Crossings", "DampedTop",
-    "Failure", "FlowDerivatives", "Formula", "FormulaError", "FreeMotion", "I", "Inertia", "LagrangeTop",
-    "LarmorSphere", "LinearMap", "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline",
-    "Scene", "SceneError", "Screw", "State", "Stepper", "SymmetricTop", "Trajectory", "adjoint_matrix",
-    "algebra", "align", "attitude_from_rates", "axial", "bivector", "cga", "concatenate", "cross",
-    "describe_free", "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict",
-    "from_pauli", "left_jacobian", "mean", "multivector", "pga", "rates_from_attitude", "read_mjcf",
-    "read_sdf", "read_urdf", "reciprocal_frame", "right_jacobian", "scalar", "screw_parameters", "simulate",
-    "simulate_blocks", "slerp", "split", "stack", "to_dict", "to_pauli", "torque", "trivector", "vector",
-    "view",
+    "Failure", "Fit", "FlowDerivatives", "Formula", "FormulaError", "FreeMotion", "I", "Inertia",
+    "LagrangeTop", "LarmorSphere", "LinearMap", "Moments", "Multivector", "RigidTransform", "Rotor",
+    "RotorSpline", "Scene", "SceneError", "Screw", "State", "Stepper", "SymmetricTop", "Trajectory",
+    "adjoint_matrix", "algebra", "align", "attitude_from_rates", "axial", "bivector", "cga", "concatenate",
+    "cross", "describe_free", "e1", "e2", "e3", "evaluate", "event", "fit", "force", "formula",
+    "from_axial", "from_dict", "from_pauli", "left_jacobian", "mean", "multivector", "omega_from_periods",
+    "pga", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf", "reciprocal_frame",
+    "right_jacobian", "scalar", "screw_parameters", "simulate", "simulate_blocks", "slerp", "split",
+    "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
 ]
 # fmt: on
 
@@ -88,6 +91,9 @@ _LATER = {
         "_algebra.screws": "Screw adjoint_matrix screw_parameters",
         "_algebra.serialize": "from_dict to_dict",
         "_algebra.transform": "RigidTransform",
+        "_fit.fit": "fit",
+        "_fit.periods": "omega_from_periods",
+        "_fit.result": "Fit",
         "_formula.agreement": "Agreement",
         "_formula.errors": "FormulaError",
         "_formula.formula": "Formula evaluate formula",

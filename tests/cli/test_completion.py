@@ -32,7 +32,7 @@ def completed(script, *words, cwd=None):
 @needs_bash
 def test_bash_completes_commands_options_and_files(capsys, tmp_path):
     script = printed("bash", capsys)
-    assert completed(script, "polhode", "fi") == ["figure", "film"]
+    assert completed(script, "polhode", "fi") == ["figure", "film", "fit"]
     assert completed(script, "polhode", "run", "--f") == ["--force"]
     assert completed(script, "polhode", "figure", "her") == ["herpolhode"]
     (tmp_path / "small.toml").touch()

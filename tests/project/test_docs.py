@@ -41,6 +41,7 @@ PAGES = [
     "cga",
     "formulas",
     "motion",
+    "fitting",
     "jax",
     "scenes",
     pytest.param("viewer", marks=needs_bundle),

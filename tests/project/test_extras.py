@@ -28,6 +28,7 @@ def trajectory():
         ("pandas", "pandas", lambda t, path: t.to_dataframe()),
         ("matplotlib.figure", "plot", lambda t, path: t.plot()),
         ("scipy.spatial.transform", "scipy", lambda t, path: t.rotor.to_scipy()),
+        ("scipy.optimize", "scipy", lambda t, path: ph.fit(rates=(t.time, t.omega_body))),
     ],
 )
 def test_the_extra_is_named(module, extra, use, trajectory, tmp_path, monkeypatch):

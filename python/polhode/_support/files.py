@@ -49,6 +49,7 @@ _FORMS = {
     "a page": ("html", "htm"),
     "a figure": ("svg", "pdf", "png"),
     "a film": ("mp4", "gif"),
+    "a fit": ("json",),
 }
 
 

@@ -1,0 +1,1 @@
+"""Fits: the body and its motion from measured attitudes and rates."""

@@ -1,0 +1,195 @@
+"""`Fit`: a body and its motion fitted to data, with their uncertainty."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.free_motion import FreeMotion
+from polhode._mechanics.state import State
+from polhode._report.summary import number
+from polhode._support.arrays import Array, as_float, hands_out_copies
+from polhode._support.extras import optional
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_UNITS = {"omega": "rad/s", "attitude": "rad", "bias": "rad/s", "clock": "s"}
+
+
+@hands_out_copies("values", "covariance", "times", "residuals")
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The result of `fit`: body, state and sensor, with their uncertainty.
+
+    Attributes
+    ----------
+    inertia
+        Principal moments relative to the largest, which is 1; on the axes of the data.
+    omega_body
+        Angular velocity in body axes in rad/s at `time`, a bivector.
+    rotor
+        Attitude at `time`, from body axes to space axes; None without attitudes.
+    time
+        The first time of the data in s.
+    bias
+        Bias of the gyroscope in rad/s, a bivector in body axes: the rates are ``Ω_B + bias``. None if it is
+        not fitted.
+    clock_offset
+        Time in s to add to the times of the rates to get the times of the attitudes; None if not fitted.
+    names
+        Names of the parameters: ``i1/i3``, the ratio of two moments; ``omega_1``, ``omega_2``, ``omega_3``;
+        ``attitude_1``, …, a small rotation vector in space axes, relative to `rotor`; ``bias_1``, …;
+        ``clock_offset``.
+    values
+        Array (k,), their values.
+    covariance
+        Array (k, k), their covariance, linearised at the best fit. A variance that rounding alone limits is
+        huge, not infinite.
+    times, residuals
+        Dictionaries with ``"attitude"`` and ``"rates"``: times (n,) in s on the clock of the data, and
+        measured minus computed values (n, 3) in standard deviations. Those of attitudes are rotation vectors
+        in space axes.
+    noise
+        Dictionary with the rms of these differences per component, in rad and rad/s.
+    chi2_reduced
+        Sum of the squares of the residuals over `dof`; 1 is expected. None if the standard deviations were
+        estimated from the residuals, which makes it 1.
+    dof
+        Number of measured components minus number of parameters.
+    undetermined
+        Statements of what the data do not determine, from the singular values of the derivatives: of any free
+        motion the overall scale of the moments, and each direction among the parameters whose standard
+        deviation exceeds half of their size (1 for ratios, 1 rad, the initial rate for rates).
+    """
+
+    inertia: Inertia
+    omega_body: Multivector
+    rotor: Rotor | None
+    time: float
+    bias: Multivector | None
+    clock_offset: float | None
+    names: tuple[str, ...]
+    values: Array
+    covariance: Array
+    times: dict[str, Array]
+    residuals: dict[str, Array]
+    noise: dict[str, float]
+    chi2_reduced: float | None
+    dof: int
+    undetermined: tuple[str, ...]
+
+    @property
+    def state(self) -> State:
+        """State at `time`; without attitudes, axes of space are those of the body at this time."""
+        rotor = Rotor.identity() if self.rotor is None else self.rotor
+        return State(rotor, self.omega_body, time=self.time)
+
+    @property
+    def stderr(self) -> Array:
+        """Standard deviations (k,) of the parameters."""
+        return np.sqrt(np.diag(self.covariance))
+
+    def interval(self, level: float = 0.95) -> Array:
+        """Return intervals (k, 2) that contain each parameter with this probability.
+
+        Quantiles are those of the normal distribution, or of Student's if the standard deviations of the data
+        were estimated. A ValueError unless 0 < level < 1.
+        """
+        share = as_float(level, "level")
+        if not 0 < share < 1:
+            raise ValueError(f"level must be between 0 and 1, got {share:g}")
+        special: Any = optional("scipy.special", "scipy", "a fit")
+        upper = 0.5 * (1 + share)
+        reach = special.ndtri(upper) if self.chi2_reduced is not None else special.stdtrit(self.dof, upper)
+        half = float(reach) * self.stderr
+        return np.stack([self.values - half, self.values + half], axis=1)
+
+    def summary(self) -> str:
+        """Return the parameters with their standard deviations and the other findings, as text."""
+        lines = [f"{name:<22}{text}" for name, text in self._rows()]
+        return "\n".join([*lines, "not determined by the data", *(f"  {x}" for x in self.undetermined)])
+
+    def _rows(self) -> list[tuple[str, str]]:
+        rows = []
+        for name, value, error in zip(self.names, self.values, self.stderr, strict=True):
+            unit = _UNITS.get(name.partition("_")[0], "")
+            rows.append((name, f"{_with_error(value, error)} {unit}".rstrip()))
+        regime = FreeMotion(self.inertia, Rotor.identity(), self.omega_body).describe()["regime"]
+        rows.append(("regime", regime))
+        for name, size in self.noise.items():
+            rows.append((f"rms of {name}", f"{number(size)} {'rad' if name == 'attitude' else 'rad/s'}"))
+        if self.chi2_reduced is None:
+            rows.append(("sigma", f"estimated from the residuals, {self.dof} degrees of freedom"))
+        else:
+            rows.append(
+                ("reduced chi-square", f"{self.chi2_reduced:.3f}, {self.dof} degrees of freedom"),
+            )
+        return rows
+
+    def _repr_html_(self) -> str:
+        """Return the summary as a table for notebooks."""
+        rows = [*self._rows(), *(("not determined", text) for text in self.undetermined)]
+        cells = "".join(
+            f'<tr><th style="text-align: left">{escape(name)}</th>'
+            f'<td style="text-align: left">{escape(text)}</td></tr>'
+            for name, text in rows
+        )
+        return f"<table><caption>Fit</caption><tbody>{cells}</tbody></table>"
+
+    def __repr__(self) -> str:
+        return f"Fit({self.inertia!r}, parameters {', '.join(self.names)})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fit as numbers, lists and strings, for a JSON file; without the residuals."""
+        return {
+            "moments": self.inertia.principal_moments.tolist(),
+            "time": self.time,
+            "omega_body": self.omega_body.components.tolist(),
+            "attitude_wxyz": None if self.rotor is None else self.rotor.to_quaternion(order="wxyz").tolist(),
+            "bias": None if self.bias is None else self.bias.components.tolist(),
+            "clock_offset": self.clock_offset,
+            "names": list(self.names),
+            "values": self.values.tolist(),
+            "stderr": self.stderr.tolist(),
+            "covariance": self.covariance.tolist(),
+            "noise": dict(self.noise),
+            "chi2_reduced": self.chi2_reduced,
+            "dof": self.dof,
+            "undetermined": list(self.undetermined),
+        }
+
+    def plot(self, *, ax: Axes | None = None) -> Figure:
+        """Return a matplotlib figure of the residuals over time, in standard deviations.
+
+        `ax` are axes to draw on, for data of one kind; None for a new figure.
+
+        Raises
+        ------
+        ValueError
+            If `ax` is given and the data are attitudes and rates.
+        ImportError
+            Without matplotlib: ``pip install 'polhode[plot]'``.
+        """
+        from polhode._fit.figure import residual_figure
+
+        if ax is not None and len(self.times) > 1:
+            raise ValueError("the residuals of attitudes and rates need two panels; plot() without ax")
+        return residual_figure.on(ax, self)
+
+
+def _with_error(value: float, error: float) -> str:
+    """Return a value with its standard deviation to two digits, both to the same decimal place."""
+    if not np.isfinite(error) or error <= 0:
+        return f"{value:.6g} ± {error:.2g}"
+    places = 1 - int(np.floor(np.log10(error)))
+    if not 0 <= places <= 12 or abs(value) >= 1e6:
+        return f"{value:.6g} ± {error:.2g}"
+    return f"{value:.{places}f} ± {error:.{places}f}"

@@ -1,0 +1,101 @@
+"""Reading measured data from CSV files, with the line and column of every mistake."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from polhode._support.arrays import Array
+from polhode._support.files import UnreadableError
+
+RATES, QUATERNION = ("t", "wx", "wy", "wz"), ("t", "qw", "qx", "qy", "qz")
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of a file: times (n,) and values (n, 3) or (n, 4), in the units of the file."""
+
+    times: Array
+    values: Array
+
+
+def read_table(path: Path, names: tuple[str, ...] | None) -> tuple[Table, tuple[str, ...]]:
+    """Return the columns of these names, and the names; None for `RATES` or `QUATERNION`.
+
+    The first line has the names of the columns, separated by commas as the numbers below. Empty lines and
+    lines that begin with # are skipped.
+
+    Raises
+    ------
+    UnreadableError
+        With file, line and column, for a name that is missing, a field that is not a finite number, a line
+        with another number of fields, and times that do not increase.
+    OSError
+        If the file cannot be read.
+    """
+    try:
+        lines = path.read_text("utf-8-sig").split("\n")
+    except UnicodeDecodeError as error:
+        raise UnreadableError(f"{path}: error: not UTF-8 text from byte {error.start} on") from None
+    rows = [(k, x) for k, x in enumerate(lines, 1) if x.strip() and not x.lstrip().startswith("#")]
+    if not rows:
+        raise UnreadableError(f"{path}: error: the file is empty; its first line has names of columns")
+    header = [x.strip() for x in rows[0][1].split(",")]
+    names = names or _default(path, rows[0][0], header)
+    for name in names:
+        if header.count(name) != 1:
+            problem = f"{header.count(name)} columns are named" if name in header else "there is no column"
+            raise UnreadableError(
+                f"{path}:{rows[0][0]}:1: error: {problem} {name!r} among {', '.join(header)}; "
+                "give the names with --columns"
+            )
+    places = [header.index(name) for name in names]
+    numbers = np.empty((len(rows) - 1, len(names)))
+    for into, (line, text) in zip(numbers, rows[1:], strict=True):
+        into[:] = _fields(path, line, text, len(header), places)
+    _check_order(path, [line for line, _ in rows[1:]], numbers[:, 0])
+    return Table(numbers[:, 0], numbers[:, 1:]), names
+
+
+def _default(path: Path, line: int, header: list[str]) -> tuple[str, ...]:
+    """Return `RATES` or `QUATERNION`, whichever the file has."""
+    found = [names for names in (RATES, QUATERNION) if set(names) <= set(header)]
+    if len(found) == 1:
+        return found[0]
+    has = "both rates and a quaternion" if found else "neither rates t,wx,wy,wz nor t,qw,qx,qy,qz"
+    raise UnreadableError(
+        f"{path}:{line}:1: error: the columns {', '.join(header)} have {has}; give the names with --columns"
+    )
+
+
+def _fields(path: Path, line: int, text: str, count: int, places: list[int]) -> list[float]:
+    """Return the numbers at these places of a line."""
+    fields = text.split(",")
+    if len(fields) != count:
+        raise UnreadableError(f"{path}:{line}:1: error: {len(fields)} fields, but {count} columns are named")
+    numbers = []
+    for place in places:
+        field = fields[place].strip()
+        try:
+            value = float(field)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            before = sum(len(x) + 1 for x in fields[:place])
+            column = before + len(fields[place]) - len(fields[place].lstrip()) + 1
+            raise UnreadableError(f"{path}:{line}:{column}: error: {field!r} is not a finite number")
+        numbers.append(value)
+    return numbers
+
+
+def _check_order(path: Path, lines: list[int], times: Array) -> None:
+    rising = np.diff(times) > 0
+    if not rising.all():
+        k = int(np.argmin(rising))
+        raise UnreadableError(
+            f"{path}:{lines[k + 1]}:1: error: times must increase, but {times[k + 1]:.12g} follows "
+            f"{times[k]:.12g}; remove samples that repeat"
+        )

@@ -1,0 +1,127 @@
+"""``polhode fit``: data from CSV files, units, columns, errors with their places."""
+
+import json
+
+import numpy as np
+import pytest
+
+import polhode as ph
+from polhode._cli import main
+
+pytest.importorskip("scipy")
+
+BODY = ph.Inertia.from_principal_moments(1, 2, 2.6)
+FREE = ph.FreeMotion(BODY, ph.Rotor.identity(), [0.3, 4.0, 0.9])
+RATIOS = np.array([1, 2, 2.6]) / 2.6
+TIMES = np.arange(0, 300)  # in hundredths of a second
+
+
+def table(path, header, *columns):
+    rows = np.column_stack(columns)
+    path.write_text("\n".join([header, *(",".join(map(repr, row.tolist())) for row in rows)]) + "\n")
+    return str(path)
+
+
+@pytest.fixture
+def rates(tmp_path):
+    noise = np.random.default_rng(0).normal(size=(300, 3)) * 0.5
+    omega = np.degrees(FREE.at(TIMES * 0.01).omega_body.components) + noise + [1, 0, 0]
+    return table(tmp_path / "gyro.csv", "t,wx,wy,wz", TIMES * 10.0, omega)
+
+
+UNITS = ["--time-unit", "ms", "--rate-unit", "deg/s"]
+
+
+def test_rates_in_degrees_and_milliseconds(rates, capsys):
+    assert main.main(["fit", rates, *UNITS, "--sigma", "0.5", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    errors = dict(zip(found["names"], found["stderr"], strict=True))
+    off = np.abs(np.array(found["moments"]) - RATIOS)[:2]
+    assert (off < 4 * np.array([errors["i1/i3"], errors["i2/i3"]])).all()
+    assert abs(found["bias"][0] - np.radians(1)) < 4 * errors["bias_1"]
+    # The mean of squared residuals has the variance 2/dof.
+    assert abs(found["chi2_reduced"] - 1) < 5 * np.sqrt(2 / found["dof"])
+
+
+def test_summary_and_files(rates, tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    out, figure = str(tmp_path / "fit.json"), str(tmp_path / "fit.svg")
+    assert main.main(["fit", rates, *UNITS, "-o", out, "--plot", figure]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("i1/i3")
+    assert "sigma                 estimated" in text
+    assert text.endswith(f"Written\n  {out}\n  {figure}\n")
+    assert json.loads((tmp_path / "fit.json").read_text())["chi2_reduced"] is None
+    assert (tmp_path / "fit.svg").read_text().startswith("<?xml")
+
+
+@pytest.mark.parametrize("order", ["wxyz", "xyzw"])
+def test_quaternions(order, tmp_path, capsys):
+    q = FREE.at(TIMES * 0.01).rotor.to_quaternion(order=order)
+    path = table(tmp_path / "q.csv", "time, a, b, c, d", TIMES * 0.01, q)
+    options = ["--time-unit", "s", "--columns", "time,a,b,c,d", "--order", order, "--quiet"]
+    assert main.main(["fit", path, *options, "-o", str(tmp_path / "fit.json")]) == 0
+    assert capsys.readouterr().out == ""
+    found = json.loads((tmp_path / "fit.json").read_text())
+    np.testing.assert_allclose(found["moments"], RATIOS, atol=1e-6)
+    np.testing.assert_allclose(found["attitude_wxyz"], [1, 0, 0, 0], atol=1e-6)
+    assert found["bias"] is None
+
+
+def test_quaternions_by_names(tmp_path, capsys):
+    q = FREE.at(TIMES * 0.01).rotor.to_quaternion(order="wxyz")
+    path = table(tmp_path / "q.csv", "qx,qy,qz,qw,t", q[:, 1:], q[:, 0], TIMES * 0.01)
+    assert main.main(["fit", path, "--time-unit", "s", "--json"]) == 0
+    np.testing.assert_allclose(json.loads(capsys.readouterr().out)["moments"], RATIOS, atol=1e-6)
+
+
+LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (LINES + "2, 1,x2,3\n", ":4:6: error: 'x2' is not a finite number"),
+        (LINES + "2,1,2,  nan\n", ":4:9: error: 'nan' is not a finite number"),
+        (LINES + "# a comment\n\n2,1,2\n", ":6:1: error: 3 fields, but 4 columns are named"),
+        (LINES + "1,1,2,3\n", ":4:1: error: times must increase, but 1 follows 1; remove samples"),
+        ("t,wx,wy\n0,1,2\n", ":1:1: error: the columns t, wx, wy have neither rates t,wx,wy,wz nor"),
+        ("t,wx,wx,wy,wz\n", ":1:1: error: 2 columns are named 'wx'"),
+        ("\n\n", ": error: the file is empty"),
+    ],
+)
+def test_errors_have_places(text, message, tmp_path, capsys):
+    path = tmp_path / "bad.csv"
+    path.write_text(text)
+    assert main.main(["fit", str(path), *UNITS]) == 3
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith(f"{path}{message}")
+
+
+def test_missing_names_and_bytes(rates, tmp_path, capsys):
+    assert main.main(["fit", rates, *UNITS, "--columns", "t,x,y,z"]) == 3
+    assert "gyro.csv:1:1: error: there is no column 'x' among t, wx, wy, wz;" in capsys.readouterr().err
+    (tmp_path / "b.csv").write_bytes(b"t,wx\xff")
+    assert main.main(["fit", str(tmp_path / "b.csv"), *UNITS]) == 3
+    assert "not UTF-8 text from byte 4 on" in capsys.readouterr().err
+    assert main.main(["fit", str(tmp_path / "absent.csv"), *UNITS]) == 1
+    assert "absent.csv" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--time-unit", "s"], "rates need their unit: --rate-unit rad/s"),
+        (["--rate-unit", "rpm"], "required: --time-unit"),
+        ([*UNITS, "--columns", "t,wx"], "expected 4 names (time and rates) or 5"),
+        ([*UNITS, "--columns", "t,wx,wy,wz,wx"], "needs its order: --order wxyz"),
+        ([*UNITS, "--sigma", "0"], "expected a positive number, got '0'"),
+        ([*UNITS, "-o", "fit.csv"], "a fit is saved as FILE.json, not 'fit.csv'"),
+    ],
+)
+def test_wrong_usage(options, message, rates, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main.main(["fit", rates, *options])
+    assert stop.value.code == 2
+    assert message in capsys.readouterr().err

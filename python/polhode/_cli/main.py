@@ -93,13 +93,14 @@ def _parser() -> argparse.ArgumentParser:
         ),
     )
     parser.add_argument("--version", action="version", version=f"polhode {__version__}")
-    from polhode._cli import completion, examples, figure
+    from polhode._cli import completion, convert, examples, figure
 
     completion.add(parser)
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     _add_scenes(commands)
     _add_formulas(commands)
     figure.add(commands)
+    convert.add(commands)
     examples.add(commands)
     return parser
 

@@ -58,6 +58,8 @@ def is_own(path: Path) -> bool:
         case ".csv":
             line = head.splitlines()[0].decode(errors="replace").partition(",wheel_speed_0")[0]
             return line in (table.header(False), table.header(True))
+        case ".aem":
+            return head.startswith(b"CCSDS_AEM_VERS") and b"\nCOMMENT Written by polhode " in head
         case ".png":
             return head.startswith(b"\x89PNG") and b"tEXtSoftware\0Polhode" in head
         case ".html" | ".htm":

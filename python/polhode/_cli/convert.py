@@ -1,0 +1,102 @@
+"""The command ``polhode convert``."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import Any
+
+from polhode._cli import common
+from polhode._cli.common import add_command, whole_number
+from polhode._support.files import UnreadableError, check_target
+
+# Options that a reader takes, and those of the written file; each is given to the format that has it.
+_READING = ("segment", "body", "epoch", "body_frame", "quaternion_type", "attitude_dir", "angvel_frame")
+_WRITING = (
+    *("epoch", "time_system", "reference_frame", "body_frame", "version", "originator"),
+    *("object_name", "object_id", "center_name"),
+)
+
+
+def add(commands: Any) -> None:
+    """Add the command to those of `polhode`."""
+    convert = add_command(
+        commands,
+        "convert",
+        _convert,
+        help="convert files of attitudes and motions",
+        description="Convert the motion of one body from file A to file B: netCDF (.nc), CSV, Parquet and "
+        "CCSDS AEM (.aem) by their suffixes. Quaternion order, direction and frames that a file does not "
+        "state must be given; they are never guessed.",
+    )
+    convert.add_argument("source", metavar="A", help="the file to read")
+    convert.add_argument("target", metavar="B", help="the file to write")
+    words = {
+        "epoch": ("ISO", "epoch of time 0, such as 2026-01-01T00:00:00"),
+        "time-system": (
+            "NAME",
+            "time system of a written AEM: UTC, TAI, TT, TDB, GPS, TCB or TCG, default UTC",
+        ),
+        "reference-frame": ("NAME", "REF_FRAME_A of a written AEM, such as EME2000"),
+        "body-frame": ("NAME", "name of the body's frame in an AEM"),
+        "object-name": ("NAME", "OBJECT_NAME of a written AEM"),
+        "object-id": ("ID", "OBJECT_ID of a written AEM"),
+        "center-name": ("NAME", "CENTER_NAME of a written AEM"),
+        "originator": ("NAME", "ORIGINATOR of a written AEM"),
+        "angvel-frame": ("NAME", "frame of angular velocities, for an AEM without ANGVEL_FRAME"),
+    }
+    for name, (metavar, text) in words.items():
+        convert.add_argument(f"--{name}", metavar=metavar, help=text)
+    text = "version of a written AEM: 2.0 (default) or 1.0"
+    convert.add_argument("--aem-version", dest="version", choices=("1.0", "2.0"), help=text)
+    text = "place of the scalar, for an AEM without QUATERNION_TYPE"
+    convert.add_argument("--quaternion-type", choices=("FIRST", "LAST"), help=text)
+    text = "direction of the attitude, for an AEM without ATTITUDE_DIR"
+    convert.add_argument("--attitude-dir", choices=("A2B", "B2A"), help=text)
+    number = whole_number("number of the segment", 1, float("inf"))
+    convert.add_argument("--segment", metavar="N", type=number, help="segment of an AEM, from 1")
+    number = whole_number("number of the body", 0, float("inf"))
+    convert.add_argument("--body", metavar="N", type=number, help="body of a CSV or Parquet file of a batch")
+    words_of_force = "overwrite an existing file even if polhode did not write it"
+    convert.add_argument("--force", action="store_true", help=words_of_force)
+
+
+def _convert(options: argparse.Namespace) -> int:
+    from polhode._io.convert import OPTIONS, READ, WRITTEN, form_of, load, write
+    from polhode._io.history import FileError
+    from polhode._report.output import require_own
+
+    try:
+        of_source, of_target = (
+            form_of(options.source, READ, "read"),
+            form_of(options.target, WRITTEN, "written"),
+        )
+    except ValueError as error:
+        options.parser.error(str(error))
+    takes = {"read": OPTIONS["read", of_source], "write": OPTIONS["write", of_target]}
+    given = {name: x for name in {*_READING, *_WRITING} if (x := getattr(options, name)) is not None}
+    for name in given:
+        if name not in takes["read"] and name not in takes["write"]:
+            flag = "--aem-version" if name == "version" else f"--{name.replace('_', '-')}"
+            options.parser.error(f"{flag} does not apply from .{of_source} to .{of_target}")
+    target = Path(options.target)
+    check_target(target)
+    if not options.force:
+        require_own(target)
+    try:
+        motion = load(options.source, **{name: x for name, x in given.items() if name in takes["read"]})
+    except FileError as error:
+        raise UnreadableError(_with_flags(str(error))) from None
+    try:
+        write(motion, target, **{name: x for name, x in given.items() if name in takes["write"]})
+    except ValueError as error:
+        raise ValueError(_with_flags(str(error))) from None
+    print(f"Written\n  {target}")
+    return common.OK
+
+
+def _with_flags(message: str) -> str:
+    """Return a message with the options of the command for the arguments of Python."""
+    names = "|".join({*_READING, *_WRITING})
+    return re.sub(rf"\b({names})=", lambda found: f"--{found[1].replace('_', '-')}=", message)

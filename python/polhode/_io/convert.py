@@ -1,0 +1,80 @@
+"""Reading and writing files by their suffix, as ``polhode convert`` does."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from polhode._io import aem, aem_writing, tables
+from polhode._io.history import AttitudeHistory, FileError
+from polhode._mechanics.trajectory import Trajectory
+
+_READERS: dict[str, Callable[..., AttitudeHistory]] = {
+    "aem": aem.read_aem,
+    "csv": tables.read_csv,
+    "nc": tables.read_netcdf,
+    "parquet": tables.read_parquet,
+}
+READ, WRITTEN = tuple(_READERS), ("aem", "csv", "nc", "parquet")
+# Options of the formats, by what is done and the suffix.
+_OF_TABLES = ("body",)
+OPTIONS: dict[tuple[str, str], tuple[str, ...]] = {
+    ("read", "aem"): ("segment", "epoch", "body_frame", "quaternion_type", "attitude_dir", "angvel_frame"),
+    ("read", "csv"): _OF_TABLES,
+    ("read", "parquet"): _OF_TABLES,
+    ("read", "nc"): (),
+    ("write", "aem"): (
+        *("epoch", "time_system", "reference_frame", "body_frame", "version", "originator"),
+        *("object_name", "object_id", "center_name"),
+    ),
+    **{("write", form): () for form in ("csv", "nc", "parquet")},
+}
+
+
+def form_of(path: str | os.PathLike[str], forms: tuple[str, ...], done: str) -> str:
+    """Return the suffix of a path in lower case; a ValueError if it is not among the forms."""
+    form = Path(path).suffix.lower().removeprefix(".")
+    if form not in forms:
+        *others, last = (f".{x}" for x in forms)
+        raise ValueError(
+            f"files that can be {done} end in {', '.join(others)} or {last}, got {os.fspath(path)!r}"
+        )
+    return form
+
+
+def read(path: str | os.PathLike[str], **options: Any) -> AttitudeHistory:
+    """Read the attitudes of one body from a file: ``.aem``, ``.csv``, ``.nc`` or ``.parquet``.
+
+    Options are those of `read_aem`, `read_csv` and `read_parquet`.
+    """
+    return _READERS[form_of(path, READ, "read")](path, **options)
+
+
+def write(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[str], **options: Any) -> None:
+    """Write the motion of one body to a file, atomically: ``.aem``, ``.csv``, ``.nc`` or ``.parquet``.
+
+    Options are those of `write_aem`; the other formats have none. A CSV file has no attributes.
+    """
+    form = form_of(path, WRITTEN, "written")
+    if form == "aem":
+        aem_writing.write_aem(motion, path, **options)
+    elif options:
+        raise TypeError(f"a .{form} file has no option {next(iter(options))!r}")
+    else:
+        tables.write_table(motion, path, form)
+
+
+def load(path: str | os.PathLike[str], **options: Any) -> Trajectory | AttitudeHistory:
+    """Return the motion in a file: a trajectory with all that it has, if the file has one, else a history."""
+    if not options and form_of(path, READ, "read") == "nc":
+        history = tables.read_netcdf(path)
+        try:
+            return Trajectory.read(path)
+        except ValueError:
+            return history
+    return read(path, **options)
+
+
+__all__ = ["READ", "WRITTEN", "FileError", "form_of", "load", "read", "write"]

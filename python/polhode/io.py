@@ -7,6 +7,7 @@ must be given as arguments; they are never guessed.
 from polhode._io.aem import read_aem
 from polhode._io.aem_writing import write_aem
 from polhode._io.convert import read, write
+from polhode._io.gltf import write_gltf
 from polhode._io.history import AttitudeHistory, FileError
 from polhode._io.tables import read_csv, read_netcdf, read_parquet
 
@@ -20,6 +21,7 @@ __all__ = [
     "read_parquet",
     "write",
     "write_aem",
+    "write_gltf",
 ]
 
 

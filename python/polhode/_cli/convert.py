@@ -7,6 +7,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from polhode._cli import common
 from polhode._cli.common import add_command, whole_number
 from polhode._support.files import UnreadableError, check_target
@@ -27,7 +29,8 @@ def add(commands: Any) -> None:
         _convert,
         help="convert files of attitudes and motions",
         description="Convert the motion of one body from file A to file B: netCDF (.nc), CSV, Parquet and "
-        "CCSDS AEM (.aem) by their suffixes. Quaternion order, direction and frames that a file does not "
+        "CCSDS AEM (.aem) by their suffixes; B may also be a glTF animation (.glb, .gltf). Quaternion "
+        " order, direction and frames that a file does not "
         "state must be given; they are never guessed.",
     )
     convert.add_argument("source", metavar="A", help="the file to read")
@@ -58,6 +61,8 @@ def add(commands: Any) -> None:
     convert.add_argument("--segment", metavar="N", type=number, help="segment of an AEM, from 1")
     number = whole_number("number of the body", 0, float("inf"))
     convert.add_argument("--body", metavar="N", type=number, help="body of a CSV or Parquet file of a batch")
+    text = "scene whose mesh or mass gives the body of a glTF animation"
+    convert.add_argument("--scene", metavar="SCENE.toml", help=text)
     words_of_force = "overwrite an existing file even if polhode did not write it"
     convert.add_argument("--force", action="store_true", help=words_of_force)
 
@@ -80,6 +85,11 @@ def _convert(options: argparse.Namespace) -> int:
         if name not in takes["read"] and name not in takes["write"]:
             flag = "--aem-version" if name == "version" else f"--{name.replace('_', '-')}"
             options.parser.error(f"{flag} does not apply from .{of_source} to .{of_target}")
+    shape: dict[str, Any] = {}
+    if options.scene is not None:
+        if "surface" not in takes["write"]:
+            options.parser.error(f"--scene does not apply from .{of_source} to .{of_target}")
+        shape = _shape(options.scene)
     target = Path(options.target)
     check_target(target)
     if not options.force:
@@ -89,11 +99,23 @@ def _convert(options: argparse.Namespace) -> int:
     except FileError as error:
         raise UnreadableError(_with_flags(str(error))) from None
     try:
-        write(motion, target, **{name: x for name, x in given.items() if name in takes["write"]})
+        write(motion, target, **shape, **{name: x for name, x in given.items() if name in takes["write"]})
     except ValueError as error:
         raise ValueError(_with_flags(str(error))) from None
     print(f"Written\n  {target}")
     return common.OK
+
+
+def _shape(name: str) -> dict[str, Any]:
+    """Return the surface of a scene's body about the point whose position a motion has, or its mass."""
+    scene = common.read_scene(name)
+    found = scene.surface() if name != "-" else None
+    if found is not None:
+        vertices, triangles = found
+        if not scene.held:
+            vertices = vertices - np.asarray(scene.body.center_of_mass.components)
+        return {"surface": (vertices, triangles)}
+    return {"mass": scene.body.mass} if scene.has_mass else {}
 
 
 def _with_flags(message: str) -> str:

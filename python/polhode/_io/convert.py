@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from polhode._io import aem, aem_writing, tables
+from polhode._io import aem, aem_writing, gltf, tables
 from polhode._io.history import AttitudeHistory, FileError
 from polhode._mechanics.trajectory import Trajectory
 
@@ -17,7 +17,7 @@ _READERS: dict[str, Callable[..., AttitudeHistory]] = {
     "nc": tables.read_netcdf,
     "parquet": tables.read_parquet,
 }
-READ, WRITTEN = tuple(_READERS), ("aem", "csv", "nc", "parquet")
+READ, WRITTEN = tuple(_READERS), ("aem", "csv", "glb", "gltf", "nc", "parquet")
 # Options of the formats, by what is done and the suffix.
 _OF_TABLES = ("body",)
 OPTIONS: dict[tuple[str, str], tuple[str, ...]] = {
@@ -29,6 +29,7 @@ OPTIONS: dict[tuple[str, str], tuple[str, ...]] = {
         *("epoch", "time_system", "reference_frame", "body_frame", "version", "originator"),
         *("object_name", "object_id", "center_name"),
     ),
+    **{("write", form): ("surface", "mass") for form in ("glb", "gltf")},
     **{("write", form): () for form in ("csv", "nc", "parquet")},
 }
 
@@ -53,13 +54,16 @@ def read(path: str | os.PathLike[str], **options: Any) -> AttitudeHistory:
 
 
 def write(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[str], **options: Any) -> None:
-    """Write the motion of one body to a file, atomically: ``.aem``, ``.csv``, ``.nc`` or ``.parquet``.
+    """Write the motion of one body to a file, atomically, in the form of its suffix.
 
-    Options are those of `write_aem`; the other formats have none. A CSV file has no attributes.
+    The suffixes are ``.aem``, ``.csv``, ``.glb``, ``.gltf``, ``.nc`` and ``.parquet``. Options are those of
+    `write_aem` and `write_gltf`; tables have none. A CSV file has no attributes.
     """
     form = form_of(path, WRITTEN, "written")
     if form == "aem":
         aem_writing.write_aem(motion, path, **options)
+    elif form in ("glb", "gltf"):
+        gltf.write_gltf(motion, path, **options)
     elif options:
         raise TypeError(f"a .{form} file has no option {next(iter(options))!r}")
     else:

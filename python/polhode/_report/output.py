@@ -60,6 +60,8 @@ def is_own(path: Path) -> bool:
             return line in (table.header(False), table.header(True))
         case ".aem":
             return head.startswith(b"CCSDS_AEM_VERS") and b"\nCOMMENT Written by polhode " in head
+        case ".glb" | ".gltf":
+            return b'"generator":"Polhode ' in head
         case ".png":
             return head.startswith(b"\x89PNG") and b"tEXtSoftware\0Polhode" in head
         case ".html" | ".htm":

@@ -9,6 +9,7 @@ from polhode._io.aem_writing import write_aem
 from polhode._io.convert import read, write
 from polhode._io.gltf import write_gltf
 from polhode._io.history import AttitudeHistory, FileError
+from polhode._io.spice import read_ck, write_ck
 from polhode._io.tables import read_csv, read_netcdf, read_parquet
 
 __all__ = [
@@ -16,11 +17,13 @@ __all__ = [
     "FileError",
     "read",
     "read_aem",
+    "read_ck",
     "read_csv",
     "read_netcdf",
     "read_parquet",
     "write",
     "write_aem",
+    "write_ck",
     "write_gltf",
 ]
 

@@ -14,7 +14,16 @@ from polhode._cli.common import add_command, whole_number
 from polhode._support.files import UnreadableError, check_target
 
 # Options that a reader takes, and those of the written file; each is given to the format that has it.
-_READING = ("segment", "body", "epoch", "body_frame", "quaternion_type", "attitude_dir", "angvel_frame")
+_READING = (
+    "kernels",
+    "segment",
+    "body",
+    "epoch",
+    "body_frame",
+    "quaternion_type",
+    "attitude_dir",
+    "angvel_frame",
+)
 _WRITING = (
     *("epoch", "time_system", "reference_frame", "body_frame", "version", "originator"),
     *("object_name", "object_id", "center_name"),
@@ -29,9 +38,8 @@ def add(commands: Any) -> None:
         _convert,
         help="convert files of attitudes and motions",
         description="Convert the motion of one body from file A to file B: netCDF (.nc), CSV, Parquet and "
-        "CCSDS AEM (.aem) by their suffixes; B may also be a glTF animation (.glb, .gltf). Quaternion "
-        " order, direction and frames that a file does not "
-        "state must be given; they are never guessed.",
+        "CCSDS AEM (.aem) and SPICE CK (.bc) by their suffixes; B may also be a glTF animation (.glb, "
+        ".gltf). Quaternion order, direction and frames that a file does not state must be given; they are never guessed.",
     )
     convert.add_argument("source", metavar="A", help="the file to read")
     convert.add_argument("target", metavar="B", help="the file to write")
@@ -39,10 +47,10 @@ def add(commands: Any) -> None:
         "epoch": ("ISO", "epoch of time 0, such as 2026-01-01T00:00:00"),
         "time-system": (
             "NAME",
-            "time system of a written AEM: UTC, TAI, TT, TDB, GPS, TCB or TCG, default UTC",
+            "time system of the epoch: UTC, TAI, TT, TDB, GPS, TCB or TCG, default UTC",
         ),
-        "reference-frame": ("NAME", "REF_FRAME_A of a written AEM, such as EME2000"),
-        "body-frame": ("NAME", "name of the body's frame in an AEM"),
+        "reference-frame": ("NAME", "frame of space in a written AEM or CK, such as EME2000"),
+        "body-frame": ("NAME", "name of the body's frame in an AEM or a written CK"),
         "object-name": ("NAME", "OBJECT_NAME of a written AEM"),
         "object-id": ("ID", "OBJECT_ID of a written AEM"),
         "center-name": ("NAME", "CENTER_NAME of a written AEM"),
@@ -61,6 +69,8 @@ def add(commands: Any) -> None:
     convert.add_argument("--segment", metavar="N", type=number, help="segment of an AEM, from 1")
     number = whole_number("number of the body", 0, float("inf"))
     convert.add_argument("--body", metavar="N", type=number, help="body of a CSV or Parquet file of a batch")
+    text = "kernel for a CK: leapseconds, clock and frames, each with its own --kernel"
+    convert.add_argument("--kernel", dest="kernels", metavar="FILE", action="append", help=text)
     text = "scene whose mesh or mass gives the body of a glTF animation"
     convert.add_argument("--scene", metavar="SCENE.toml", help=text)
     words_of_force = "overwrite an existing file even if polhode did not write it"
@@ -83,8 +93,7 @@ def _convert(options: argparse.Namespace) -> int:
     given = {name: x for name in {*_READING, *_WRITING} if (x := getattr(options, name)) is not None}
     for name in given:
         if name not in takes["read"] and name not in takes["write"]:
-            flag = "--aem-version" if name == "version" else f"--{name.replace('_', '-')}"
-            options.parser.error(f"{flag} does not apply from .{of_source} to .{of_target}")
+            options.parser.error(f"{_flag(name)} does not apply from .{of_source} to .{of_target}")
     shape: dict[str, Any] = {}
     if options.scene is not None:
         if "surface" not in takes["write"]:
@@ -121,4 +130,9 @@ def _shape(name: str) -> dict[str, Any]:
 def _with_flags(message: str) -> str:
     """Return a message with the options of the command for the arguments of Python."""
     names = "|".join({*_READING, *_WRITING})
-    return re.sub(rf"\b({names})=", lambda found: f"--{found[1].replace('_', '-')}=", message)
+    return re.sub(rf"\b({names})=", lambda found: f"{_flag(found[1])}=", message)
+
+
+def _flag(name: str) -> str:
+    """Return the option of the command for an argument of Python."""
+    return {"version": "--aem-version", "kernels": "--kernel"}.get(name, f"--{name.replace('_', '-')}")

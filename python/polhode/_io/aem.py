@@ -19,7 +19,7 @@ import numpy as np
 from polhode._algebra.constructors import bivector
 from polhode._algebra.rotor import Rotor
 from polhode._io.epochs import TIME_SYSTEMS, Epoch, elapsed, parse_epoch
-from polhode._io.history import AttitudeHistory, FileError
+from polhode._io.history import AttitudeHistory, FileError, continuous
 from polhode._mechanics.robots.document import Source
 from polhode._support.arrays import Array
 
@@ -139,7 +139,7 @@ def read_aem(
     # Ours turns the basis vectors of space to those of the body.
     if (words["ATTITUDE_DIR"] == "A2B") != body_is_b:
         quaternions = quaternions * [1.0, -1.0, -1.0, -1.0]
-    rotor = Rotor.from_quaternion(_continuous(_unit(quaternions, chosen)), order="wxyz")
+    rotor = Rotor.from_quaternion(continuous(_unit(quaternions, chosen)), order="wxyz")
     omega = None
     if numbers.shape[1] == 7:
         if words["ATTITUDE_DIR"] == "B2A":
@@ -378,10 +378,3 @@ def _unit(quaternions: Array, segment: _Segment) -> Array:
         raise segment.lines[k].error(f"the quaternion must have norm 1, got {norms[k]:.6g}")
     exact = np.abs(norms - 1) <= _ROUNDING
     return quaternions / np.where(exact, 1.0, norms)[:, np.newaxis]
-
-
-def _continuous(quaternions: Array) -> Array:
-    """Return quaternions with signs such that neighbours differ by less than half a turn."""
-    turned = np.einsum("ni,ni->n", quaternions[1:], quaternions[:-1]) < 0
-    signs = np.concatenate([[1.0], np.cumprod(np.where(turned, -1.0, 1.0))])
-    return np.asarray(quaternions * signs[:, np.newaxis])

@@ -163,3 +163,10 @@ class AttitudeHistory:
             ),
             attributes=dict(self.attributes),
         )
+
+
+def continuous(quaternions: Array) -> Array:
+    """Return quaternions with signs such that neighbours differ by less than half a turn."""
+    turned = np.einsum("ni,ni->n", quaternions[1:], quaternions[:-1]) < 0
+    signs = np.concatenate([[1.0], np.cumprod(np.where(turned, -1.0, 1.0))])
+    return np.asarray(quaternions * signs[:, np.newaxis])

@@ -28,7 +28,7 @@ from polhode._native import SceneError
 from polhode._native import __version__ as __version__
 
 if TYPE_CHECKING:
-    from polhode import event, force, torque
+    from polhode import event, force, io, torque
     from polhode import jax as jax
     from polhode._algebra.cga import CGA, cga
     from polhode._algebra.estimation import Alignment, align, mean
@@ -69,10 +69,10 @@ __all__ = [
     "RotorSpline", "Scene", "SceneError", "Screw", "State", "Stepper", "SymmetricTop", "Trajectory",
     "adjoint_matrix", "algebra", "align", "attitude_from_rates", "axial", "bivector", "cga", "concatenate",
     "cross", "describe_free", "e1", "e2", "e3", "evaluate", "event", "fit", "force", "formula",
-    "from_axial", "from_dict", "from_pauli", "left_jacobian", "mean", "multivector", "omega_from_periods",
-    "pga", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf", "reciprocal_frame",
-    "right_jacobian", "scalar", "screw_parameters", "simulate", "simulate_blocks", "slerp", "split",
-    "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
+    "from_axial", "from_dict", "from_pauli", "io", "left_jacobian", "mean", "multivector",
+    "omega_from_periods", "pga", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf",
+    "reciprocal_frame", "right_jacobian", "scalar", "screw_parameters", "simulate", "simulate_blocks",
+    "slerp", "split", "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
 ]
 # fmt: on
 
@@ -109,7 +109,7 @@ _LATER = {
     }.items()
     for name in names.split()
 }
-_MODULES = ("event", "force", "jax", "torque")
+_MODULES = ("event", "force", "io", "jax", "torque")
 # What other libraries call them.
 _HABITS = {
     "Cl": "algebra",

@@ -46,7 +46,7 @@ def test_the_algebra_depends_on_nothing():
 # belong to mechanics.
 FOLDERS = (
     *("_support", "_generic", "_algebra", "_formula", "_mechanics"),
-    *("jax", "_scene", "_report", "_viewer", "_figures", "_fit", "_outputs", "_cli", "__main__"),
+    *("jax", "_scene", "_report", "_io", "io", "_viewer", "_figures", "_fit", "_outputs", "_cli", "__main__"),
 )
 
 

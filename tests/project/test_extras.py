@@ -10,6 +10,7 @@ import polhode as ph
 from polhode._cli import main
 
 EXAMPLE = Path(__file__).parents[2] / "examples/toutatis.toml"
+CK = {"epoch": "2026-01-01T00:00:00", "body_frame": "A", "reference_frame": "J2000"}
 
 
 @pytest.fixture
@@ -26,6 +27,7 @@ def trajectory():
         ("pyarrow.parquet", "parquet", lambda t, path: t.save(path / "a.parquet")),
         ("pandas", "parquet", lambda t, path: t.save(path / "a.parquet")),
         ("pandas", "pandas", lambda t, path: t.to_dataframe()),
+        ("spiceypy", "spice", lambda t, path: ph.io.write_ck(t, path / "a.bc", kernels=[], **CK)),
         ("matplotlib.figure", "plot", lambda t, path: t.plot()),
         ("scipy.spatial.transform", "scipy", lambda t, path: t.rotor.to_scipy()),
         ("scipy.optimize", "scipy", lambda t, path: ph.fit(rates=(t.time, t.omega_body))),

@@ -9,7 +9,7 @@ import polhode as ph
 import processes
 from command_line import polhode
 
-MODULES = ["torque", "force", "event", "strategies", "jax", "jax.torque"]
+MODULES = ["torque", "force", "event", "io", "strategies", "jax", "jax.torque"]
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -66,21 +66,14 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
         variables[name] = _quantity(name, ("body", "time") if shape else ("time",), flat)
     speeds = trajectory.wheel_speed
     if speeds.shape[-1]:
-        along = ("body", "time", "wheel") if shape else ("time", "wheel")
         flat = speeds.reshape(count, *speeds.shape[-2:]) if shape else speeds
-        text = "speed of reaction wheels relative to the body"
-        variables["wheel_speed"] = _variable(along, flat, "rad/s", text)
+        variables["wheel_speed"] = wheels_of(("body", "time") if shape else ("time",), flat)
     if isinstance(trajectory.inertia, np.ndarray):
         matrices = np.array([inertia.matrix for inertia in trajectory.inertia.flat]).reshape(count, 3, 3)
         variables["inertia"] = _quantity("inertia", ("body",), matrices)
     else:
         variables["inertia"] = _quantity("inertia", (), trajectory.inertia.matrix)
-    coordinates: dict[str, Any] = {
-        "time": ("time", trajectory.time, {"units": "s", "long_name": "time", "axis": "T"}),
-        "quaternion": ["w", "x", "y", "z"],
-        "axis": ["x", "y", "z"],
-        "axis_": ["x", "y", "z"],
-    }
+    coordinates = _coordinates(trajectory.time)
     if trajectory.events:
         variables |= _events(trajectory.events)
     if shape:
@@ -88,6 +81,20 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
         variables |= _bodies(trajectory)
     dataset: xarray.Dataset = xr.Dataset(variables, coordinates, attributes_of(trajectory))
     return dataset
+
+
+def wheels_of(over: tuple[str, ...], speeds: Any) -> Any:
+    """Return the variable of the speeds of reaction wheels."""
+    return _variable((*over, "wheel"), speeds, "rad/s", "speed of reaction wheels relative to the body")
+
+
+def _coordinates(time: Any) -> dict[str, Any]:
+    return {
+        "time": ("time", time, {"units": "s", "long_name": "time", "axis": "T"}),
+        "quaternion": ["w", "x", "y", "z"],
+        "axis": ["x", "y", "z"],
+        "axis_": ["x", "y", "z"],
+    }
 
 
 def _variable(dims: tuple[str, ...], data: Any, units: str, text: str) -> Any:
@@ -154,16 +161,32 @@ def require_libraries() -> None:
 def netcdf(trajectory: Trajectory) -> bytes:
     """Return the content of a netCDF4 file."""
     require_libraries()
-    dataset = to_xarray(trajectory)
+    return _bytes_of(to_xarray(trajectory))
+
+
+def encoded(time: Any, variables: dict[str, Any], attributes: dict[str, Any]) -> bytes:
+    """Return the content of a netCDF4 file of some quantities of a motion."""
+    xr = optional("xarray", "io", "labelled data")
+    used = {dim for dims, *_ in variables.values() for dim in dims}
+    coordinates = {name: x for name, x in _coordinates(time).items() if name in used}
+    return _bytes_of(xr.Dataset(variables, coordinates, attributes))
+
+
+def _bytes_of(dataset: xarray.Dataset) -> bytes:
     buffer = io.BytesIO()
     dataset.to_netcdf(buffer, engine="h5netcdf", encoding={"time": {"_FillValue": None}})
     return buffer.getvalue()
 
 
+def origin() -> dict[str, Any]:
+    """Return the attributes that any file of a motion has."""
+    return {"conventions": CONVENTIONS, "source": f"polhode {_native.__version__}"}
+
+
 def attributes_of(trajectory: Trajectory) -> dict[str, Any]:
     """Return attributes: flat text and numbers, which every netCDF reader shows."""
     proof = trajectory.certificate
-    attributes: dict[str, Any] = {"conventions": CONVENTIONS, "source": f"polhode {_native.__version__}"}
+    attributes = origin()
     if isinstance(proof.method, str):
         attributes["method"] = proof.method
     if trajectory.shape:
@@ -186,7 +209,7 @@ def attributes_of(trajectory: Trajectory) -> dict[str, Any]:
 # --- reading
 
 # Foreign files may have any size: nothing else is read.
-_READ = {"time", *MOTION}
+_READ = {"time", "wheel_speed", *MOTION}
 # Attributes written here or by the library; all others are the user's.
 _OWN = {
     *("conventions", "source", "method", "step_s", "steps", "evaluations", "conserved", "drift"),

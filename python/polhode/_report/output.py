@@ -55,9 +55,15 @@ def is_own(path: Path) -> bool:
             return _source_of_netcdf(path).startswith("polhode ")
         case ".parquet":
             return _source_of_parquet(path).startswith("polhode ")
+        case ".bc":
+            return head.startswith(b"DAF/CK ") and head[16:76].startswith(b"polhode ")
         case ".csv":
             line = head.splitlines()[0].decode(errors="replace").partition(",wheel_speed_0")[0]
             return line in (table.header(False), table.header(True))
+        case ".aem":
+            return head.startswith(b"CCSDS_AEM_VERS") and b"\nCOMMENT Written by polhode " in head
+        case ".glb" | ".gltf":
+            return b'"generator":"Polhode ' in head
         case ".png":
             return head.startswith(b"\x89PNG") and b"tEXtSoftware\0Polhode" in head
         case ".html" | ".htm":

@@ -1,0 +1,138 @@
+"""The command ``polhode convert``."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from polhode._cli import common
+from polhode._cli.common import add_command, whole_number
+from polhode._support.files import UnreadableError, check_target
+
+# Options that a reader takes, and those of the written file; each is given to the format that has it.
+_READING = (
+    "kernels",
+    "segment",
+    "body",
+    "epoch",
+    "body_frame",
+    "quaternion_type",
+    "attitude_dir",
+    "angvel_frame",
+)
+_WRITING = (
+    *("epoch", "time_system", "reference_frame", "body_frame", "version", "originator"),
+    *("object_name", "object_id", "center_name"),
+)
+
+
+def add(commands: Any) -> None:
+    """Add the command to those of `polhode`."""
+    convert = add_command(
+        commands,
+        "convert",
+        _convert,
+        help="convert files of attitudes and motions",
+        description="Convert the motion of one body from file A to file B: netCDF (.nc), CSV, Parquet and "
+        "CCSDS AEM (.aem) and SPICE CK (.bc) by their suffixes; B may also be a glTF animation (.glb, "
+        ".gltf). Quaternion order, direction and frames that a file does not state must be given; they are never guessed.",
+    )
+    convert.add_argument("source", metavar="A", help="the file to read")
+    convert.add_argument("target", metavar="B", help="the file to write")
+    words = {
+        "epoch": ("ISO", "epoch of time 0, such as 2026-01-01T00:00:00"),
+        "time-system": (
+            "NAME",
+            "time system of the epoch: UTC, TAI, TT, TDB, GPS, TCB or TCG, default UTC",
+        ),
+        "reference-frame": ("NAME", "frame of space in a written AEM or CK, such as EME2000"),
+        "body-frame": ("NAME", "name of the body's frame in an AEM or a written CK"),
+        "object-name": ("NAME", "OBJECT_NAME of a written AEM"),
+        "object-id": ("ID", "OBJECT_ID of a written AEM"),
+        "center-name": ("NAME", "CENTER_NAME of a written AEM"),
+        "originator": ("NAME", "ORIGINATOR of a written AEM"),
+        "angvel-frame": ("NAME", "frame of angular velocities, for an AEM without ANGVEL_FRAME"),
+    }
+    for name, (metavar, text) in words.items():
+        convert.add_argument(f"--{name}", metavar=metavar, help=text)
+    text = "version of a written AEM: 2.0 (default) or 1.0"
+    convert.add_argument("--aem-version", dest="version", choices=("1.0", "2.0"), help=text)
+    text = "place of the scalar, for an AEM without QUATERNION_TYPE"
+    convert.add_argument("--quaternion-type", choices=("FIRST", "LAST"), help=text)
+    text = "direction of the attitude, for an AEM without ATTITUDE_DIR"
+    convert.add_argument("--attitude-dir", choices=("A2B", "B2A"), help=text)
+    number = whole_number("number of the segment", 1, float("inf"))
+    convert.add_argument("--segment", metavar="N", type=number, help="segment of an AEM, from 1")
+    number = whole_number("number of the body", 0, float("inf"))
+    convert.add_argument("--body", metavar="N", type=number, help="body of a CSV or Parquet file of a batch")
+    text = "kernel for a CK: leapseconds, clock and frames, each with its own --kernel"
+    convert.add_argument("--kernel", dest="kernels", metavar="FILE", action="append", help=text)
+    text = "scene whose mesh or mass gives the body of a glTF animation"
+    convert.add_argument("--scene", metavar="SCENE.toml", help=text)
+    words_of_force = "overwrite an existing file even if polhode did not write it"
+    convert.add_argument("--force", action="store_true", help=words_of_force)
+
+
+def _convert(options: argparse.Namespace) -> int:
+    from polhode._io.convert import OPTIONS, READ, WRITTEN, form_of, load, write
+    from polhode._io.history import FileError
+    from polhode._report.output import require_own
+
+    try:
+        of_source, of_target = (
+            form_of(options.source, READ, "read"),
+            form_of(options.target, WRITTEN, "written"),
+        )
+    except ValueError as error:
+        options.parser.error(str(error))
+    takes = {"read": OPTIONS["read", of_source], "write": OPTIONS["write", of_target]}
+    given = {name: x for name in {*_READING, *_WRITING} if (x := getattr(options, name)) is not None}
+    for name in given:
+        if name not in takes["read"] and name not in takes["write"]:
+            options.parser.error(f"{_flag(name)} does not apply from .{of_source} to .{of_target}")
+    shape: dict[str, Any] = {}
+    if options.scene is not None:
+        if "surface" not in takes["write"]:
+            options.parser.error(f"--scene does not apply from .{of_source} to .{of_target}")
+        shape = _shape(options.scene)
+    target = Path(options.target)
+    check_target(target)
+    if not options.force:
+        require_own(target)
+    try:
+        motion = load(options.source, **{name: x for name, x in given.items() if name in takes["read"]})
+    except FileError as error:
+        raise UnreadableError(_with_flags(str(error))) from None
+    try:
+        write(motion, target, **shape, **{name: x for name, x in given.items() if name in takes["write"]})
+    except ValueError as error:
+        raise ValueError(_with_flags(str(error))) from None
+    print(f"Written\n  {target}")
+    return common.OK
+
+
+def _shape(name: str) -> dict[str, Any]:
+    """Return the surface of a scene's body about the point whose position a motion has, or its mass."""
+    scene = common.read_scene(name)
+    found = scene.surface() if name != "-" else None
+    if found is not None:
+        vertices, triangles = found
+        if not scene.held:
+            vertices = vertices - np.asarray(scene.body.center_of_mass.components)
+        return {"surface": (vertices, triangles)}
+    return {"mass": scene.body.mass} if scene.has_mass else {}
+
+
+def _with_flags(message: str) -> str:
+    """Return a message with the options of the command for the arguments of Python."""
+    names = "|".join({*_READING, *_WRITING})
+    return re.sub(rf"\b({names})=", lambda found: f"{_flag(found[1])}=", message)
+
+
+def _flag(name: str) -> str:
+    """Return the option of the command for an argument of Python."""
+    return {"version": "--aem-version", "kernels": "--kernel"}.get(name, f"--{name.replace('_', '-')}")

@@ -1,0 +1,1 @@
+"""Files of attitudes and motions in the formats of other programs."""

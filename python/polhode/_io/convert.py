@@ -1,0 +1,98 @@
+"""Reading and writing files by their suffix, as ``polhode convert`` does."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from polhode._io import aem, aem_writing, gltf, spice, tables
+from polhode._io.history import AttitudeHistory, FileError
+from polhode._mechanics.trajectory import Trajectory
+
+_READERS: dict[str, Callable[..., AttitudeHistory]] = {
+    "aem": aem.read_aem,
+    "bc": spice.read_ck,
+    "csv": tables.read_csv,
+    "nc": tables.read_netcdf,
+    "parquet": tables.read_parquet,
+}
+READ, WRITTEN = tuple(_READERS), ("aem", "bc", "csv", "glb", "gltf", "nc", "parquet")
+# Options of the formats, by what is done and the suffix.
+_OF_TABLES = ("body",)
+OPTIONS: dict[tuple[str, str], tuple[str, ...]] = {
+    ("read", "aem"): ("segment", "epoch", "body_frame", "quaternion_type", "attitude_dir", "angvel_frame"),
+    ("read", "bc"): ("kernels", "segment", "epoch", "time_system"),
+    ("read", "csv"): _OF_TABLES,
+    ("read", "parquet"): _OF_TABLES,
+    ("read", "nc"): (),
+    ("write", "aem"): (
+        *("epoch", "time_system", "reference_frame", "body_frame", "version", "originator"),
+        *("object_name", "object_id", "center_name"),
+    ),
+    ("write", "bc"): ("kernels", "epoch", "time_system", "reference_frame", "body_frame"),
+    **{("write", form): ("surface", "mass") for form in ("glb", "gltf")},
+    **{("write", form): () for form in ("csv", "nc", "parquet")},
+}
+
+
+def form_of(path: str | os.PathLike[str], forms: tuple[str, ...], done: str) -> str:
+    """Return the suffix of a path in lower case; a ValueError if it is not among the forms."""
+    form = Path(path).suffix.lower().removeprefix(".")
+    if form not in forms:
+        *others, last = (f".{x}" for x in forms)
+        raise ValueError(
+            f"files that can be {done} end in {', '.join(others)} or {last}, got {os.fspath(path)!r}"
+        )
+    return form
+
+
+def read(path: str | os.PathLike[str], **options: Any) -> AttitudeHistory:
+    """Read the attitudes of one body from a file, in the form of its suffix.
+
+    The suffixes are ``.aem``, ``.bc`` (SPICE CK), ``.csv``, ``.nc`` and ``.parquet``. Options are those of
+    `read_aem`, `read_ck`, `read_csv` and `read_parquet`.
+    """
+    form = form_of(path, READ, "read")
+    return _READERS[form](path, **_with_kernels(options) if form == "bc" else options)
+
+
+def write(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[str], **options: Any) -> None:
+    """Write the motion of one body to a file, atomically, in the form of its suffix.
+
+    The suffixes are ``.aem``, ``.bc`` (SPICE CK), ``.csv``, ``.glb``, ``.gltf``, ``.nc`` and ``.parquet``.
+    Options are those of `write_aem`, `write_ck` and `write_gltf`; tables have none. A CSV file has no
+    attributes.
+    """
+    form = form_of(path, WRITTEN, "written")
+    if form == "aem":
+        aem_writing.write_aem(motion, path, **options)
+    elif form == "bc":
+        spice.write_ck(motion, path, **_with_kernels(options))
+    elif form in ("glb", "gltf"):
+        gltf.write_gltf(motion, path, **options)
+    elif options:
+        raise TypeError(f"a .{form} file has no option {next(iter(options))!r}")
+    else:
+        tables.write_table(motion, path, form)
+
+
+def _with_kernels(options: dict[str, Any]) -> dict[str, Any]:
+    if not options.get("kernels"):
+        raise ValueError("a CK needs kernels= the paths of its leapseconds, clock and frame kernels")
+    return options
+
+
+def load(path: str | os.PathLike[str], **options: Any) -> Trajectory | AttitudeHistory:
+    """Return the motion in a file: a trajectory with all that it has, if the file has one, else a history."""
+    if not options and form_of(path, READ, "read") == "nc":
+        history = tables.read_netcdf(path)
+        try:
+            return Trajectory.read(path)
+        except ValueError:
+            return history
+    return read(path, **options)
+
+
+__all__ = ["READ", "WRITTEN", "FileError", "form_of", "load", "read", "write"]

@@ -1,0 +1,207 @@
+"""glTF 2.0 animations of a body (.glb and .gltf)."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import struct
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._io.history import AttitudeHistory
+from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.trajectory import Trajectory
+from polhode._support.arrays import Array
+from polhode._support.files import write_atomically
+
+# Constants of glTF: component types, and targets of buffer views.
+_FLOAT, _UINT = 5126, 5125
+_VERTICES, _INDICES = 34962, 34963
+# glTF has +Y up: space is turned so that its e3 is up.
+_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
+# Corners of a cube of side 2, and its faces, counter-clockwise seen from outside.
+_CORNERS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+_FACES = [
+    *([0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]),
+    *([2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]),
+]
+
+
+def write_gltf(
+    motion: Trajectory | AttitudeHistory,
+    path: str | os.PathLike[str],
+    *,
+    surface: tuple[Any, Any] | None = None,
+    mass: float | None = None,
+) -> None:
+    """Write an animation of one body as glTF 2.0, atomically: FILE.glb (binary) or FILE.gltf (text).
+
+    The node ``body`` carries the mesh and two tracks, its rotation and its translation, at the output times,
+    from the first one on; it is a child of the node ``space``, which turns e3 up. Numbers are floats of 32
+    bits, as glTF has them.
+
+    Parameters
+    ----------
+    surface
+        Vertices (n, 3) in m and triangles (m, 3), counter-clockwise seen from outside, in body axes through
+        the point whose position the motion has: the centre of mass, or the fixed point. By default a box with
+        the same principal moments as the body, in its principal axes.
+    mass
+        Mass of the box in kg. By default, the longest side of the box is 1 m.
+
+    Raises
+    ------
+    ValueError
+        For a batch, fewer than two output times, another suffix, and a history without a surface.
+    OSError
+        If the file cannot be written; an older file stays.
+
+    Warns
+    -----
+    UserWarning
+        If the body turns by more than half a turn between output times, so that the animation shows another
+        motion.
+    """
+    form = Path(path).suffix.lower()
+    if form not in (".glb", ".gltf"):
+        raise ValueError(f"an animation is saved as FILE.glb or FILE.gltf, not {os.fspath(path)!r}")
+    history = AttitudeHistory.of(motion)
+    if len(history) < 2:
+        raise ValueError(f"an animation needs two output times or more, got {len(history)}")
+    inertia = motion.inertia if isinstance(motion, Trajectory) else None
+    vertices, triangles = _box(inertia, mass) if surface is None else _checked(surface)
+    tree, binary = _tree(history, vertices, triangles)
+    write_atomically({Path(path): _glb(tree, binary) if form == ".glb" else _text(tree, binary)})
+
+
+def _tree(history: AttitudeHistory, vertices: Array, triangles: Any) -> tuple[dict[str, Any], bytes]:
+    """Return the JSON of a file, and its buffer."""
+    times = (history.time - history.time[0]).astype("<f4")
+    if (np.diff(times) <= 0).any():
+        raise ValueError("output times are too close for the 32-bit floats of glTF; give fewer of them")
+    _warn_of_fast_turns(history)
+    still = np.zeros((len(history), 3))
+    positions = still if history.position is None else history.position.components
+    views: list[dict[str, Any]] = []
+    accessors: list[dict[str, Any]] = []
+    parts: list[bytes] = []
+
+    def add(numbers: Any, kind: str, target: int | None = None, bounds: bool = False) -> int:
+        """Add an accessor; all numbers have 4 bytes, so every view is aligned."""
+        rows = numbers.reshape(len(numbers), -1)
+        view = {"buffer": 0, "byteOffset": sum(map(len, parts)), "byteLength": numbers.nbytes}
+        views.append(view if target is None else {**view, "target": target})
+        parts.append(numbers.tobytes())
+        component = _UINT if numbers.dtype.kind == "u" else _FLOAT
+        facts = {"bufferView": len(views) - 1, "componentType": component, "count": len(rows), "type": kind}
+        if bounds:
+            facts |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
+        accessors.append(facts)
+        return len(accessors) - 1
+
+    corners = add(vertices.astype("<f4"), "VEC3", _VERTICES, bounds=True)
+    indices = add(np.ascontiguousarray(triangles, "<u4").ravel(), "SCALAR", _INDICES)
+    when = add(times, "SCALAR", bounds=True)
+    quaternions = np.asarray(history.rotor.normalized().to_quaternion(order="xyzw"))
+    tracks = {"rotation": add(quaternions.astype("<f4"), "VEC4")}
+    tracks["translation"] = add(np.asarray(positions).astype("<f4"), "VEC3")
+    first = {"rotation": quaternions[0].tolist(), "translation": np.asarray(positions)[0].tolist()}
+    material = {"pbrMetallicRoughness": {"baseColorFactor": [0.55, 0.6, 0.7, 1.0], "metallicFactor": 0.1}}
+    title = history.attributes.get("title")
+    tree: dict[str, Any] = {
+        "asset": {"version": "2.0", "generator": f"Polhode {_native.__version__}"},
+        "scene": 0,
+        "scenes": [{"nodes": [0], **({"name": str(title)} if title else {})}],
+        "nodes": [
+            {"name": "space", "rotation": _UP, "children": [1]},
+            {"name": "body", "mesh": 0, **first},
+        ],
+        "meshes": [
+            {"primitives": [{"attributes": {"POSITION": corners}, "indices": indices, "material": 0}]}
+        ],
+        "materials": [material],
+        "animations": [
+            {
+                "name": "motion",
+                "samplers": [
+                    {"input": when, "output": k, "interpolation": "LINEAR"} for k in tracks.values()
+                ],
+                "channels": [
+                    {"sampler": k, "target": {"node": 1, "path": name}} for k, name in enumerate(tracks)
+                ],
+            }
+        ],
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [{"byteLength": sum(map(len, parts))}],
+    }
+    return tree, b"".join(parts)
+
+
+def _warn_of_fast_turns(history: AttitudeHistory) -> None:
+    """Warn of steps with more than half a turn, which a viewer shows as the shorter turn the other way."""
+    if history.omega_body is None:
+        return
+    rates = np.asarray(history.omega_body.norm())
+    turns = np.maximum(rates[1:], rates[:-1]) * np.diff(history.time)
+    if (turns > np.pi).any():
+        k = int(np.argmax(turns))
+        warnings.warn(
+            f"the body turns by {np.degrees(turns[k]):.0f}° between output times {k} and {k + 1}, and an "
+            "animation shows the shorter turn; give more output times",
+            stacklevel=4,
+        )
+
+
+def _box(inertia: Any, mass: float | None) -> tuple[Array, Any]:
+    """Return the surface of a box with the moments of a body: ``I1 = m (b² + c²)/12``, and so on."""
+    if not isinstance(inertia, Inertia):
+        raise ValueError("the shape of the body is not known; give surface=(vertices, triangles)")
+    moments = np.asarray(inertia.principal_moments)
+    squares = np.maximum(moments.sum() - 2 * moments, 0.0)  # of the sides, times m/6
+    sides = np.sqrt(squares * (6 / mass if mass else 1.0 / squares.max()))
+    sides = np.maximum(sides, 1e-3 * sides.max())  # a rod or a plate stays visible
+    return np.asarray(inertia.principal_frame.to_matrix() @ (_CORNERS * sides / 2).T).T, np.array(_FACES)
+
+
+def _checked(surface: tuple[Any, Any]) -> tuple[Array, Any]:
+    vertices, triangles = (np.asarray(x) for x in surface)
+    if vertices.ndim != 2 or vertices.shape[1:] != (3,) or not np.isfinite(vertices.astype(float)).all():
+        raise ValueError(f"vertices must be finite numbers of shape (n, 3), got shape {vertices.shape}")
+    if (
+        triangles.ndim != 2
+        or triangles.shape[1:] != (3,)
+        or triangles.dtype.kind not in "iu"
+        or not len(triangles)
+    ):
+        raise ValueError(
+            f"triangles must be integers of shape (m, 3), got {triangles.dtype} {triangles.shape}"
+        )
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        raise ValueError(f"triangles must be numbers of the {len(vertices)} vertices, from 0")
+    return vertices.astype(float), triangles
+
+
+def _glb(tree: dict[str, Any], binary: bytes) -> bytes:
+    text = _json(tree)
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    chunks = b"".join(
+        struct.pack("<I4s", len(content), kind) + content
+        for kind, content in ((b"JSON", text), (b"BIN\0", binary))
+    )
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def _text(tree: dict[str, Any], binary: bytes) -> bytes:
+    data = "data:application/octet-stream;base64," + base64.b64encode(binary).decode()
+    return _json({**tree, "buffers": [{**tree["buffers"][0], "uri": data}]}) + b"\n"
+
+
+def _json(tree: dict[str, Any]) -> bytes:
+    return json.dumps(tree, separators=(",", ":"), allow_nan=False).encode()

@@ -1,0 +1,260 @@
+"""SPICE pointing kernels (CK) of type 3: attitudes at times of a spacecraft clock.
+
+A CK holds the C-matrix from a reference frame to that of the instrument, as the SPICE quaternion w, x, y, z
+of this matrix: the conjugate of our Hamilton quaternion from body to space. Its angular velocities have
+components in the reference frame.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.constructors import bivector
+from polhode._algebra.rotor import Rotor
+from polhode._io.epochs import parse_epoch
+from polhode._io.history import AttitudeHistory, FileError, continuous
+from polhode._mechanics.trajectory import Trajectory
+from polhode._support.arrays import Array
+from polhode._support.extras import optional
+from polhode._support.files import check_target, write_atomically
+
+_Paths = Sequence[str | os.PathLike[str]]
+
+# Class of frames whose attitude is in a CK, and the number of such records.
+_CK_CLASS, _TYPE = 3, 3
+# Names of time systems in epochs of SPICE.
+_SYSTEMS = {"UTC": "UTC", "TT": "TDT", "TDB": "TDB"}
+
+
+def write_ck(
+    motion: Trajectory | AttitudeHistory,
+    path: str | os.PathLike[str],
+    *,
+    kernels: _Paths,
+    body_frame: str | None = None,
+    reference_frame: str | None = None,
+    epoch: str | None = None,
+    time_system: str | None = None,
+) -> None:
+    """Write the attitudes of one body as a SPICE CK of type 3, atomically.
+
+    The file has one segment with one interpolation interval, and angular velocities if the motion has them.
+    Times of a CK are ticks of the spacecraft clock in 64-bit floats, and SPICE counts seconds since J2000, so
+    that times are known to about 1e-7 s.
+
+    Parameters
+    ----------
+    kernels
+        Paths of the leapseconds kernel, the clock kernel (SCLK) and the frame kernel (FK) of the spacecraft.
+        They are loaded for this call only.
+    body_frame
+        Name of the frame of the body in the frame kernel, a frame of class 3.
+    reference_frame
+        Name of the frame of space, such as ``"J2000"``.
+    epoch, time_system
+        Epoch of time 0 in ``"UTC"``, ``"TT"`` or ``"TDB"``; times are SI seconds from it on. These four are
+        by default the attributes of the motion, UTC for the time system.
+
+    Raises
+    ------
+    ValueError
+        For a batch; if epoch or frames are not known; with the message of SPICE, if kernels do not fit.
+    ImportError
+        Without spiceypy: ``pip install 'polhode[spice]'``.
+    """
+    history = AttitudeHistory.of(motion)
+    check_target(Path(path))
+    if not len(history):
+        raise ValueError("the motion has no output times; a CK needs one or more")
+    hints = {
+        "epoch": "epoch='YYYY-MM-DDThh:mm:ss'",
+        "reference_frame": "reference_frame='J2000'",
+        "body_frame": "body_frame= the name of a frame of class 3 in the frame kernel",
+    }
+    given = {"epoch": epoch, "reference_frame": reference_frame, "body_frame": body_frame}
+    known = {name: x or history.attributes.get(name) for name, x in given.items()}
+    for name, hint in hints.items():
+        if known[name] is None:
+            raise ValueError(f"{name} is not known; give {hint}")
+    system = str(time_system or history.attributes.get("time_system", "UTC"))
+    with _loaded(kernels) as spice, tempfile.TemporaryDirectory() as folder:
+        number = _instrument(spice, str(known["body_frame"]))
+        start = _of_epoch(spice, str(known["epoch"]), system)
+        clock = spice.ckmeta(number, "SCLK")
+        start_tt = spice.unitim(start, "ET", "TDT")
+        ticks = np.array(
+            [spice.sce2c(clock, spice.unitim(start_tt + t, "TDT", "ET")) for t in history.time.tolist()]
+        )
+        if (np.diff(ticks) <= 0).any():
+            k = int(np.argmax(np.diff(ticks) <= 0))
+            raise ValueError(f"output times {k} and {k + 1} are the same for the clock; give fewer of them")
+        quaternions = np.asarray((~history.rotor).to_quaternion(order="wxyz"))
+        rates = np.zeros((len(history), 3))
+        if history.omega_body is not None:
+            rates = np.asarray(history.rotor(history.omega_body).components)
+        temporary = Path(folder) / "a.bc"
+        handle = spice.ckopn(str(temporary), f"polhode {_native.__version__}", 0)
+        try:
+            spice.ckw03(
+                handle,
+                ticks[0],
+                ticks[-1],
+                number,
+                str(known["reference_frame"]),
+                history.omega_body is not None,
+                str(history.attributes.get("object_name", "polhode"))[:40],
+                len(ticks),
+                ticks,
+                quaternions,
+                rates,
+                1,
+                ticks[:1],
+            )
+        finally:
+            spice.ckcls(handle)
+        write_atomically({Path(path): temporary.read_bytes()})
+
+
+def read_ck(
+    path: str | os.PathLike[str],
+    *,
+    kernels: _Paths,
+    segment: int | None = None,
+    epoch: str | None = None,
+    time_system: str | None = None,
+) -> AttitudeHistory:
+    """Read the records of a segment of a SPICE CK of type 3.
+
+    Parameters
+    ----------
+    kernels
+        Paths of the leapseconds kernel, the clock kernel and the frame kernel, as for `write_ck`.
+    segment
+        Number of the segment from 1, for a file with several.
+    epoch, time_system
+        Epoch of time 0, in ``"UTC"`` by default; without it, that of the first record in TDB, to 1e-9 s.
+
+    Returns
+    -------
+    AttitudeHistory
+        With the names of both frames as attributes. Times are known to about 1e-7 s.
+
+    Raises
+    ------
+    ValueError
+        If the file is not a CK of type 3, and with the message of SPICE if the kernels do not fit.
+    FileNotFoundError, ImportError
+        As for `write_ck`.
+    """
+    name = os.fsdecode(path)
+    if not os.path.lexists(path):
+        raise FileNotFoundError(f"{name}: no such file")
+    if not os.path.isfile(path):
+        raise FileError(f"{name}: error: not a regular file; give the path of a file")
+    if not Path(path).read_bytes()[:7] == b"DAF/CK ":
+        raise FileError(f"{name}: error: not a binary SPICE CK, which begins with DAF/CK")
+    with _loaded(kernels) as spice:
+        handle = spice.dafopr(name)
+        try:
+            descriptor = _descriptor(spice, handle, name, segment)
+            facts = spice.dafus(descriptor, 2, 6)[1]
+            number, reference, rated = int(facts[0]), int(facts[1]), bool(facts[3])
+            count = int(spice.cknr03(handle, descriptor))
+            records = np.array([spice.ckgr03(handle, descriptor, k + 1) for k in range(count)])
+        finally:
+            spice.dafcls(handle)
+        clock = spice.ckmeta(number, "SCLK")
+        seconds = [spice.sct2e(clock, ticks) for ticks in records[:, 0]]
+        system = time_system or ("UTC" if epoch else "TDB")
+        if epoch is None:
+            epoch = str(spice.timout(seconds[0], "YYYY-MM-DDTHR:MN:SC.######### ::TDB"))
+        start = spice.unitim(_of_epoch(spice, epoch, system), "ET", "TDT")
+        times = np.array([spice.unitim(x, "ET", "TDT") - start for x in seconds])
+        space, body = str(spice.frmnam(reference)), _frame_name(spice, number, name)
+    quaternions: Array = records[:, 1:5] / np.linalg.norm(records[:, 1:5], axis=1, keepdims=True)
+    rotor = Rotor.from_quaternion(continuous(quaternions * [1.0, -1.0, -1.0, -1.0]), order="wxyz")
+    omega = (~rotor)(bivector(np.ascontiguousarray(records[:, 5:8]))) if rated else None
+    attributes = {"epoch": epoch, "time_system": system, "reference_frame": space, "body_frame": body}
+    return AttitudeHistory(times, rotor, omega, attributes=attributes)
+
+
+@contextlib.contextmanager
+def _loaded(kernels: _Paths) -> Iterator[Any]:
+    """Yield spiceypy with kernels loaded; its errors become a ValueError."""
+    spice = optional("spiceypy", "spice", "a SPICE kernel")
+    if isinstance(kernels, str | os.PathLike):
+        raise TypeError("kernels must be a list of paths, got one path; give [path]")
+    paths = [os.fsdecode(path) for path in kernels]
+    with contextlib.ExitStack() as stack:
+        for path in paths:
+            if not os.path.isfile(path):
+                raise FileNotFoundError(f"{path}: no such kernel")
+        try:
+            for path in paths:
+                spice.furnsh(path)
+                stack.callback(spice.unload, path)
+            yield spice
+        except spice.SpiceyError as error:
+            spice.reset()
+            words = " ".join(str(getattr(error, "long", "") or error.short).split())
+            raise ValueError(
+                f"SPICE: {words}; kernels must have leapseconds, clock and frames of the spacecraft"
+            ) from None
+
+
+def _of_epoch(spice: Any, epoch: str, system: str) -> float:
+    if system not in _SYSTEMS:
+        raise ValueError(f"time_system of a CK must be UTC, TT or TDB, got {system!r}")
+    text = str(parse_epoch(epoch, system)).replace("T", " ")
+    return float(spice.str2et(f"{text} {_SYSTEMS[system]}"))
+
+
+def _instrument(spice: Any, frame: str) -> int:
+    """Return the number of the instrument whose attitude is that of a frame."""
+    code = spice.namfrm(frame)
+    if code == 0:
+        raise ValueError(
+            f"the kernels have no frame {frame!r}; give the frame kernel, or another body_frame="
+        )
+    _, kind, number = spice.frinfo(code)
+    if kind != _CK_CLASS:
+        raise ValueError(f"body_frame must be a frame of class 3 for a CK, got {frame!r} of class {kind}")
+    return int(number)
+
+
+def _frame_name(spice: Any, number: int, name: str) -> str:
+    try:
+        return str(spice.ccifrm(_CK_CLASS, number)[1])
+    except spice.NotFoundError:
+        raise FileError(
+            f"{name}: error: no frame of class 3 for instrument {number}; give the frame kernel"
+        ) from None
+
+
+def _descriptor(spice: Any, handle: int, name: str, chosen: int | None) -> Any:
+    """Return the descriptor of a segment of type 3."""
+    found = []
+    spice.dafbfs(handle)
+    while spice.daffna():
+        found.append(spice.dafgs(5).copy())
+    if not found:
+        raise FileError(f"{name}: error: the file has no segment")
+    if chosen is None and len(found) > 1:
+        raise FileError(
+            f"{name}: error: the file has {len(found)} segments; choose one with segment=1 and so on"
+        )
+    if chosen is not None and not 1 <= chosen <= len(found):
+        raise FileError(f"{name}: error: segment must be from 1 to {len(found)}, got {chosen}")
+    descriptor = found[(chosen or 1) - 1]
+    kind = int(spice.dafus(descriptor, 2, 6)[1][2])
+    if kind != _TYPE:
+        raise FileError(f"{name}: error: segments of type 3 are read, got type {kind}")
+    return descriptor

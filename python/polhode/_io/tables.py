@@ -1,0 +1,273 @@
+"""CSV, Parquet and netCDF files of attitudes and motions, read and written by column."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from polhode._algebra.constructors import bivector, vector
+from polhode._algebra.rotor import Rotor
+from polhode._io.history import AttitudeHistory, FileError
+from polhode._mechanics.robots.document import Source
+from polhode._mechanics.trajectory import Trajectory
+from polhode._report import netcdf, table
+from polhode._support.arrays import Array
+from polhode._support.extras import optional
+from polhode._support.files import write_atomically
+
+_LABELS = {"quaternion": "wxyz", "axis": "xyz"}
+# Quantities of a motion with a row for each time.
+_ALONG_TIME = {name: facts for name, facts in netcdf.MOTION.items() if name != "inertia"}
+
+
+def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
+    """Read the attitudes of one body from a CSV file with the columns that `Trajectory.save` writes.
+
+    Columns are found by name, in any order: ``time`` and ``attitude_w``, ``_x``, ``_y``, ``_z`` are needed,
+    the others may be missing, and unknown ones are an error. Every number that was saved is read to the same
+    bits.
+
+    Parameters
+    ----------
+    body
+        Number of the body, for the file of a batch.
+
+    Raises
+    ------
+    ValueError
+        With file, line and column, for a file that is not such a table.
+    FileNotFoundError
+        If there is no such file.
+    """
+    name = os.fsdecode(path)
+    text = _content(path, name).decode("utf-8-sig", "replace")
+    source = Source(name, text.splitlines())
+    rows = csv.reader(io.StringIO(text))
+    header = [word.strip() for word in next(rows, [])]
+    if not header:
+        raise FileError(f"{name}: error: the file is empty; its first line must name the columns")
+    numbers: list[list[float]] = []
+    lines: list[int] = []
+    for row in rows:
+        if not row:
+            continue
+        if len(row) != len(header):
+            words = f"expected {len(header)} numbers as in the first line, got {len(row)}"
+            raise FileError(source.error(rows.line_num, 0, words))
+        numbers.append([_number(source, rows.line_num, row, k) for k in range(len(row))])
+        lines.append(rows.line_num)
+    found = np.array(numbers).reshape(len(numbers), len(header))
+    columns = dict(zip(header, found.T, strict=True))
+    if len(columns) < len(header):
+        twice = next(x for x in header if header.count(x) > 1)
+        raise FileError(source.error(1, 0, f"column {twice!r} appears more than once"))
+    try:
+        return _history(columns, body, {})
+    except (TypeError, ValueError) as error:
+        raise FileError(source.error(1, 0, str(error))) from None
+
+
+def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
+    """Read the attitudes of one body from a Parquet file with the columns that `Trajectory.save` writes.
+
+    As `read_csv`; the attributes of the file are read, too.
+
+    Raises
+    ------
+    ImportError
+        Without the libraries: ``pip install 'polhode[parquet]'``.
+    """
+    name = os.fsdecode(path)
+    table.require_parquet()
+    content = _content(path, name)
+    library = optional("pyarrow.parquet", "parquet", "a Parquet file")
+    try:
+        found = library.read_table(io.BytesIO(content))
+        columns = {x: np.asarray(found[x].to_numpy(), float) for x in found.column_names}
+        kept = (found.schema.metadata or {}).get(b"PANDAS_ATTRS", b"{}")
+        attributes = {x: y for x, y in json.loads(kept).items() if x not in _OWN}
+    except (OSError, KeyError, TypeError, ValueError, NotImplementedError) as error:
+        raise FileError(f"{name}: error: cannot be read as a Parquet file of numbers: {error}") from None
+    try:
+        return _history(columns, body, attributes)
+    except (TypeError, ValueError) as error:
+        raise FileError(f"{name}: error: {error}") from None
+
+
+def read_netcdf(path: str | os.PathLike[str]) -> AttitudeHistory:
+    """Read the attitudes of one body from a netCDF file that Polhode wrote, from a trajectory or a history.
+
+    Raises
+    ------
+    ValueError
+        If the file holds a batch, or was not written by Polhode.
+    ImportError
+        Without the libraries: ``pip install 'polhode[io]'``.
+    """
+    fields, attributes = netcdf._content(path)
+    if missing := [x for x in ("time", "attitude") if x not in fields]:
+        raise FileError(
+            f"{os.fsdecode(path)}: error: not a motion that polhode wrote: {missing[0]!r} is missing"
+        )
+    parts = {name: fields[name] for name in _ALONG_TIME if name in fields}
+    kept = {name: x for name, x in attributes.items() if name not in _OWN}
+    try:
+        return _of_parts(np.asarray(fields["time"], float), parts, fields.get("wheel_speed"), kept)
+    except (TypeError, ValueError) as error:
+        raise FileError(f"{os.fsdecode(path)}: error: not a motion that polhode wrote: {error}") from None
+
+
+def write_table(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[str], form: str) -> None:
+    """Write a motion as netCDF, CSV or Parquet (form ``"nc"``, ``"csv"``, ``"parquet"``), atomically."""
+    if isinstance(motion, Trajectory):
+        motion.save(path)
+        return
+    encoders = {"nc": _netcdf, "csv": _csv, "parquet": _parquet}
+    write_atomically({Path(path): encoders[form](motion)})
+
+
+# --- reading
+
+# Attributes of a file that describe how a trajectory was computed.
+_OWN = {*netcdf._OWN, "units", "batch_shape"}
+
+
+def _content(path: str | os.PathLike[str], name: str) -> bytes:
+    if not os.path.lexists(path):
+        raise FileNotFoundError(f"{name}: no such file")
+    if not os.path.isfile(path):
+        raise FileError(f"{name}: error: not a regular file; give the path of a file")
+    return Path(path).read_bytes()
+
+
+def _number(source: Source, line: int, row: list[str], k: int) -> float:
+    word = row[k].strip()
+    try:
+        value = float(word) if word.isascii() and "_" not in word else None
+    except ValueError:
+        value = None
+    if value is None or math.isinf(value):
+        column = sum(len(x) + 1 for x in row[:k])
+        raise FileError(source.error(line, column, f"{row[k]!r} is not a finite number"))
+    return value
+
+
+def _names(name: str) -> list[str]:
+    """Return the columns of a quantity."""
+    dims = _ALONG_TIME[name][0]
+    return [f"{name}_{label}" for label in _LABELS[dims[0]]] if dims else [name]
+
+
+def _history(columns: dict[str, Array], body: int | None, attributes: dict[str, Any]) -> AttitudeHistory:
+    if "body" in columns:
+        bodies = columns.pop("body")
+        if body is None:
+            raise ValueError("the file holds a batch of bodies; choose one by its number, as in body=0")
+        which = bodies == body
+        if not which.any():
+            raise ValueError(f"the file has no body {body}; it has {bodies.min():.0f} to {bodies.max():.0f}")
+        columns = {name: x[which] for name, x in columns.items()}
+    elif body is not None:
+        raise ValueError(f"the file holds one body; leave out body={body}")
+    wheels = sorted((x for x in columns if x.startswith("wheel_speed_")), key=lambda x: (len(x), x))
+    known = {"time", *wheels, *(column for name in _ALONG_TIME for column in _names(name))}
+    if unknown := [x for x in columns if x not in known]:
+        raise ValueError(
+            f"column {unknown[0]!r} is not known; rename or remove it. Known are {', '.join(known_columns())}"
+        )
+    for needed in ("time", *_names("attitude")):
+        if needed not in columns:
+            raise ValueError(f"the file has no column {needed!r}; it needs time and attitude_w, _x, _y, _z")
+    parts = {}
+    for name in _ALONG_TIME:
+        present = [x for x in _names(name) if x in columns]
+        if present and len(present) < len(_names(name)):
+            raise ValueError(
+                f"the columns of {name} must be {', '.join(_names(name))}, got {', '.join(present)} only"
+            )
+        if present:
+            values = np.stack([columns[x] for x in present], axis=-1)
+            parts[name] = values if _ALONG_TIME[name][0] else values[:, 0]
+    speeds = np.stack([columns[x] for x in wheels], axis=-1) if wheels else None
+    return _of_parts(columns["time"], parts, speeds, attributes)
+
+
+def known_columns() -> list[str]:
+    """Return the names of the columns."""
+    return ["time", *(column for name in _ALONG_TIME for column in _names(name)), "wheel_speed_0, ..."]
+
+
+def _of_parts(
+    time: Array, parts: dict[str, Array], wheels: Array | None, attributes: dict[str, Any]
+) -> AttitudeHistory:
+    quaternions = np.asarray(parts["attitude"], float)
+    norms = np.linalg.norm(quaternions, axis=-1)
+    if not (np.abs(norms - 1) < 1e-3).all():
+        k = int(np.argmax(~(np.abs(norms - 1) < 1e-3)))
+        raise ValueError(f"attitude must be unit quaternions, got norm {norms[k]:.6g} at row {k}")
+    grades = {"omega_body": bivector, "momentum_space": bivector, "position": vector, "velocity": vector}
+    found = {name: make(np.ascontiguousarray(parts[name])) for name, make in grades.items() if name in parts}
+    rotor = Rotor._from_rows(np.ascontiguousarray(quaternions * [1.0, -1.0, -1.0, -1.0]))
+    return AttitudeHistory(
+        time, rotor, **found, energy=parts.get("energy"), wheel_speed=wheels, attributes=attributes
+    )
+
+
+# --- writing
+
+
+def _parts(history: AttitudeHistory) -> dict[str, Array]:
+    """Return the components of the known quantities."""
+    parts = {"attitude": np.asarray(history.rotor.to_quaternion(order="wxyz"))}
+    for name in list(_ALONG_TIME)[1:]:
+        values = getattr(history, name)
+        if values is not None:
+            parts[name] = np.asarray(getattr(values, "components", values))
+    return parts
+
+
+def _columns(history: AttitudeHistory) -> dict[str, Array]:
+    """Return the columns of the known quantities, without the times."""
+    columns: dict[str, Array] = {}
+    for name, values in _parts(history).items():
+        names = _names(name)
+        columns |= dict(zip(names, values.reshape(len(history), len(names)).T, strict=True))
+    if history.wheel_speed is not None:
+        columns |= {f"wheel_speed_{k}": x for k, x in enumerate(history.wheel_speed.T)}
+    return columns
+
+
+def _csv(history: AttitudeHistory) -> bytes:
+    columns = {"time": history.time, **_columns(history)}
+    rows = np.stack(list(columns.values()), axis=-1).tolist()
+    return "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows), ""]).encode()
+
+
+def _parquet(history: AttitudeHistory) -> bytes:
+    table.require_parquet()
+    pd = optional("pandas", "parquet", "a Parquet file")
+    columns = _columns(history)
+    frame = pd.DataFrame(columns, pd.Index(history.time, name="time"))
+    units = {name: "rad/s" if name.startswith("wheel") else table.UNITS[name] for name in columns}
+    plain = {name: table._plain(x) for name, x in _attributes(history).items()}
+    frame.attrs |= {**plain, "units": {"time": "s", **units}}
+    return bytes(frame.to_parquet(engine="pyarrow"))
+
+
+def _netcdf(history: AttitudeHistory) -> bytes:
+    netcdf.require_libraries()
+    variables = {name: netcdf._quantity(name, ("time",), x) for name, x in _parts(history).items()}
+    if history.wheel_speed is not None:
+        variables["wheel_speed"] = netcdf.wheels_of(("time",), history.wheel_speed)
+    return netcdf.encoded(history.time, variables, _attributes(history))
+
+
+def _attributes(history: AttitudeHistory) -> dict[str, Any]:
+    return {**netcdf.origin(), **history.attributes}

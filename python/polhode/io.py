@@ -1,0 +1,32 @@
+"""Files of attitudes and motions in the formats of other programs.
+
+Quaternion order, direction and frames are those that a file states. Where a file does not state them, they
+must be given as arguments; they are never guessed.
+"""
+
+from polhode._io.aem import read_aem
+from polhode._io.aem_writing import write_aem
+from polhode._io.convert import read, write
+from polhode._io.gltf import write_gltf
+from polhode._io.history import AttitudeHistory, FileError
+from polhode._io.spice import read_ck, write_ck
+from polhode._io.tables import read_csv, read_netcdf, read_parquet
+
+__all__ = [
+    "AttitudeHistory",
+    "FileError",
+    "read",
+    "read_aem",
+    "read_ck",
+    "read_csv",
+    "read_netcdf",
+    "read_parquet",
+    "write",
+    "write_aem",
+    "write_ck",
+    "write_gltf",
+]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -11,7 +11,7 @@ from polhode import _native
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.ensemble.collect import EnsembleRecords
-from polhode._report.netcdf import CONVENTIONS, MOTION, components
+from polhode._report.netcdf import CF, CONVENTIONS, MOTION, components
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
@@ -66,9 +66,15 @@ class EnsembleFile:
     def _begin(self) -> None:
         """Write dimensions, coordinates and attributes."""
         times, varied = self._scene.times, self._ensemble.varied
-        self._file.dimensions = {"time": len(times), "quaternion": 4, "axis": 3, "axis_": 3, "body": None}
+        self._file.dimensions = {
+            "time": len(times),
+            "quaternion": 4,
+            "axis": 3,
+            "inertia_column": 3,
+            "body": None,
+        }
         self._write("time", ("time",), times, "s", "time", axis="T")
-        for name, labels in (("quaternion", "wxyz"), ("axis", "xyz"), ("axis_", "xyz")):
+        for name, labels in (("quaternion", "wxyz"), ("axis", "xyz"), ("inertia_column", "xyz")):
             variable = self._file.create_variable(name, (name,), self._text)
             variable[:] = np.array(list(labels), dtype=object)
         if "moments" not in varied:
@@ -78,6 +84,7 @@ class EnsembleFile:
             self._write("inertia", dims, inertia.matrix, units, text)
         self._file.attrs.update(
             {
+                **CF,
                 "conventions": CONVENTIONS,
                 "source": f"polhode {_native.__version__}",
                 "title": self._scene.name,

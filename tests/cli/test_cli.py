@@ -89,7 +89,7 @@ def test_the_files(gravity, tmp_path):
         assert figure.read_bytes().endswith(b"IEND\xaeB`\x82")
 
     data = xarray.open_dataset(output, engine="h5netcdf")
-    assert dict(data.sizes) == {"time": 11, "quaternion": 4, "axis": 3, "axis_": 3}
+    assert dict(data.sizes) == {"time": 11, "quaternion": 4, "axis": 3, "inertia_column": 3}
     dims_and_units = {name: (v.dims, v.attrs["units"]) for name, v in data.data_vars.items()}
     assert dims_and_units == {
         "attitude": (("time", "quaternion"), "1"),
@@ -98,10 +98,12 @@ def test_the_files(gravity, tmp_path):
         "position": (("time", "axis"), "m"),
         "velocity": (("time", "axis"), "m/s"),
         "energy": (("time",), "J"),
-        "inertia": (("axis", "axis_"), "kg m^2"),
+        "inertia": (("axis", "inertia_column"), "kg m^2"),
     }
     assert data.quaternion.values.tolist() == ["w", "x", "y", "z"]
     assert "Omega_space R" in data.attrs["conventions"]
+    assert data.attrs["Conventions"] == "CF-1.11"
+    assert data.attrs["history"] == f"written by polhode {ph.__version__}"
     assert data.attrs["source"] == f"polhode {ph.__version__}"
     assert data.attrs["scene"] == path.read_text()
     assert data.attrs["title"] == result["title"] == "Small"

@@ -108,7 +108,9 @@ def test_missing_and_foreign_files(form, tmp_path):
 
 
 def test_other_suffixes_are_refused(tmp_path):
-    with pytest.raises(ValueError, match=r"files that can be read end in \.aem, \.csv, \.nc or \.parquet"):
+    with pytest.raises(
+        ValueError, match=r"files that can be read end in \.aem, \.bc, \.csv, \.nc or \.parquet"
+    ):
         ph.io.read(tmp_path / "a.txt")
     with pytest.raises(TypeError, match=r"a \.csv file has no option 'epoch'"):
         ph.io.write(MOTION, tmp_path / "a.csv", epoch="2026-01-01T00:00:00")

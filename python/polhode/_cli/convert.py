@@ -39,7 +39,8 @@ def add(commands: Any) -> None:
         help="convert files of attitudes and motions",
         description="Convert the motion of one body from file A to file B: netCDF (.nc), CSV, Parquet and "
         "CCSDS AEM (.aem) and SPICE CK (.bc) by their suffixes; B may also be a glTF animation (.glb, "
-        ".gltf). Quaternion order, direction and frames that a file does not state must be given; they are never guessed.",
+        ".gltf). Quaternion order, direction and frames that a file does not state must be given; they are "
+        "never guessed.",
     )
     convert.add_argument("source", metavar="A", help="the file to read")
     convert.add_argument("target", metavar="B", help="the file to write")

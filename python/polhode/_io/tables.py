@@ -117,7 +117,7 @@ def read_netcdf(path: str | os.PathLike[str]) -> AttitudeHistory:
             f"{os.fsdecode(path)}: error: not a motion that polhode wrote: {missing[0]!r} is missing"
         )
     parts = {name: fields[name] for name in _ALONG_TIME if name in fields}
-    kept = {name: x for name, x in attributes.items() if name not in _OWN}
+    kept = netcdf.of_user(attributes)
     try:
         return _of_parts(np.asarray(fields["time"], float), parts, fields.get("wheel_speed"), kept)
     except (TypeError, ValueError) as error:

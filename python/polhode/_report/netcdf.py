@@ -32,6 +32,14 @@ CONVENTIONS = (
 )
 
 
+# Global attributes of the CF conventions, where a motion has none of these names. Without dates, so that a motion
+# is always the same file.
+CF = {
+    "Conventions": "CF-1.11",
+    "title": "Motion of a rigid body",
+    "history": f"written by polhode {_native.__version__}",
+}
+
 # Dimensions, unit and description of the quantities of a motion.
 MOTION: dict[str, tuple[tuple[str, ...], str, str]] = {
     "attitude": (("quaternion",), "1", "attitude, body to space"),
@@ -40,7 +48,7 @@ MOTION: dict[str, tuple[tuple[str, ...], str, str]] = {
     "position": (("axis",), "m", "centre of mass in space"),
     "velocity": (("axis",), "m/s", "velocity of the centre of mass"),
     "energy": ((), "J", "rotational kinetic and potential energy"),
-    "inertia": (("axis", "axis_"), "kg m^2", "inertia matrix in body axes"),
+    "inertia": (("axis", "inertia_column"), "kg m^2", "inertia matrix in body axes"),
 }
 
 
@@ -79,7 +87,7 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
     if shape:
         coordinates["body"] = np.arange(count)
         variables |= _bodies(trajectory)
-    dataset: xarray.Dataset = xr.Dataset(variables, coordinates, attributes_of(trajectory))
+    dataset: xarray.Dataset = xr.Dataset(variables, coordinates, CF | attributes_of(trajectory))
     return dataset
 
 
@@ -93,7 +101,7 @@ def _coordinates(time: Any) -> dict[str, Any]:
         "time": ("time", time, {"units": "s", "long_name": "time", "axis": "T"}),
         "quaternion": ["w", "x", "y", "z"],
         "axis": ["x", "y", "z"],
-        "axis_": ["x", "y", "z"],
+        "inertia_column": ["x", "y", "z"],
     }
 
 
@@ -169,7 +177,7 @@ def encoded(time: Any, variables: dict[str, Any], attributes: dict[str, Any]) ->
     xr = optional("xarray", "io", "labelled data")
     used = {dim for dims, *_ in variables.values() for dim in dims}
     coordinates = {name: x for name, x in _coordinates(time).items() if name in used}
-    return _bytes_of(xr.Dataset(variables, coordinates, attributes))
+    return _bytes_of(xr.Dataset(variables, coordinates, CF | attributes))
 
 
 def _bytes_of(dataset: xarray.Dataset) -> bytes:
@@ -212,7 +220,17 @@ def attributes_of(trajectory: Trajectory) -> dict[str, Any]:
 _READ = {"time", "wheel_speed", *MOTION}
 # Attributes written here or by the library; all others are the user's.
 _OWN = {
-    *("conventions", "source", "method", "step_s", "steps", "evaluations", "conserved", "drift"),
+    *(
+        "Conventions",
+        "conventions",
+        "source",
+        "method",
+        "step_s",
+        "steps",
+        "evaluations",
+        "conserved",
+        "drift",
+    ),
     *("error_estimate", "warnings", "_NCProperties"),
 }
 
@@ -232,12 +250,23 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
             Inertia.from_matrix(fields["inertia"]),
             _certificate(attributes),
             _crossings(fields),
-            attributes={name: x for name, x in attributes.items() if name not in _OWN},
+            attributes=of_user(attributes),
         )
     except KeyError as error:
         raise ValueError(f"{path} is not a motion that polhode wrote: {error} is missing") from None
     except (TypeError, ValueError) as error:
         raise ValueError(f"{path} is not a motion that polhode wrote: {error}") from error
+
+
+def of_user(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Return the attributes of a file that are not written here, such as a title that the motion had."""
+    return {
+        name: x
+        for name, x in attributes.items()
+        if name not in _OWN
+        and not (name == "title" and x == CF["title"])
+        and not (name == "history" and str(x).startswith("written by polhode ") and "\n" not in x)
+    }
 
 
 def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:

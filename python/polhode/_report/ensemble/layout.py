@@ -11,12 +11,12 @@ import numpy as np
 from polhode import _native
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.netcdf import CONVENTIONS, MOTION, components
+from polhode._report.netcdf import CF, CONVENTIONS, MOTION, components
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 
 # Coordinates that are names of components.
-LABELS = {"quaternion": "wxyz", "axis": "xyz", "axis_": "xyz"}
+LABELS = {"quaternion": "wxyz", "axis": "xyz", "inertia_column": "xyz"}
 
 
 @dataclass(frozen=True)
@@ -67,6 +67,7 @@ class EnsembleLayout:
     def attributes(self) -> dict[str, Any]:
         """Return the attributes of the data: text and numbers."""
         return {
+            **CF,
             "conventions": CONVENTIONS,
             "source": f"polhode {_native.__version__}",
             "title": self._scene.name,

@@ -1,0 +1,61 @@
+"""Attributes and dimensions of netCDF files by the CF conventions, and older files."""
+
+import numpy as np
+import pytest
+
+import polhode as ph
+from motions import ASYMMETRIC, START
+
+xarray = pytest.importorskip("xarray")
+
+MOTION = ph.simulate(ASYMMETRIC, START, np.linspace(0, 1, 5))
+
+
+def test_global_attributes_and_dimensions():
+    data = MOTION.to_xarray()
+    assert data.attrs["Conventions"] == "CF-1.11"
+    assert data.attrs["title"] == "Motion of a rigid body"
+    assert data.attrs["history"] == f"written by polhode {ph.__version__}"
+    assert data.inertia.dims == ("axis", "inertia_column")
+    assert all(name.isidentifier() and not name.endswith("_") for name in data.dims)
+    # Every variable has what CF asks for, and a dimension has a coordinate.
+    for name, variable in data.data_vars.items():
+        assert {"units", "long_name"} <= set(variable.attrs), name
+    assert set(data.dims) == set(data.coords)
+
+
+def test_angular_momentum_from_the_labelled_inertia():
+    """``L = I Ω`` by the names of the dimensions."""
+    data = MOTION.to_xarray()
+    found = data.inertia.dot(data.omega_body.rename(axis="inertia_column"), dim="inertia_column")
+    np.testing.assert_allclose(found.T, MOTION.momentum_body.components, rtol=1e-14, atol=1e-15)
+
+
+@pytest.mark.parametrize("given", [{}, {"title": "Curlew", "history": "2026-01-01 by hand"}])
+def test_attributes_come_back_without_what_the_file_adds(given, tmp_path):
+    MOTION.attributes.clear()
+    MOTION.attributes.update(given)
+    try:
+        MOTION.save(tmp_path / "a.nc")
+        assert ph.Trajectory.read(tmp_path / "a.nc").attributes == given
+        assert ph.io.read(tmp_path / "a.nc").attributes == given
+    finally:
+        MOTION.attributes.clear()
+
+
+def test_the_same_motion_is_the_same_file(tmp_path):
+    for name in ("a.nc", "b.nc"):
+        MOTION.save(tmp_path / name)
+    assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+
+
+def test_older_files_are_read(tmp_path):
+    """They had a dimension axis_ and no attributes of CF."""
+    data = MOTION.to_xarray().rename(inertia_column="axis_")
+    for name in ("Conventions", "title", "history"):
+        del data.attrs[name]
+    data.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    found = ph.Trajectory.read(tmp_path / "a.nc")
+    assert found.inertia == MOTION.inertia
+    assert np.array_equal(found.rotor.components, MOTION.rotor.components)
+    assert found.attributes == {}

@@ -29,11 +29,11 @@ def fit(
 ) -> Fit:
     """Fit a freely rotating body to measured attitudes, body rates, or both.
 
-    Least squares by Levenberg and Marquardt's method (`scipy.optimize.least_squares`) with the exact
-    derivatives of `FreeMotion.derivatives`. Unknown are two ratios of the principal moments, the initial
-    state, the bias of the gyroscope and the offset of its clock. Second moments of mass stay positive, so
-    that a real body has the moments. The search starts from each order of the moments and from a linear fit
-    of Euler's equations, on a short arc that grows to all of the data.
+    Least squares by Levenberg and Marquardt's method in a trust region (`scipy.optimize.least_squares`,
+    ``"trf"``) with the exact derivatives of `FreeMotion.derivatives`. Unknown are two ratios of the
+    principal moments, the initial state, the bias of the gyroscope and the offset of its clock. Second
+    moments of mass stay positive, so that a real body has the moments. The search starts from each order of
+    the moments and from a linear fit of Euler's equations, on a short arc that grows to all of the data.
 
     Parameters
     ----------

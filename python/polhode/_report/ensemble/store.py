@@ -60,6 +60,7 @@ class EnsembleStore:
         self.blocks = -(-self.number // self.block)
         self.drift_bound = float(identity["drift_bound"])
         self._metadata: dict[str, bytes] = {}
+        self._consolidated: set[str] = set()
 
     @staticmethod
     def exists(path: Path) -> bool:
@@ -176,7 +177,10 @@ class EnsembleStore:
             found = digests(part, files)
             self._publish(part, files)
             self._publish_mark(part, index, {"files": found, **_outcome(rows, trajectory)})
-        self.consolidate()
+        arrays = {name.partition("/")[0] for name in files}
+        if not arrays <= self._consolidated:  # others are the same in all blocks
+            self.consolidate()
+            self._consolidated |= arrays
 
     def _metadata_of(self, variable: Variable) -> bytes:
         """Return the metadata of the array of a variable, as the library writes it."""

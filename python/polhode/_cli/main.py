@@ -93,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
         ),
     )
     parser.add_argument("--version", action="version", version=f"polhode {__version__}")
-    from polhode._cli import completion, convert, examples, figure
+    from polhode._cli import completion, convert, examples, figure, schema
 
     completion.add(parser)
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
@@ -101,6 +101,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_formulas(commands)
     figure.add(commands)
     convert.add(commands)
+    schema.add(commands)
     examples.add(commands)
     return parser
 

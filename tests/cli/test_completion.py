@@ -36,7 +36,13 @@ def test_bash_completes_commands_options_and_files(capsys, tmp_path):
     assert completed(script, "polhode", "run", "--f") == ["--force"]
     assert completed(script, "polhode", "figure", "her") == ["herpolhode"]
     (tmp_path / "small.toml").touch()
-    for words in (("run", "sm"), ("check", "sm"), ("run", "small.toml", "-o", "sm"), ("film", "sm")):
+    for words in (
+        ("run", "sm"),
+        ("check", "sm"),
+        ("run", "small.toml", "-o", "sm"),
+        ("film", "sm"),
+        ("convert", "sm"),
+    ):
         assert completed(script, "polhode", *words, cwd=tmp_path) == ["small.toml"]
     (tmp_path / "folder").mkdir()
     assert completed(script, "polhode", "demo", "-o", "fo", cwd=tmp_path)[0].rstrip("/") == "folder"

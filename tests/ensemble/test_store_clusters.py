@@ -109,6 +109,7 @@ def test_the_blocks_of_a_killed_worker_are_computed_by_others(folder, serial, tm
     assert content(store) == serial
 
 
+@pytest.mark.slow
 def test_a_worker_of_another_version_is_refused(folder, serial, tmp_path):
     store = tmp_path / "a.zarr"
     with (

@@ -26,7 +26,7 @@ class _Print(argparse.Action):
         shtab = optional("shtab", "completion", "completion in a shell")
         for argument in _arguments(parser):
             metavar = argument.metavar if isinstance(argument.metavar, str) else ""
-            if metavar.startswith(("FILE", "SCENE")):
+            if metavar.startswith(("FILE", "SCENE")) or metavar in ("A", "B"):
                 argument.complete = shtab.FILE  # type: ignore[attr-defined]
             elif metavar.startswith("FOLDER"):
                 argument.complete = shtab.DIRECTORY  # type: ignore[attr-defined]

@@ -93,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
         ),
     )
     parser.add_argument("--version", action="version", version=f"polhode {__version__}")
-    from polhode._cli import completion, convert, examples, figure, fit
+    from polhode._cli import completion, convert, examples, figure, fit, schema
 
     completion.add(parser)
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
@@ -102,6 +102,7 @@ def _parser() -> argparse.ArgumentParser:
     figure.add(commands)
     fit.add(commands)
     convert.add(commands)
+    schema.add(commands)
     examples.add(commands)
     return parser
 

@@ -32,8 +32,8 @@ CONVENTIONS = (
 )
 
 
-# Global attributes of the CF conventions, where a motion has none of these names. Without dates, so that a
-# motion is always the same file.
+# Global attributes of the CF conventions, where a motion has none of these names. Without dates, so that the
+# file of a motion is always the same.
 CF = {
     "Conventions": "CF-1.11",
     "title": "Motion of a rigid body",

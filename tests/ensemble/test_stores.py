@@ -1,11 +1,11 @@
 """Zarr stores of ensembles: the layout of the netCDF file, resumed runs, and faults."""
 
+import contextlib
 import itertools
 import json
 import os
 import random
 import signal
-import subprocess
 import sys
 import time
 from dataclasses import replace
@@ -75,20 +75,16 @@ def test_ranges_filled_by_processes_at_once_are_the_serial_store(folder, serial)
     """As the tasks of a Slurm array; the bounds lie inside blocks."""
     store, bounds = folder / "ranges.zarr", [0, 700, 1300, NUMBER]
     pieces = list(itertools.pairwise(bounds))[::-1]
-    tasks = [
-        subprocess.Popen(
-            [POLHODE, "run", folder / "a.toml", "-o", store, "--bodies", f"{a}:{b}", "--threads", "1"],
-            stdout=processes.PIPE,
-            stderr=processes.PIPE,
-            encoding="utf-8",
-        )
-        for a, b in pieces
-    ]
-    for task in tasks:
-        with processes.limited(task):
+    command = [POLHODE, "run", folder / "a.toml", "-o", store, "--threads", "1"]
+    with contextlib.ExitStack() as stack:
+        tasks = [
+            stack.enter_context(processes.start([*command, "--bodies", f"{first}:{end}"]))
+            for first, end in pieces
+        ]
+        for task in tasks:
             output, errors = task.communicate()
-        assert task.returncode == 0, errors
-        assert output.startswith(f"{store}: ")
+            assert task.returncode == 0, errors
+            assert output.startswith(f"{store}: ")
     assert content(store) == serial
     assert status(store)["running"] == []
 

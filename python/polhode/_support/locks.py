@@ -91,7 +91,7 @@ def locked(folder: Path, first: int, end: int, what: str) -> Iterator[None]:
 
 
 def _start_of(pid: int) -> str | None:
-    """Return boot and start time of a process, which tell it from later ones of its number; None if unknown.
+    """Return boot and start time of a process; later ones of its number have others. None if unknown.
 
     Only Linux reports them. A process that has ended but was not waited for counts as ended.
     """

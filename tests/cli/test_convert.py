@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from command_line import polhode
 from motions import ASYMMETRIC, START
 from polhode._cli.main import main
 
@@ -47,6 +48,19 @@ def test_every_format_to_every_other(a, b, convert, tmp_path):
     # A file of ours is replaced without --force, unless a table lacks the columns by which it is known.
     if b != "csv" or a != "aem":
         assert convert(f"a.{a}", f"b.{b}", *(AEM if b == "aem" and a != "aem" else [])).code == 0
+
+
+def test_the_command_reads_what_the_command_wrote(tmp_path, scene):
+    """As programs of their own: they import no more than they need."""
+    assert polhode("run", scene, "-o", "a.nc", "--no-figures", cwd=tmp_path).returncode == 0
+    steps = [*itertools.pairwise(["a.nc", "b.aem", "c.csv", "d.nc"]), ("a.nc", "e.glb")]
+    for source, target in steps:
+        done = polhode("convert", source, target, *(AEM if target == "b.aem" else []), cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert done.stdout == f"Written\n  {target}\n"
+    done = polhode("convert", "d.nc", "f.glb", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "the shape of the body is not known; give --scene=FILE.toml" in done.stderr
 
 
 def test_netcdf_keeps_the_certificate(convert):

@@ -130,6 +130,7 @@ def _shape(name: str) -> dict[str, Any]:
 
 def _with_flags(message: str) -> str:
     """Return a message with the options of the command for the arguments of Python."""
+    message = message.replace("surface=(vertices, triangles)", "--scene=FILE.toml")
     names = "|".join({*_READING, *_WRITING})
     return re.sub(rf"\b({names})=", lambda found: f"{_flag(found[1])}=", message)
 

@@ -10,6 +10,7 @@ from typing import Any
 from polhode._io import aem, aem_writing, gltf, spice, tables
 from polhode._io.history import AttitudeHistory, FileError
 from polhode._mechanics.trajectory import Trajectory
+from polhode._report import netcdf
 
 _READERS: dict[str, Callable[..., AttitudeHistory]] = {
     "aem": aem.read_aem,
@@ -89,7 +90,7 @@ def load(path: str | os.PathLike[str], **options: Any) -> Trajectory | AttitudeH
     if not options and form_of(path, READ, "read") == "nc":
         history = tables.read_netcdf(path)
         try:
-            return Trajectory.read(path)
+            return netcdf.read(path)
         except ValueError:
             return history
     return read(path, **options)

@@ -18,6 +18,7 @@ from polhode._io.history import AttitudeHistory, FileError
 from polhode._mechanics.robots.document import Source
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report import netcdf, table
+from polhode._report.output import encoded
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 from polhode._support.files import write_atomically
@@ -127,10 +128,10 @@ def read_netcdf(path: str | os.PathLike[str]) -> AttitudeHistory:
 def write_table(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[str], form: str) -> None:
     """Write a motion as netCDF, CSV or Parquet (form ``"nc"``, ``"csv"``, ``"parquet"``), atomically."""
     if isinstance(motion, Trajectory):
-        motion.save(path)
-        return
-    encoders = {"nc": _netcdf, "csv": _csv, "parquet": _parquet}
-    write_atomically({Path(path): encoders[form](motion)})
+        content = encoded(motion, form)
+    else:
+        content = {"nc": _netcdf, "csv": _csv, "parquet": _parquet}[form](motion)
+    write_atomically({Path(path): content})
 
 
 # --- reading

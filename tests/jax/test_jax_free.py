@@ -28,12 +28,6 @@ SINGULAR = {
 }
 
 
-@pytest.fixture(autouse=True)
-def _doubles():
-    with jax.enable_x64(True):
-        yield
-
-
 def seven(moments, rotor, omega, t, method="native"):
     return jnp.concatenate(ph.jax.free(moments, rotor, omega, t, method=method), axis=-1)
 

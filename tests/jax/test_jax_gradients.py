@@ -13,12 +13,6 @@ ROTOR, OMEGA = np.array([0.8, -0.4, 0.2, 0.4]), np.array([0.5, 0.25, 1.0])
 STEPS, TIME = 16, 0.8
 
 
-@pytest.fixture(autouse=True)
-def _doubles():
-    with jax.enable_x64(True):
-        yield
-
-
 def seven(law, method, moments, rotor, omega):
     found = ph.jax.simulate(moments, rotor, omega, [TIME], law, method, steps=STEPS)
     return jnp.concatenate([x[0] for x in found])

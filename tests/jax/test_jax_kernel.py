@@ -18,12 +18,6 @@ OMEGAS = RNG.normal(size=(BODIES, 3))
 HEAVY = [0.3, -0.2, 1.0]
 
 
-@pytest.fixture(autouse=True)
-def _doubles():
-    with jax.enable_x64(True):
-        yield
-
-
 @pytest.mark.parametrize(
     ("method", "dtype", "torque"),
     [

@@ -48,12 +48,6 @@ STEP = 0.05
 COUNT = 80
 
 
-@pytest.fixture(autouse=True)
-def _doubles():
-    with jax.enable_x64(True):
-        yield
-
-
 def apart(found, expected):
     """The largest difference in units of the last place, of the angular velocity relative to its size."""
     rotor, omega = found

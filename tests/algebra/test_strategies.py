@@ -78,7 +78,7 @@ def test_all_grades_occur(grades):
 
 
 @pytest.mark.parametrize("angle", [0.0, np.pi, 2 * np.pi])
-@pytest.mark.parametrize("distance", [0.0, 1e-12])
+@pytest.mark.parametrize("distance", [0.0, pytest.param(1e-12, marks=pytest.mark.slow)])
 def test_rotors_near_singular_angles_occur(angle, distance):
     def near(R):
         return 0 < abs(R.plane_angle()[1] - angle) <= distance or (

@@ -62,7 +62,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-@pytest.mark.parametrize("command", ["run", "check"])
+@pytest.mark.parametrize("command", ["run", pytest.param("check", marks=pytest.mark.slow)])
 def test_bad_scenes_have_a_place(name, command, tmp_path):
     text, expected = BAD[name]
     (tmp_path / "bad.toml").write_text(text)

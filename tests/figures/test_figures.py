@@ -107,7 +107,13 @@ def texts_of(figure):
     return [text for text in found if text.get_visible() and text.get_text()]
 
 
-@pytest.mark.parametrize("name", ["t-handle", "symmetric-top", "nutating-top", "kovalevskaya", "dual-spin"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("t-handle", "nutating-top"),
+        *(pytest.param(x, marks=pytest.mark.slow) for x in ("symmetric-top", "kovalevskaya", "dual-spin")),
+    ],
+)
 def test_no_two_texts_overlap(name):
     for kind in sorted(FITTING[name]):
         figure = motion_of(name).plot(kind)

@@ -41,8 +41,8 @@ PAGES = [
     "cga",
     "formulas",
     "motion",
-    "fitting",
-    "jax",
+    pytest.param("fitting", marks=pytest.mark.slow),
+    pytest.param("jax", marks=pytest.mark.slow),
     "scenes",
     pytest.param("viewer", marks=needs_bundle),
 ]

@@ -58,7 +58,10 @@ CHANGES = {
 }
 
 
-@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize(
+    "change",
+    [name if k % 2 else pytest.param(name, marks=pytest.mark.slow) for k, name in enumerate(CHANGES)],
+)
 def test_motion_equals_that_of_the_changed_scene(change, box, tmp_path):
     CHANGES[change](box)
     box.until("model.scene.value !== before", before=BOX)

@@ -37,7 +37,11 @@ def near(pixels, colour, distance=12):
 
 
 @pytest.mark.parametrize(
-    "name", ["t-handle", "symmetric", "nutating-top", "gravity-gradient", "toutatis-uncertain"]
+    "name",
+    [
+        *("t-handle", "nutating-top", "toutatis-uncertain"),
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("symmetric", "gravity-gradient")),
+    ],
 )
 def test_pictures_show_the_motion(name, opened):
     page = opened(name, color_scheme="light")

@@ -23,7 +23,10 @@ def shared(pages, tmp_path_factory, follow):
     assert page.complaints == []
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize(
+    "name",
+    [name if k % 3 == 0 else pytest.param(name, marks=pytest.mark.slow) for k, name in enumerate(EVERY)],
+)
 def test_scenes_have_the_states_of_python(name, shared, follow):
     followed = follow(name)
     shared.show(document.of_scene(followed.scene))

@@ -8,6 +8,8 @@ import pytest
 from generic_arrays import EPS, eight_of, multiplied, native, of
 from polhode._generic import functions, layout, rotors
 
+pytestmark = pytest.mark.slow  # the same laws as in other files, over more algebras and coefficients
+
 jax = pytest.importorskip("jax")
 jnp = jax.numpy
 

@@ -185,6 +185,7 @@ def test_inverses_of_symbols_are_exact(grades):
     assert (A * A.inverse()).map(sympy.simplify) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [*ROUNDING, "mpmath"], indirect=True)
 @pytest.mark.parametrize("grades", GRADE_SETS, ids=str)
 def test_inverses_to_rounding(kind, grades):
@@ -213,6 +214,7 @@ def test_singular_values_have_no_inverse(kind):
 # --- rotors, exp and log
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [*ROUNDING, "mpmath"], indirect=True)
 def test_exp_and_log_of_bivectors(kind):
     B = kind.random(4, (5,), (2,)) / 8  # |B| < π, the range of log
@@ -227,6 +229,7 @@ def test_exp_and_log_of_bivectors(kind):
     assert kind.near(R, series, 32, np.e)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [*ROUNDING, "mpmath"], indirect=True)
 def test_a_rotor_acts_as_its_two_sided_product(kind):
     B, X = kind.random(5, (4, 1), (2,)), kind.random(6, (3,))

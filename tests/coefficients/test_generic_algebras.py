@@ -9,6 +9,8 @@ from polhode._generic import algebras
 from polhode._generic.exact import Exact
 from polhode._generic.products import product
 
+pytestmark = pytest.mark.slow  # the same laws as in other files, over more algebras and coefficients
+
 __all__ = ["floating"]
 SIGNATURES = [
     (0, 0, 0),

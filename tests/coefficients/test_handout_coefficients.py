@@ -13,6 +13,8 @@ import sympy
 import polhode as ph
 from kinds import halves, kinds
 
+pytestmark = pytest.mark.slow  # the same laws as in other files, over more algebras and coefficients
+
 kind = kinds("float64", "float32", "int", "fraction", "sympy", "mpmath", "jax", "jax-jit", "array-api-strict")
 TURNING = ("float64", "float32", "mpmath", "jax", "jax-jit", "array-api-strict")
 turning = pytest.mark.parametrize("kind", TURNING, indirect=True)

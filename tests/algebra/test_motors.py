@@ -275,7 +275,6 @@ def test_motors_of_other_algebras_are_refused():
         RigidTransform().to_motor(ph.algebra(4, 1))
 
 
-@pytest.mark.skipif(not hasattr(ph, "pga"), reason="needs the algebra with the null vector first")
 def test_the_null_vector_may_come_first():
     P, T = ph.pga(3), transforms((3,), seed=12)
     M = T.to_motor(P)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import re
 import sys
 from collections.abc import Iterator
@@ -15,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._cli import common
-from polhode._cli.common import add_amount, add_command, read_scene
+from polhode._cli.common import add_amount, add_command, positive, read_scene
 from polhode._native import SceneError
 
 if TYPE_CHECKING:
@@ -62,13 +61,7 @@ def add(commands: Any) -> None:
 
 
 def _mass(text: str) -> float:
-    try:
-        mass = float(text)
-    except ValueError:
-        mass = math.nan
-    if not 0 < mass < math.inf:
-        raise argparse.ArgumentTypeError(f"mass must be a positive number of kg, got {text!r}")
-    return mass
+    return positive(text, "mass must be a positive number of kg")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -109,3 +109,14 @@ def progress(name: str, quiet: bool = False) -> Iterator[Report | None]:
             bar.update(task, description=f"{name}, pass {number}" if number else name, completed=fraction)
 
         yield report
+
+
+def positive(text: str, wanted: str) -> float:
+    """Return the positive finite number that an option was given; the error begins with what is wanted."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{wanted}, got {text!r}")
+    return value

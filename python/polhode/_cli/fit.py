@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli.common import add_amount, add_command, file_name
+from polhode._cli.common import add_amount, add_command, file_name, positive
 
 if TYPE_CHECKING:
     from polhode._fit.result import Fit
@@ -121,10 +121,4 @@ def _columns(text: str) -> tuple[str, ...]:
 
 
 def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"expected a positive number, got {text!r}")
-    return value
+    return positive(text, "expected a positive number")

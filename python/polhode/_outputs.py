@@ -120,16 +120,20 @@ def plot(
     view: Any = None,
     time: float | None = None,
     ax: Axes | None = None,
+    caption: bool = True,
+    width: str | float | None = None,
 ) -> Figure:
     """Return a matplotlib figure of the motion of one body.
+
+    Settings of Matplotlib that differ from its defaults are kept, such as those of a style sheet.
 
     Parameters
     ----------
     kind
-        ``"motion"``, angular velocity, attitude and drift over time; ``"polhode"`` on its ellipsoid;
-        ``"herpolhode"`` in the invariable plane; ``"locus"``, the path of a top's axis; ``"drift"`` of
-        conserved quantities; ``"phase"``, the phase portrait; ``"scene"``, the body and its bivectors,
-        captured from the viewer in a headless browser.
+        ``"motion"``, angular velocity and attitude over time, and energy and |L| where they vary;
+        ``"polhode"`` on its ellipsoid; ``"herpolhode"`` in the invariable plane; ``"locus"``, the path of a
+        top's axis; ``"drift"`` of conserved quantities; ``"phase"``, the phase portrait; ``"scene"``, the
+        body and its bivectors, captured from the viewer in a headless browser.
     view
         Azimuth and elevation of the camera in degrees, for figures in 3-d; None for the default.
     time
@@ -138,11 +142,16 @@ def plot(
         Plane axes of matplotlib to draw on, without title and caption; their figure is returned. None for a
         new figure. For all kinds but ``"motion"``, ``"drift"``, and ``"phase"`` of bodies whose Ω stays on an
         ellipsoid, which have several panels.
+    caption
+        Whether a new figure has a caption.
+    width
+        Width of a new figure, such as ``"85mm"`` for one column of a journal, or in inches; None for that
+        of two columns, about 180 mm. Letters are 9 points high, and at least 7 in narrower figures.
 
     Raises
     ------
     ValueError
-        For a batch, a kind that does not fit the motion or `ax`, or too few output times.
+        For a batch, a kind that does not fit the motion or `ax`, too few output times, or an invalid width.
     ImportError
         Without matplotlib, and for ``"scene"`` without Playwright: ``pip install 'polhode[film]'``.
     OSError
@@ -150,8 +159,9 @@ def plot(
     """
     self._require_one("plot")
     from polhode._figures.registry import figure
+    from polhode._figures.style import Sheet, width_of
 
-    return figure(self, kind, view, time, ax)
+    return figure(self, kind, Sheet(ax, caption, width_of(width)), view, time)
 
 
 def film(

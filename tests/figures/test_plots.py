@@ -82,12 +82,11 @@ def test_axes_are_labelled_with_units():
     motion = free((1, 2, 3))
     motion.attributes["title"] = "A title"
     figure = motion.plot()
-    rates, attitude, drift = figure.axes
+    rates, attitude = figure.axes
     assert "rad/s" in rates.get_ylabel()
     assert "rotor" in attitude.get_ylabel()
-    assert "relative" in drift.get_ylabel()
-    assert drift.get_xlabel() == "time, s"
-    assert figure.get_suptitle() == "A title"
+    assert attitude.get_xlabel() == "time, s"
+    assert figure.get_suptitle() == "A title: angular velocity and attitude"
     assert [t.get_text() for t in rates.get_legend().get_texts()] == list(PLANES)
     assert [t.get_text() for t in attitude.get_legend().get_texts()] == ["1", *PLANES]
 
@@ -98,14 +97,14 @@ def test_axes_are_labelled_with_units():
 )
 def test_long_times_have_longer_units(span, unit, last):
     motion = free((1, 2, 3), omega=(0, 0, 1e-4), times=[0, span])
-    rates, _, drift = motion.plot().axes
-    assert drift.get_xlabel() == f"time, {unit}"
+    rates, attitude = motion.plot().axes
+    assert attitude.get_xlabel() == f"time, {unit}"
     assert rates.lines[0].get_xdata()[-1] == pytest.approx(last)
 
 
 def test_the_lines_are_the_data():
     motion = free((1, 2, 3))
-    rates, attitude, _ = motion.plot().axes
+    rates, attitude = motion.plot().axes
     for k, line in enumerate(rates.lines):
         np.testing.assert_array_equal(line.get_xdata(), TIMES)
         np.testing.assert_array_equal(line.get_ydata(), motion.omega_body.components[:, k])

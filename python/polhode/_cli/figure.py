@@ -36,6 +36,9 @@ def add(commands: Any) -> None:
     _add_output(figure, "a figure", "FILE.svg, FILE.pdf or FILE.png")
     _add_view(figure)
     figure.add_argument("--time", metavar="T", type=float, help="time of the figure in s, default the last")
+    words = "width of the figure, such as 85mm (one column of a journal), 18cm or 3.4in"
+    figure.add_argument("--width", metavar="W", help=words)
+    figure.add_argument("--no-caption", dest="caption", action="store_false", help="leave out the caption")
 
     film = add_command(
         commands,
@@ -76,13 +79,15 @@ def _figure(options: argparse.Namespace) -> int:
     path = Path(options.output)
     check_target(path)
     from polhode._figures.handout import handout_figure
-    from polhode._figures.registry import check, write
+    from polhode._figures.registry import check, figure, write
+    from polhode._figures.style import Sheet, width_of
 
+    sheet = Sheet(caption=options.caption, width=width_of(options.width))
     if of_handout:
-        drawn = handout_figure(int(options.what))
+        drawn = handout_figure(int(options.what), sheet)
     else:
         check(options.what, options.view, options.time)
-        drawn = _motion(options.scene).plot(options.what, view=options.view, time=options.time)
+        drawn = figure(_motion(options.scene), options.what, sheet, options.view, options.time)
     write(drawn, path)
     print(f"Written\n  {path}")
     return 0

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from polhode._figures.camera import angles_of
-from polhode._figures.style import Figure, drawing, plotting, require_times, time_unit, title_of
+from polhode._figures.style import Figure, drawing, plotting, require_times, time_unit
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array, as_count, as_float
 from polhode._support.extras import optional
@@ -25,9 +25,9 @@ from polhode._viewer.capture import studio
 _SIZE = (1920, 1080)
 
 _CAPTION = (
-    "Arrows: body axes fₖ = R eₖ ~R; dashed: space axes eₖ. Discs: Ω and L in space, in their planes and "
-    "senses, with areas proportional to |Ω| and |L|. Lines: the path of a body axis in space (pink) and of Ω "
-    "in the body (ochre); they fade with time."
+    r"Arrows: body axes $f_k = R e_k \tilde{R}$; dashed: space axes $e_k$. Discs: $\Omega$ and $L$ in space, "
+    r"in their planes and senses, with areas proportional to $|\Omega|$ and $|L|$. Lines: the path of a body "
+    r"axis in space (pink) and of $\Omega$ in the body (ochre); they fade with time."
 )
 
 _SIZES = {"mp4": (1280, 720), "gif": (640, 360)}
@@ -44,7 +44,7 @@ _SAMPLED = 6
 Progress = Callable[[float], object]
 
 
-@drawing(7, 4.75, "Motion of a rigid body")
+@drawing(7, 4.75, "The body, $\\Omega$ and $L$")
 def scene_figure(figure: Figure, trajectory: Trajectory, view: Any = None, time: float | None = None) -> str:
     """Draw the scene at a time in s, the last one if none is given, as the viewer draws it."""
     when = _checked_time(trajectory, time)
@@ -54,9 +54,9 @@ def scene_figure(figure: Figure, trajectory: Trajectory, view: Any = None, time:
     axes.imshow(plotting("matplotlib.image").imread(io.BytesIO(picture), format="png"))
     axes.set_axis_off()
     seconds, unit = time_unit(trajectory.time)
-    axes.text(0.01, 0.97, f"t = {when / seconds:.4g} {unit}", transform=axes.transAxes, va="top")
+    axes.text(0.01, 0.97, f"$t$ = {when / seconds:.4g} {unit}", transform=axes.transAxes, va="top")
     held = trajectory._origin is not None and trajectory._origin.held
-    return _CAPTION + " mg: the weight at the centre of mass." * held
+    return _CAPTION + " $mg$: the weight at the centre of mass." * held
 
 
 def _checked_time(trajectory: Trajectory, time: float | None) -> float:
@@ -93,7 +93,7 @@ def write(
     if (problem := stroboscopic(trajectory, plan)) is not None:
         # To the caller of `Trajectory.film`.
         warnings.warn(problem, stacklevel=3)
-    title, (per_unit, unit) = title_of(trajectory, ""), time_unit(trajectory.time)
+    title, (per_unit, unit) = trajectory.attributes.get("title", ""), time_unit(trajectory.time)
     decimals = 2 if np.ptp(trajectory.time) / per_unit < 100 else 1
     with unfinished(path) as target, studio(trajectory, times, plan.size, angles_of(view), "a film") as taken:
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,7 +13,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._figures.camera import View, frame_picture
 from polhode._figures.palette import AXES, BLACK, BLUE, FAINT, GREEN, MOMENTUM, OMEGA, ORANGE, WEIGHT
-from polhode._figures.style import Figure, drawing, halo
+from polhode._figures.style import NEW, Figure, Sheet, drawing, halo, plotting
 from polhode._mechanics.bodies import Body
 from polhode._support.arrays import Array
 
@@ -40,12 +41,22 @@ class _Picture:
         arrow = {**style, "mutation_scale": head}
         self.axes.annotate("", xy=flat[1], xytext=flat[0], arrowprops=arrow, zorder=zorder)
 
+    def heads(self, curve: Array, places: Sequence[int], colour: str, zorder: int) -> None:
+        """Draw arrowheads that sit on a curve at the points with these numbers, along the curve."""
+        head = plotting("matplotlib.path").Path([[-0.5, -0.32], [0.5, 0.0], [-0.5, 0.32], [-0.5, -0.32]])
+        flat = self.view.project(curve)
+        for k in places:
+            x, y = flat[k + 1] - flat[k - 1]
+            turned = plotting("matplotlib.transforms").Affine2D().rotate(np.arctan2(y, x))
+            marker = head.transformed(turned)
+            self.axes.plot(*flat[k], marker=marker, ms=9.5, color=colour, mec="none", zorder=zorder)
+
     def write(self, place: Array, text: str, colour: str, offset: tuple[float, float] = (0, 0)) -> None:
         """Write a text at a point, moved by an offset in points."""
         x, y = self.view.project(place)
         self.axes.annotate(
             text, (x, y), xytext=offset, textcoords="offset points", color=colour,
-            fontsize=11, ha="center", va="center", zorder=50, path_effects=[halo(2.4)],
+            fontsize="large", ha="center", va="center", zorder=50, path_effects=[halo(2.4)],
         )  # fmt: skip
 
     def frame(self, points: Array, margin: float) -> None:
@@ -53,7 +64,7 @@ class _Picture:
         frame_picture(self.axes, self.view.project(points), margin)
 
 
-@drawing(5.2, 4.8, "The bivector a∧b, swept along c: the trivector a∧b∧c")
+@drawing(5.2, 4.8, r"The bivector $a\wedge b$, swept along $c$: the trivector $a\wedge b\wedge c$")
 def swept_trivector(figure: Figure, a: Multivector, b: Multivector, c: Multivector) -> str:
     """Figure 1: the trivector that the bivector a∧b sweeps out along the vector c."""
     picture = _Picture(figure, -28, 20)
@@ -61,11 +72,11 @@ def swept_trivector(figure: Figure, a: Multivector, b: Multivector, c: Multivect
     _draw_parallelepiped(picture, corners)
     middle = 0.5 * (corners[0] + corners[1])
     _draw_turn(picture, middle, 0.2 * corners[0], 0.2 * corners[1], ORANGE)
-    picture.write(middle, "a∧b", ORANGE)
+    picture.write(middle, r"$a\wedge b$", ORANGE)
     for vec, colour, name, offset in (
-        (corners[0], BLACK, "a", (2, -11)),
-        (corners[1], BLACK, "b", (-9, -6)),
-        (corners[2], BLUE, "c", (9, 2)),
+        (corners[0], BLACK, "$a$", (2, -11)),
+        (corners[1], BLACK, "$b$", (-9, -6)),
+        (corners[2], BLUE, "$c$", (9, 2)),
     ):
         picture.arrow(np.zeros(3), vec, colour)
         picture.write(0.55 * vec, name, colour, offset)
@@ -73,12 +84,13 @@ def swept_trivector(figure: Figure, a: Multivector, b: Multivector, c: Multivect
     swept = float(-((a ^ b ^ c) | I))
     sense = "right" if swept > 0 else "left"
     return (
-        f"a = {_text(a)}, b = {_text(b)}, c = {_text(c)}: a∧b = {_text(a ^ b)}, and swept along c "
-        f"a∧b∧c = {swept:.4g} I, the volume with its sense, {sense}-handed (handout eq. 1.2 and 1.3)."
+        rf"$a$ = {_text(a)}, $b$ = {_text(b)}, $c$ = {_text(c)}: $a\wedge b$ = {_text(a ^ b)}, and swept "
+        rf"along $c$ $a\wedge b\wedge c$ = {_text(swept * I)}, the volume with its sense, {sense}-handed "
+        "(handout eq. 1.2 and 1.3)."
     )
 
 
-@drawing(5.2, 4.8, "A vector turned in the plane B: a' = R a ~R")
+@drawing(5.2, 4.8, r"A vector turned in the plane $B$: $a' = R a \tilde{R}$")
 def turned_vector(figure: Figure, a: Multivector, B: Multivector, angle: float) -> str:
     """Figure 2: the vector a turned by an angle in rad in the plane and sense of the bivector B."""
     R = Rotor.from_plane_angle(B, angle)
@@ -95,24 +107,25 @@ def turned_vector(figure: Figure, a: Multivector, B: Multivector, angle: float) 
         picture.line(ends, color=FAINT, lw=1.0, ls=(0, (3, 2)), zorder=4)
     picture.line(powers + across.components, color=ORANGE, lw=1.0, ls=(0, (1, 1.5)), zorder=4)
     for value, colour, name, width, offset in (
-        (within, FAINT, "a∥", 1.2, (-3, -13)),
-        (R(within), FAINT, "a'∥", 1.2, (8, -9)),
-        (across, GREEN, "a⊥ = a'⊥", 1.4, (-6, 8)),
-        (a, BLUE, "a", 1.9, (-10, 4)),
-        (turned, ORANGE, "a' = R a ~R", 1.9, (9, 3)),
+        (within, FAINT, r"$a_\parallel$", 1.2, (-3, -13)),
+        (R(within), FAINT, r"$a'_\parallel$", 1.2, (8, -9)),
+        (across, GREEN, r"$a_\perp = a'_\perp$", 1.4, (-6, 8)),
+        (a, BLUE, "$a$", 1.9, (-10, 4)),
+        (turned, ORANGE, r"$a' = R a \tilde{R}$", 1.9, (9, 3)),
     ):
         picture.arrow(np.zeros(3), value.components, colour, width)
         picture.write(value.components, name, WEIGHT if colour == FAINT else colour, offset)
-    picture.write(0.58 * powers[len(powers) // 2], "θ", BLACK)
+    picture.write(0.58 * powers[len(powers) // 2], r"$\theta$", BLACK)
     picture.frame(np.stack([*rim, a.components, turned.components, across.components]), 0.22)
     return (
-        f"B = {_text(plane)} with B² = {_text(plane | plane)}, θ = {np.degrees(angle):.4g}°, "
-        f"R = {_text(R)}. a = {_text(a)} goes to a' = {_text(turned)}: the part a∥ = (a·B) B⁻¹ in the plane "
-        f"turns by θ in its sense, a⊥ = (a∧B) B⁻¹ does not change (handout eq. 2.4)."
+        rf"$B$ = {_text(plane)} with $B^2$ = {_text(plane | plane)}, $\theta$ = {np.degrees(angle):.4g}°, "
+        rf"$R$ = {_text(R)}. $a$ = {_text(a)} goes to $a'$ = {_text(turned)}: the part "
+        r"$a_\parallel = (a\cdot B)\,B^{-1}$ in the plane turns by $\theta$ in its sense, "
+        r"$a_\perp = (a\wedge B)\,B^{-1}$ does not change (handout eq. 2.4)."
     )
 
 
-@drawing(5.2, 4.8, "The inertia tensor takes the plane of rotation B to I(B)")
+@drawing(5.2, 4.8, "The inertia tensor takes the plane of rotation $B$ to $I(B)$")
 def inertia_of_plane(figure: Figure, body: Body, lengths: Sequence[float], B: Multivector) -> str:
     """Figure 3: the inertia map of a box takes the plane of rotation B to I(B), in general another plane."""
     L = body.inertia(B)
@@ -121,11 +134,11 @@ def inertia_of_plane(figure: Figure, body: Body, lengths: Sequence[float], B: Mu
     _draw_box(picture, half)
     for k, axis in enumerate(np.eye(3)):
         _arrow_from_box(picture, 1.55 * axis, half, AXES[k], 1.7)
-        picture.write(1.67 * axis, f"e{'₁₂₃'[k]}", AXES[k])
+        picture.write(1.67 * axis, f"$e_{k + 1}$", AXES[k])
     largest = float(body.inertia.principal_moments.max())
     for value, most, colour, name, offset in (
-        (B, float(B.norm()), OMEGA, "B", (-13, 0)),
-        (L, largest * float(B.norm()), MOMENTUM, "I(B)", (18, 0)),
+        (B, float(B.norm()), OMEGA, "$B$", (-13, 0)),
+        (L, largest * float(B.norm()), MOMENTUM, "$I(B)$", (18, 0)),
     ):
         rim = _rim(value, 1.45 * float(np.sqrt(float(value.norm()) / most)))
         _draw_disc_through_box(picture, rim, half, colour)
@@ -137,33 +150,35 @@ def inertia_of_plane(figure: Figure, body: Body, lengths: Sequence[float], B: Mu
     meet = np.degrees(np.arccos(cosine))
     i = ", ".join(f"{x:.4g}" for x in body.inertia.principal_moments)
     return (
-        f"A box with the moments {i} kg m²: B = {_text(B)} rad/s goes to I(B) = {_text(L)} kg m²/s, each "
+        f"A box with the moments {i} kg m²: $B$ = {_text(B)} rad/s goes to $I(B)$ = {_text(L)} kg m²/s, each "
         f"component by its own moment (handout eq. 4.18 and 4.24). The planes meet at {meet:.4g}°. "
-        f"Areas are proportional to |B| and |I(B)|; the thin arrows are their duals."
+        f"Areas are proportional to $|B|$ and $|I(B)|$; the thin arrows are their duals."
     )
 
 
-def handout_figure(number: int) -> Figure:
+def handout_figure(number: int, sheet: Sheet = NEW) -> Figure:
     """Return figure 1, 2 or 3 of the handout, with example values."""
     if number == 1:
-        return swept_trivector(0.15 * e1 + 1.5 * e2, -1.2 * e1 + 0.15 * e2, -0.1 * e1 + 0.4 * e2 + 1.05 * e3)
+        return swept_trivector.on(
+            sheet, 0.15 * e1 + 1.5 * e2, -1.2 * e1 + 0.15 * e2, -0.1 * e1 + 0.4 * e2 + 1.05 * e3
+        )
     if number == 2:
         B = (e1 ^ e2) + 0.12 * (e2 ^ e3)
-        return turned_vector(1.0 * e1 - 0.35 * e2 + 0.75 * e3, B, np.radians(75))
+        return turned_vector.on(sheet, 1.0 * e1 - 0.35 * e2 + 0.75 * e3, B, np.radians(75))
     lengths = [0.6, 0.9, 1.8]
     body = Body.box(lengths, mass=12)
-    return inertia_of_plane(body, lengths, 0.3 * (e2 ^ e3) + 0.25 * (e3 ^ e1) + 0.8 * (e1 ^ e2))
+    return inertia_of_plane.on(sheet, body, lengths, 0.3 * (e2 ^ e3) + 0.25 * (e3 ^ e1) + 0.8 * (e1 ^ e2))
 
 
 # --- parts of the pictures
 
 
 def _text(value: Multivector) -> str:
-    """Return a value with few digits, subscripts, and no line break before a blade."""
+    """Return a value with few digits; its blades are mathematics, without a line break before them."""
     text = repr(value.map(np.vectorize(lambda x: float(f"{x:.4g}"))))
-    for digit, subscript in zip("123", "₁₂₃", strict=True):
-        text = text.replace(f"e{digit}", f"e{subscript}")
-    return text.replace("-", "−").replace(" e", "\u00a0e")
+    text = re.sub(r"\b(e\d(∧e\d)*|I)\b", lambda blade: f"${blade[0]}$", text)
+    text = re.sub(r"e(\d)", r"e_\1", text).replace("∧", r"\wedge ")
+    return text.replace("-", "−").replace(" $", "\u00a0$")
 
 
 def _draw_parallelepiped(picture: _Picture, edges: Array) -> None:
@@ -242,18 +257,16 @@ def _draw_disc_through_box(picture: _Picture, rim: Array, half: Array, colour: s
         outline = np.concatenate([outer, inside[chosen][::-1]])
         picture.fill(outline, facecolor=colour, edgecolor="none", alpha=0.2, zorder=zorder)
         picture.line(outer, color=colour, lw=1.8, zorder=zorder + 1)
-        for k in heads:
-            picture.arrow(outer[k], outer[k + 4], colour, 1.8, zorder=zorder + 1, head=16)
+        picture.heads(outer, heads, colour, zorder + 1)
 
 
 def _draw_plane(picture: _Picture, rim: Array) -> None:
     """Draw an oriented disc from its rim."""
     picture.fill(rim, facecolor="#EEF1F5", edgecolor=FAINT, lw=1.0, zorder=0)
-    for k in (40, 160, 280):
-        picture.arrow(rim[k], rim[k + 6], FAINT, 1.2, zorder=1, head=15)
+    picture.heads(rim, (40, 160, 280), FAINT, 1)
     flat = picture.view.project(rim)
     lowest = int(np.argmin(flat[:, 1] - 0.6 * flat[:, 0]))
-    picture.write(rim[lowest], "B", WEIGHT, (9, -9))
+    picture.write(rim[lowest], "$B$", WEIGHT, (9, -9))
 
 
 def _draw_sector(picture: _Picture, points: Array) -> None:

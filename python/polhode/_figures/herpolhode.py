@@ -13,7 +13,7 @@ from polhode._mechanics.smooth import samples
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.summary import time as time_text
 
-# Samples of a period from which the least and largest distance from L are found.
+# Samples of a period from which the least and largest distance from $L$ are found.
 _POINTS = 4097
 # Circles whose radii differ by less than this fraction are drawn as one.
 _EQUAL = 1e-4
@@ -42,12 +42,12 @@ def herpolhode_figure(figure: Figure, trajectory: Trajectory) -> str:
     axes.plot(omega[:, 0], omega[:, 1], color=HERPOLHODE, lw=0.7 if crowded else 1.4, zorder=3)
     mark(axes, omega[0, :2], HERPOLHODE)
     axes.plot(0, 0, "+", color=MOMENTUM, ms=10, mew=1.8, zorder=6)
-    axes.annotate("L", (0, 0), xytext=(6, 5), textcoords="offset points", color=MOMENTUM, zorder=6)
+    axes.annotate("$L$", (0, 0), xytext=(6, 5), textcoords="offset points", color=MOMENTUM, zorder=6)
     dress(axes)
     axes.set_aspect("equal")
     reach = 1.08 * largest if largest > 1e-9 * float(np.abs(omega).max()) else float(np.abs(omega).max())
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
-    axes.set(xlabel=f"ω along g₁, {per_second}", ylabel=f"ω along g₂, {per_second}")
+    axes.set(xlabel=rf"$\omega$ along $g_1$, {per_second}", ylabel=rf"$\omega$ along $g_2$, {per_second}")
     return _caption(free, power * float(omega[0, 2]), power * least, power * largest)
 
 
@@ -63,15 +63,15 @@ def _draw_annulus(axes: Axes, least: float, largest: float) -> None:
 def _caption(free: FreeMotion, distance: float, least: float, largest: float) -> str:
     period = free.describe()["period"]
     caption = (
-        "The angular velocity ω_S = −I Ω_S in space, from the dot on. It stays in the invariable plane, "
-        f"perpendicular to L at a distance of {abs(distance):.5g} rad/s = 2E/|L| from the fixed origin; "
-        "g₁∧g₂ has the plane and sense of L."
+        r"The angular velocity $\omega_S = -I\,\Omega_S$ in space, from the dot on. It stays in the "
+        f"invariable plane, perpendicular to $L$ at a distance of {abs(distance):.5g} rad/s, $2E/|L|$, from "
+        r"the fixed origin; $g_1\wedge g_2$ has the plane and sense of $L$."
     )
     if largest > (1 + _EQUAL) * least:
-        caption += f" Dashed: its least and largest distance from L, {least:.4g} and {largest:.4g} rad/s"
+        caption += f" Dashed: its least and largest distance from $L$, {least:.4g} and {largest:.4g} rad/s"
         caption += f", each reached twice in a period of {time_text(period, 4)}." if period else "."
     elif largest > 1e-9 * abs(distance):
-        caption += f" Dashed: its distance from L, {largest:.4g} rad/s, is constant."
+        caption += f" Dashed: its distance from $L$, {largest:.4g} rad/s, is constant."
     else:
-        caption += " The rotation is steady: ω is constant."
+        caption += " The rotation is steady: $\\omega$ is constant."
     return caption

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from polhode._algebra.constructors import vector
-from polhode._figures.palette import AXES, BLACK, BLUE, GREEN, ORANGE, PLANES, SPACE_AXES
+from polhode._figures.palette import AXES, BLACK, MOMENTUM, ORANGE, PLANES, SPACE_AXES
 from polhode._figures.style import Axes, Figure, drawing, dress, scaled_unit, time_unit
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import main_axis
@@ -14,39 +16,54 @@ from polhode._support.arrays import Array
 
 # More turns than this would fill a figure as a solid block.
 _TURNS_SEEN = 100
+# Relative variation below which a curve would be a flat line.
+_VISIBLE = 1e-6
 
 
-@drawing(7, 6.6, "Motion of a rigid body")
+@drawing(7, 6.6, "Angular velocity and attitude")
 def motion_figure(figure: Figure, trajectory: Trajectory) -> str:
-    """Draw angular velocity in the body, attitude, and the drift of conserved quantities over time."""
-    panels = rates, attitude, drift = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 2))
+    """Draw angular velocity in the body and attitude over time, and energy and |L| where they vary."""
+    sizes = _varying_sizes(trajectory)
+    count = 3 if sizes else 2
+    panels = figure.subplots(count, 1, sharex=True, height_ratios=(3, 3, 2)[:count])
     power, per_second = scaled_unit(trajectory.omega_body.components, "rad/s")
     t = _time_axis(figure, panels, trajectory)
-    _draw_components(rates, t, trajectory.omega_body.components / power, PLANES)
-    rates.set_ylabel(f"angular velocity in\nthe body Ω_B, {per_second}")
-    _draw_attitude(attitude, trajectory, t)
-    _draw_drift(drift, trajectory, t)
+    _draw_components(panels[0], t, trajectory.omega_body.components / power, PLANES)
+    panels[0].set_ylabel(f"angular velocity in\nthe body $\\Omega_B$, {per_second}")
+    _draw_attitude(panels[1], trajectory, t)
+    if sizes:
+        _draw_sizes(panels[2], sizes, t)
     for axes in panels:
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+        axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=4, frameon=False, borderaxespad=0.2)
     return (
-        "Ω_B: components in the planes of body axes, coloured as the axis perpendicular to each. "
-        "Rotor: a' = R a ~R takes body axes to space axes, R' = −½ R Ω_B."
+        r"$\Omega_B$: components in the planes of body axes, coloured as the axis perpendicular to each. "
+        r"Rotor: $a' = R a \tilde{R}$ takes body axes to space axes, $\dot{R} = -\frac{1}{2} R\,\Omega_B$. "
+        + _conserved(trajectory)
     )
 
 
 @drawing(7, 3.35, "Conserved quantities")
 def drift_figure(figure: Figure, trajectory: Trajectory) -> str:
-    """Draw energy and momentum, then the change of each conserved quantity and of the rotor norm."""
-    drifts, proof = trajectory.drifts(), trajectory.certificate
-    figure.set_figheight(2.3 + 1.05 * (len(drifts) + 1))
-    panels = figure.subplots(len(drifts) + 2, 1, sharex=True, height_ratios=(1.6, *[1.0] * (len(drifts) + 1)))
+    """Draw energy and |L| where they vary, then the change of conserved quantities and of the rotor norm."""
+    proof, sizes = trajectory.certificate, _varying_sizes(trajectory)
+    unchanged = [QUANTITIES[name][0] for name, values in trajectory.drifts().items() if not values.any()]
+    drifts = {name: values for name, values in trajectory.drifts().items() if values.any()}
+    ratios = [*([1.6] if sizes else []), *[1.0] * (len(drifts) + 1)]
+    figure.set_figheight(1.25 + 1.05 * sum(ratios))
+    panels = tuple(figure.subplots(len(ratios), 1, sharex=True, height_ratios=ratios, squeeze=False)[:, 0])
     t = _time_axis(figure, panels, trajectory)
-    _draw_sizes(panels[0], trajectory, t)
-    for axes, (name, values) in zip(panels[1:-1], drifts.items(), strict=True):
+    if sizes:
+        _draw_sizes(panels[0], sizes, t)
+        panels[0].legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False, borderaxespad=0.2)
+    for axes, (name, values) in zip(panels[bool(sizes) : -1], drifts.items(), strict=True):
         label, unit = QUANTITIES[name]
         _draw_change(axes, t, values, f"{label}, {proof.conserved[name]:.6g} {unit} at the start", ORANGE)
-    _draw_change(panels[-1], t, np.asarray(trajectory.rotor.norm()) - 1, "norm of the rotor, |R| − 1", BLACK)
+    _draw_change(
+        panels[-1], t, np.asarray(trajectory.rotor.norm()) - 1, "norm of the rotor, $|R| - 1$", BLACK
+    )
     caption = "Changes since the start, relative to the size of the terms of each quantity. "
+    if unchanged:
+        caption += f"Without any change: {', '.join(unchanged)}. "
     if proof.method == "exact":
         return caption + "The motion is exact."
     error = "" if proof.error_estimate is None else f", estimated error {proof.error_estimate:.1g}"
@@ -77,7 +94,7 @@ def _draw_attitude(axes: Axes, trajectory: Trajectory, t: Array) -> None:
     turns = float(np.abs(np.diff(trajectory.time) * 0.5 * (speed[1:] + speed[:-1])).sum()) / (2 * np.pi)
     if turns <= _TURNS_SEEN:
         _draw_components(axes, t, trajectory.rotor.components, ("1", *PLANES))
-        axes.set_ylabel("attitude rotor R\n(body to space)")
+        axes.set_ylabel("attitude rotor $R$\n(body to space)")
     else:
         number, axis = main_axis(trajectory)
         _draw_components(axes, t, trajectory.rotor(vector(axis)).components, SPACE_AXES)
@@ -85,37 +102,32 @@ def _draw_attitude(axes: Axes, trajectory: Trajectory, t: Array) -> None:
     axes.set_ylim(-1.08, 1.08)
 
 
-def _draw_drift(axes: Axes, trajectory: Trajectory, t: Array) -> None:
-    """Draw relative changes of conserved quantities over a power of ten; |L| if none is conserved."""
-    series = {QUANTITIES[name][0]: values for name, values in trajectory.drifts().items()}
-    if not series:
-        axes.plot(t, np.linalg.norm(trajectory.momentum_space.components, axis=1), color=BLUE, label="|L|")
-        axes.set_ylim(bottom=0.0)
-        axes.set_ylabel("angular momentum,\nkg m²/s")
-        return
-    largest = max(float(np.abs(values).max()) for values in series.values())
-    exponent = _exponent(largest)
-    for (name, values), colour in zip(series.items(), (BLUE, ORANGE, GREEN, BLACK), strict=False):
-        axes.plot(t, values / 10.0**exponent, color=colour, lw=1.0, label=name)
-    if largest == 0:
-        axes.set_ylim(-1.5, 1.5)
-    axes.set_ylabel(f"relative drift,\n$10^{{{exponent}}}$")
+def _varying_sizes(trajectory: Trajectory) -> dict[str, Array]:
+    """Return those of energy and |L| that vary visibly, by their names in `QUANTITIES`."""
+    sizes = {"energy": trajectory.energy, "angular_momentum": np.asarray(trajectory.momentum_space.norm())}
+    return {
+        name: values for name, values in sizes.items() if np.ptp(values) > _VISIBLE * np.abs(values).max()
+    }
 
 
-def _draw_sizes(axes: Axes, trajectory: Trajectory, t: Array) -> None:
-    """Draw energy and |L|, each divided by its largest value, on a scale that includes zero."""
-    momentum = np.asarray(trajectory.momentum_space.norm())
-    for values, name, unit, colour, dashes in (
-        (trajectory.energy, "energy", "J", ORANGE, "-"),
-        (momentum, "|L|", "kg m²/s", BLUE, (0, (5, 2))),
-    ):
-        largest = float(np.abs(values).max())
+def _draw_sizes(axes: Axes, sizes: dict[str, Array], t: Array) -> None:
+    """Draw energy and |L|, each divided by its largest value."""
+    dashes: dict[str, Any] = {"energy": "-", "angular_momentum": (0, (5, 2))}
+    for name, values in sizes.items():
+        (label, unit), largest = QUANTITIES[name], float(np.abs(values).max())
         scaled = values / largest if largest else values
-        axes.plot(t, scaled, color=colour, lw=1.3, ls=dashes, label=f"{name} / {largest:.5g} {unit}")
-    low = min(0.0, float(trajectory.energy.min() / max(np.abs(trajectory.energy).max(), 1e-300)))
-    axes.set_ylim(1.1 * low, 1.1)
+        colour = {"energy": BLACK, "angular_momentum": MOMENTUM}[name]
+        axes.plot(t, scaled, color=colour, lw=1.3, ls=dashes[name], label=f"{label} / {largest:.5g} {unit}")
+    axes.ticklabel_format(axis="y", useOffset=False)
     axes.set_ylabel("relative to\nthe maximum")
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False, borderaxespad=0.2)
+
+
+def _conserved(trajectory: Trajectory) -> str:
+    """Return what is conserved, and how well, as a sentence of the caption."""
+    kept = [
+        f"{QUANTITIES[name][0]} to {np.abs(values).max():.0e}" for name, values in trajectory.drifts().items()
+    ]
+    return f"Conserved, relative: {', '.join(kept)}." if kept else ""
 
 
 def _draw_change(axes: Axes, t: Array, values: Array, name: str, colour: str) -> None:
@@ -127,7 +139,7 @@ def _draw_change(axes: Axes, t: Array, values: Array, name: str, colour: str) ->
     reach = 1.15 * max(float(np.abs(scaled).max()), 1.0)
     axes.set_ylim(-reach, reach)
     axes.set_ylabel(f"$10^{{{exponent}}}$")
-    axes.set_title(name, loc="left", fontsize=8.5, pad=3)
+    axes.set_title(name, loc="left", pad=3)
 
 
 def _exponent(largest: float) -> int:

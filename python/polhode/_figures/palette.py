@@ -9,5 +9,5 @@ FAINT, WEIGHT = "#8A94A3", "#5B6675"
 OTHERS = "#B8B8B8"
 
 # Labels of planes and axes.
-PLANES = ("e₂∧e₃", "e₃∧e₁", "e₁∧e₂")
-SPACE_AXES = ("e₁", "e₂", "e₃")
+PLANES = (r"$e_2\wedge e_3$", r"$e_3\wedge e_1$", r"$e_1\wedge e_2$")
+SPACE_AXES = ("$e_1$", "$e_2$", "$e_3$")

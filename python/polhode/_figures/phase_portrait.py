@@ -39,18 +39,18 @@ def phase_figure(figure: Figure, trajectory: Trajectory, wheel: Array, view: Any
     with_wheel = bool(np.any(h))
     shown = Portrait(path, *(_with_wheel(moments, h, frame) if with_wheel else _without_wheel(moments)))
     sphere, flat = figure.subplots(1, 2, width_ratios=(1, 1.25))
-    shown.draw(sphere, _view(view, frame), np.ones(3), 1.0, ("L₁", "L₂", "L₃"))
+    shown.draw(sphere, _view(view, frame), np.ones(3), 1.0, ("$L_1$", "$L_2$", "$L_3$"))
     _draw_map(flat, frame, shown)
     caption = (
-        "Thick: L in the body, L_B = Σ Lₖ I eₖ about principal axes eₖ, over |L|, from the dot on; "
-        f"moments {', '.join(f'{i:.4g}' for i in moments)} kg m². "
+        r"Thick: $L$ in the body, $L_B = \Sigma\,L_k\,I e_k$ about principal axes $e_k$, over $|L|$, from "
+        f"the dot on; moments {', '.join(f'{i:.4g}' for i in moments)} kg m². "
     )
     if shown.family:
-        caption += f"Grey: other motions of this |L|{' with this wheel' if with_wheel else ''}. "
+        caption += f"Grey: other motions of this $|L|${' with this wheel' if with_wheel else ''}. "
     if shown.divides:
         caption += "Black: the separatrix through both ends of the axis of the middle moment. "
     if not shown.family:
-        caption += "All moments are equal: L is constant. "
+        caption += "All moments are equal: $L$ is constant. "
     return caption + "Left: the sphere (dashed: behind). Right: its equal-area map."
 
 
@@ -107,10 +107,10 @@ def _draw_map(axes: Axes, frame: Frame, shown: Portrait) -> None:
     dress(axes)
     axes.grid(visible=False)
     axes.set(xlim=(-180, 180), ylim=(-1, 1), xticks=range(-180, 181, 90))
-    center, right, up = (f"e{'₁₂₃'[k]}" for k in frame[:3])
-    sign = "−" if frame.sign < 0 else ""
-    axes.set_xlabel(f"azimuth of L from {sign}{center} towards {right}, degrees")
-    axes.set_ylabel(f"L along {up}, over |L|")
+    center, right, up = (f"e_{k + 1}" for k in frame[:3])
+    sign = "-" if frame.sign < 0 else ""
+    axes.set_xlabel(f"azimuth of $L$ from ${sign}{center}$ towards ${right}$, degrees")
+    axes.set_ylabel(f"$L$ along ${up}$, over $|L|$")
     axes.spines[["top", "right"]].set_visible(True)
 
 
@@ -139,7 +139,7 @@ def _name_axes(axes: Axes, frame: Frame) -> None:
     ):
         axes.plot(azimuth, 0, ".", color=AXES[k], ms=5, zorder=4, clip_on=False)
         axes.annotate(
-            f"{'−' if sign < 0 else ''}e{'₁₂₃'[k]}", (azimuth, 0), xytext=(offset, 6), ha=side,
-            textcoords="offset points", color=AXES[k], fontsize=8.5, zorder=6,
+            f"${'-' if sign < 0 else ''}e_{k + 1}$", (azimuth, 0), xytext=(offset, 6), ha=side,
+            textcoords="offset points", color=AXES[k], fontsize="medium", zorder=6,
             bbox={"fc": "white", "ec": "none", "alpha": 0.7, "pad": 0.6},
         )  # fmt: skip

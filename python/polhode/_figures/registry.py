@@ -13,7 +13,7 @@ from polhode._figures.herpolhode import herpolhode_figure
 from polhode._figures.over_time import drift_figure, motion_figure
 from polhode._figures.phase_portrait import phase_figure
 from polhode._figures.spheres import axis_figure, path_figure, polhode_figure
-from polhode._figures.style import Axes, Figure, as_png, encoded, require_times
+from polhode._figures.style import Figure, Sheet, as_png, encoded, require_times
 from polhode._figures.tilt import angle_figure, locus_figure, satellite_figure, top_figure
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import long_axis, main_axis, weight, wheel
@@ -31,29 +31,29 @@ _WITH_VIEW = ("polhode", "locus", "phase", "scene")
 
 
 def figure(
-    trajectory: Trajectory, kind: str, view: Any = None, time: float | None = None, ax: Axes | None = None
+    trajectory: Trajectory, kind: str, sheet: Sheet, view: Any = None, time: float | None = None
 ) -> Figure:
     """Return a figure of one body; see `Trajectory.plot`."""
     check(kind, view, time)
-    _check_axes(ax)
+    _check_axes(sheet.axes)
     require_times(trajectory)
     match kind:
         case "motion":
-            _require_no_axes(ax, kind)
-            return motion_figure(trajectory)
+            _require_no_axes(sheet, kind)
+            return motion_figure.on(sheet, trajectory)
         case "polhode":
-            return _polhode(trajectory, view, ax)
+            return _polhode(trajectory, view, sheet)
         case "herpolhode":
-            return _herpolhode(trajectory, ax)
+            return _herpolhode(trajectory, sheet)
         case "locus":
-            return locus_figure(trajectory, _weight(trajectory, kind), view, ax)
+            return locus_figure(trajectory, _weight(trajectory, kind), view, sheet)
         case "drift":
-            _require_no_axes(ax, kind)
-            return drift_figure(trajectory)
+            _require_no_axes(sheet, kind)
+            return drift_figure.on(sheet, trajectory)
         case "phase":
-            return _phase(trajectory, view, ax)
+            return _phase(trajectory, view, sheet)
         case _:
-            return scene_figure.on(ax, trajectory, view, time)
+            return scene_figure.on(sheet, trajectory, view, time)
 
 
 def _check_axes(ax: Any) -> None:
@@ -66,8 +66,8 @@ def _check_axes(ax: Any) -> None:
         raise ValueError(f"ax has the projection {ax.name!r}; figures are drawn on plane axes")
 
 
-def _require_no_axes(ax: Axes | None, kind: str) -> None:
-    if ax is not None:
+def _require_no_axes(sheet: Sheet, kind: str) -> None:
+    if sheet.axes is not None:
         raise ValueError(
             f"kind {kind!r} of this motion has several panels and cannot be drawn on one axes: call plot "
             "without ax; polhode, herpolhode, locus, scene, and phase of a body under torque have one panel"
@@ -114,37 +114,37 @@ def write(figure: Figure, path: Path) -> None:
     write_atomically({path: encoded(figure, form_of(path, "a figure"))})
 
 
-def _polhode(trajectory: Trajectory, view: Any, ax: Axes | None) -> Figure:
+def _polhode(trajectory: Trajectory, view: Any, sheet: Sheet) -> Figure:
     kind = _kind(trajectory)
     if kind not in ON_ELLIPSOID:
         raise ValueError(
             "kind 'polhode' is for bodies whose Ω stays on an ellipsoid: free, damped in proportion to L, "
             f"or with a wheel; {_acting(trajectory)}"
         )
-    return polhode_figure.on(ax, trajectory, _wheel(trajectory) if kind == "gyrostat" else None, view)
+    return polhode_figure.on(sheet, trajectory, _wheel(trajectory) if kind == "gyrostat" else None, view)
 
 
-def _herpolhode(trajectory: Trajectory, ax: Axes | None) -> Figure:
+def _herpolhode(trajectory: Trajectory, sheet: Sheet) -> Figure:
     if _kind(trajectory) != "free":
         raise ValueError(
             "kind 'herpolhode' is for free bodies, whose Ω stays in an invariable plane; "
             + _acting(trajectory)
         )
     _require_path(trajectory, "herpolhode")
-    return herpolhode_figure.on(ax, trajectory)
+    return herpolhode_figure.on(sheet, trajectory)
 
 
-def _phase(trajectory: Trajectory, view: Any, ax: Axes | None) -> Figure:
+def _phase(trajectory: Trajectory, view: Any, sheet: Sheet) -> Figure:
     _require_path(trajectory, "phase")
     kind = _kind(trajectory)
     if kind in ON_ELLIPSOID:
-        _require_no_axes(ax, "phase")
-        return phase_figure(trajectory, _wheel(trajectory), view)
+        _require_no_axes(sheet, "phase")
+        return phase_figure.on(sheet, trajectory, _wheel(trajectory), view)
     if view is not None:
         raise ValueError("view is for the phase portraits of bodies without torque, not for this one")
     if kind == "heavy":
-        return top_figure.on(ax, trajectory, _weight(trajectory, "phase"))
-    return (satellite_figure if kind == "satellite" else angle_figure).on(ax, trajectory)
+        return top_figure.on(sheet, trajectory, _weight(trajectory, "phase"))
+    return (satellite_figure if kind == "satellite" else angle_figure).on(sheet, trajectory)
 
 
 # --- what acts on the body

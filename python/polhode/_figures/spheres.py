@@ -154,12 +154,12 @@ def polhode_figure(
             Frame(0, 1, 2),
         )
     shown = Portrait(omega, [semi_axes * u for u in others], [semi_axes * u for u in divides])
-    shown.draw(axes, view_of(view), moments, 2 * energy, ("ω₁", "ω₂", "ω₃"))
+    shown.draw(axes, view_of(view), moments, 2 * energy, (r"$\omega_1$", r"$\omega_2$", r"$\omega_3$"))
     slowed = " (scaled up as the body slows)" if energies.min() < 0.999 * energy else ""
     caption = (
-        "Thick: the angular velocity Ω_B = Σ ωₖ I eₖ about principal axes eₖ, from the dot on"
-        f"{slowed}, on the ellipsoid i₁ω₁² + i₂ω₂² + i₃ω₃² = 2E with i = "
-        f"{', '.join(f'{i:.4g}' for i in moments)} kg m², E = {energy:.4g} J. "
+        r"Thick: the angular velocity $\Omega_B = \Sigma\,\omega_k\,I e_k$ about principal axes $e_k$, from "
+        rf"the dot on{slowed}, on the ellipsoid $\Sigma\,i_k\,\omega_k^2 = 2E$ with $i_k$ = "
+        f"{', '.join(f'{i:.4g}' for i in moments)} kg m², $E$ = {energy:.4g} J. "
     )
     if others:
         caption += "Grey: other motions of this energy. "
@@ -172,7 +172,7 @@ def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
     """Draw the path on the unit sphere of a direction fixed in the body (3,); e3 of space is up."""
     require_times(trajectory)
     path = samples(trajectory).rotor(vector(axis / np.linalg.norm(axis))).components
-    caption = f"Path of {name} on the unit sphere of space axes eₖ, from the dot on. Dashed: behind."
+    caption = f"Path of {name} on the unit sphere of space axes $e_k$, from the dot on. Dashed: behind."
     return path_figure(trajectory, path, caption, SPACE_AXES)
 
 

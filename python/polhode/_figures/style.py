@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import functools
 import io
+import re
 import textwrap
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, cast
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, NamedTuple, ParamSpec, cast
 
 import numpy as np
 
@@ -22,22 +23,26 @@ else:
 
 P = ParamSpec("P")
 
-# For a figure as wide as two columns of a journal.
+# Sizes other than that of the font are relative to it.
 _LOOK = {
-    "font.family": "DejaVu Sans",
     "font.size": 9.0,
-    "axes.labelsize": 9.0,
-    "axes.titlesize": 9.5,
-    "figure.titlesize": 11.0,
-    "legend.fontsize": 8.5,
+    "axes.titlesize": "medium",
+    "axes.labelsize": "medium",
+    "xtick.labelsize": "medium",
+    "ytick.labelsize": "medium",
+    "legend.fontsize": "medium",
+    "figure.titlesize": "large",
     "axes.linewidth": 0.7,
-    "axes.unicode_minus": True,
     "lines.solid_joinstyle": "round",
-    "text.usetex": False,
-    "path.simplify": True,
 }
-# Letters per inch of the caption and of the title.
-_CAPTION_LETTERS, _TITLE_LETTERS = 15.5, 11.0
+# Journals ask for letters of at least 7 points at the printed size.
+_LEAST_FONT = 7.0
+# Letters per inch and point of size: a letter is about 0.58 times as wide as the font is high.
+_LETTERS = 124.0
+_INCHES = {"mm": 1 / 25.4, "cm": 1 / 2.54, "in": 1.0}
+_LEAST_WIDTH, _LARGEST_WIDTH = 1.5, 40.0
+# Mathematics in a text of Matplotlib.
+_FORMULA = r"(?<!\\)\$[^$]+\$"
 
 # SVG has text as outlines, because few readers have a font with ∧ and ₁. PDF has text, in a font type that
 # journals accept.
@@ -55,11 +60,48 @@ _TIME_UNITS = ((300.0, 1.0, "s"), (18e3, 60.0, "min"), (432e3, 3600.0, "h"), (1.
 plotting = functools.partial(optional, extra="plot", what="a figure")
 
 
+class Sheet(NamedTuple):
+    """What a figure is drawn on.
+
+    Attributes
+    ----------
+    axes
+        Axes of the caller's, which get no title and no caption; None for a new figure.
+    caption
+        Whether a new figure has its caption.
+    width
+        Width of a new figure in inches; None for the width it is designed for.
+    """
+
+    axes: Axes | None = None
+    caption: bool = True
+    width: float | None = None
+
+
+# A new figure with its caption, of the width it is designed for.
+NEW = Sheet()
+
+
+def width_of(width: Any) -> float | None:
+    """Return a width such as ``"85mm"``, or a number of inches, in inches; None for None."""
+    if width is None:
+        return None
+    match = re.fullmatch(r"\s*([0-9.]+)\s*(mm|cm|in)\s*", width) if isinstance(width, str) else None
+    try:
+        inches = float(match[1]) * _INCHES[match[2]] if match else float(width)
+    except (TypeError, ValueError):
+        message = f"width is {width!r}; it must be a length such as '85mm', '18cm' or '3.4in', or inches"
+        raise ValueError(message) from None
+    if not _LEAST_WIDTH <= inches <= _LARGEST_WIDTH:
+        raise ValueError(f"width {width!r} must be from {_LEAST_WIDTH} to {_LARGEST_WIDTH} inches")
+    return inches
+
+
 class Drawing(Generic[P]):
     """A function that draws on an empty figure and returns its caption, made to return the figure.
 
-    The figure has the style of this package whatever the user's settings are. Its title is that of the motion
-    in the first argument, if it has one.
+    The settings of Matplotlib that the caller has changed, such as fonts, are kept; others are those of this
+    package. The title is that of the motion in the first argument, if it has one, and the kind of figure.
     """
 
     def __init__(
@@ -69,26 +111,58 @@ class Drawing(Generic[P]):
         functools.update_wrapper(self, draw)
 
     def __call__(self, *arguments: P.args, **named: P.kwargs) -> Figure:
-        return self.on(None, *arguments, **named)
+        return self.on(NEW, *arguments, **named)
 
-    def on(self, axes: Axes | None, /, *arguments: P.args, **named: P.kwargs) -> Figure:
-        """Draw on axes of the caller's, without title and caption; None for a new figure."""
+    def on(self, sheet: Sheet, /, *arguments: P.args, **named: P.kwargs) -> Figure:
+        """Draw on a sheet."""
         subject = arguments[0]
         if isinstance(subject, Trajectory):
             require_times(subject)
-        with plotting("matplotlib").rc_context(_LOOK):
-            if axes is not None:
-                panel: Any = _FigureOf(axes)
+        scale = 1.0 if sheet.width is None else sheet.width / self._size[0]
+        with plotting("matplotlib").rc_context(_look(scale)):
+            if sheet.axes is not None:
+                panel: Any = _FigureOf(sheet.axes)
                 self._draw(panel, *arguments, **named)
-                return cast("Figure", axes.figure)
-            width = self._size[0]
-            figure = new_figure(*self._size)
+                return cast("Figure", sheet.axes.figure)
+            # A narrow figure keeps more of its height, for its letters do not shrink as it does.
+            width, height = scale * self._size[0], scale**0.75 * self._size[1]
+            figure = new_figure(width, height)
             caption = self._draw(figure, *arguments, **named)
-            lines = int(_TITLE_LETTERS * width), int(_CAPTION_LETTERS * width)
-            figure.suptitle(textwrap.fill(title_of(subject, self._title), lines[0]), parse_math=False)
-            if caption:
-                figure.supxlabel(textwrap.fill(caption, lines[1]), fontsize=8)
+            size = plotting("matplotlib").rcParams["font.size"]
+            figure.suptitle(wrapped(title_of(subject, self._title), width, 1.2 * size))
+            for axes in figure.axes:
+                for line in axes.lines:
+                    line.set_linewidth(min(scale, 1.0) ** 0.5 * line.get_linewidth())
+            if caption and sheet.caption:
+                figure.supxlabel(wrapped(caption, width, 0.9 * size), fontsize=0.9 * size)
             return figure
+
+
+def _look(scale: float) -> dict[str, Any]:
+    """Return the settings of this package that the caller has not changed from Matplotlib's defaults."""
+    matplotlib = plotting("matplotlib")
+    now, default = matplotlib.rcParams, matplotlib.rcParamsDefault
+    look = _LOOK | {"font.size": max(_LEAST_FONT, 9.0 * min(scale, 1.0))}
+    return {name: value for name, value in look.items() if now[name] == default[name]}
+
+
+def wrapped(text: str, width: float, size: float) -> str:
+    """Return a text in lines of a width in inches, for letters of this size in points.
+
+    A formula between dollar signs stays whole; its length is that of its symbols.
+    """
+    formulas = re.findall(_FORMULA, text)
+    lengths = [
+        len(re.sub(r"\\[a-zA-Z]+", "x", re.sub(r"[${}_^]|\\[,;]", "", formula))) for formula in formulas
+    ]
+    # While the lines are found, letters of a private plane of Unicode stand for the formulas.
+    stand_ins = iter(lengths)
+    filled = re.sub(_FORMULA, lambda _: "\ue000" * max(next(stand_ins), 1), text)
+    lines = textwrap.fill(
+        filled, int(_LETTERS * width / size), break_long_words=False, break_on_hyphens=False
+    )
+    back = iter(formulas)
+    return re.sub("\ue000+", lambda _: next(back), lines)
 
 
 def drawing(
@@ -131,7 +205,7 @@ def dress(axes: Axes) -> None:
     """Set grid, ticks and spines of axes with scales."""
     axes.grid(alpha=0.25, lw=0.6)
     axes.set_axisbelow(True)
-    axes.tick_params(labelsize=8.5, width=0.6)
+    axes.tick_params(width=0.6)
     axes.spines[["top", "right"]].set_visible(False)
 
 
@@ -152,11 +226,12 @@ def halo(width: float) -> Any:
     return plotting("matplotlib.patheffects").withStroke(linewidth=width, foreground="white")
 
 
-def title_of(subject: object, otherwise: str) -> str:
-    """Return the title of a motion; else the other one."""
-    attributes = subject.attributes if isinstance(subject, Trajectory) else {}
-    title: str = attributes.get("title", otherwise)
-    return title
+def title_of(subject: object, kind: str) -> str:
+    """Return the title of a figure: that of the motion, if it has one, and the kind of figure."""
+    title = subject.attributes.get("title") if isinstance(subject, Trajectory) else None
+    if title is None:
+        return kind
+    return str(title).replace("$", r"\$") + ": " + kind[0].lower() + kind[1:]
 
 
 def require_times(trajectory: Trajectory) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from polhode._algebra.constructors import bivector, vector
 from polhode._figures.palette import BLACK, OTHERS, SPACE_AXES, TRACE
 from polhode._figures.spheres import path_figure
-from polhode._figures.style import Axes, Figure, drawing, dress, mark
+from polhode._figures.style import NEW, Axes, Figure, Sheet, drawing, dress, mark
 from polhode._mechanics.closed_forms import LagrangeTop
 from polhode._mechanics.smooth import samples
 from polhode._mechanics.trajectory import Trajectory
@@ -24,14 +24,14 @@ _BEYOND, _LEAST = 0.35, 1e-5
 _STILL = 1e-9
 
 
-def locus_figure(trajectory: Trajectory, c: Array, view: Any = None, ax: Axes | None = None) -> Figure:
+def locus_figure(trajectory: Trajectory, c: Array, view: Any = None, sheet: Sheet = NEW) -> Figure:
     """Draw the path of the axis from the fixed point to the centre of mass, and the bounds of its tilt."""
     axis = c / np.linalg.norm(c)
     path = samples(trajectory).rotor(vector(axis)).components
     top = _lagrange(trajectory, c)
     caption = (
-        "Path on the unit sphere of the axis from the fixed point to the centre of mass, in space axes eₖ, "
-        "from the dot on; gravity is along −e₃. "
+        "Path on the unit sphere of the axis from the fixed point to the centre of mass, in space axes "
+        "$e_k$, from the dot on; gravity is along $-e_3$. "
     )
     if top is None:
         low, high = (float(x) for x in np.degrees([_tilt(path).min(), _tilt(path).max()]))
@@ -42,16 +42,18 @@ def locus_figure(trajectory: Trajectory, c: Array, view: Any = None, ax: Axes | 
         bounds = (about["tilt_min"], about["tilt_max"])
         low, high = (float(x) for x in np.degrees(bounds))
         caption += f"Black: the bounds of its tilt, {low:.5g}° and {high:.5g}°. "
-    return path_figure.on(ax, trajectory, path, caption + "Dashed: behind.", SPACE_AXES, bounds, view)
+    return path_figure.on(sheet, trajectory, path, caption + "Dashed: behind.", SPACE_AXES, bounds, view)
 
 
 @drawing(5.2, 4.6, "Phase portrait")
 def top_figure(figure: Figure, trajectory: Trajectory, c: Array) -> str:
     """Draw the tilt of a top's axis against its rate, among curves of equal energy with the same momenta."""
     theta, rate = _tilt_and_rate(trajectory, c / np.linalg.norm(c))
-    axes = _portrait(figure, "tilt θ, degrees", "θ', degrees/s")
+    axes = _portrait(figure, r"tilt $\theta$, degrees", r"$\dot{\theta}$, degrees/s")
     top = _lagrange(trajectory, c)
-    caption = "Tilt θ from e₃ (up) of the axis from the fixed point to the centre of mass, and its rate"
+    caption = (
+        r"Tilt $\theta$ from $e_3$ (up) of the axis from the fixed point to the centre of mass, and its rate"
+    )
     if top is None:
         _draw(axes, theta, rate)
         return caption + ", from the dot on."
@@ -65,7 +67,7 @@ def top_figure(figure: Figure, trajectory: Trajectory, c: Array) -> str:
         axes.axvline(np.degrees(bound), color=BLACK, lw=0.8, ls=(0, (4, 2)), zorder=1)
     return caption + (
         f", from the dot on. Black: the curve of its energy, {about['energy']:.5g} J; grey: others "
-        f"with the same momentum about e₃, {about['vertical_momentum']:.5g} kg m²/s, and about the axis, "
+        f"with the same momentum about $e_3$, {about['vertical_momentum']:.5g} kg m²/s, and about the axis, "
         f"{about['axial_momentum']:.5g} kg m²/s. Dashed: the bounds of the tilt."
     )
 
@@ -90,9 +92,13 @@ def satellite_figure(figure: Figure, trajectory: Trajectory) -> str:
 def angle_figure(figure: Figure, trajectory: Trajectory) -> str:
     """Draw the angle from e3 of the main axis of rotation, against its rate."""
     number, axis = main_axis(trajectory)
-    axes = _portrait(figure, f"angle θ of principal axis {number} from e₃, degrees", "θ', degrees/s")
+    axes = _portrait(
+        figure,
+        rf"angle $\theta$ of principal axis {number} from $e_3$, degrees",
+        r"$\dot{\theta}$, degrees/s",
+    )
     _draw(axes, *_tilt_and_rate(trajectory, axis))
-    return f"The angle from e₃ of the main axis of rotation, f{'₁₂₃'[number - 1]}, from the dot on."
+    return f"The angle from $e_3$ of the main axis of rotation, $f_{number}$, from the dot on."
 
 
 def _rate_of(angle: Array, time: Array) -> Array:

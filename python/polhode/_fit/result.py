@@ -178,11 +178,12 @@ class Fit:
         ImportError
             Without matplotlib: ``pip install 'polhode[plot]'``.
         """
+        from polhode._figures.style import Sheet
         from polhode._fit.figure import residual_figure
 
         if ax is not None and len(self.times) > 1:
             raise ValueError("the residuals of attitudes and rates need two panels; plot() without ax")
-        return residual_figure.on(ax, self)
+        return residual_figure.on(Sheet(ax), self)
 
 
 def _with_error(value: float, error: float) -> str:

@@ -102,7 +102,7 @@ def test_the_page_of_figures_runs(tmp_path):
     asked = (
         "".join(text for language, text in blocks if language == "console").removeprefix("$ ").split("\n$ ")
     )
-    assert len(asked) == 4
+    assert len(asked) == 5
     for command, answer in (part.split("\n", 1) for part in asked):
         done = polhode(*command.split()[1:], cwd=tmp_path)
         assert (done.returncode, done.stderr) == (0, "")
@@ -112,7 +112,7 @@ def test_the_page_of_figures_runs(tmp_path):
     assert done.returncode == 0, done.stderr
     expected = re.findall(r"^ *print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
     assert [line.strip() for line in done.stdout.splitlines()] == expected
-    written = {"polhode.svg", "scene.pdf", "turned.svg", "plate.gif", "locus.pdf"}
+    written = {"polhode.svg", "scene.pdf", "turned.svg", "plate.gif", "locus.pdf", "column.pdf"}
     assert {path.name for path in tmp_path.iterdir()} == {"examples", *written}
 
 

@@ -17,7 +17,7 @@ from polhode._support.arrays import Array
 # More turns than this would fill a figure as a solid block.
 _TURNS_SEEN = 100
 # Relative variation below which a curve would be a flat line.
-_VISIBLE = 1e-6
+_VISIBLE = 1e-3
 
 
 @drawing(7, 6.6, "Angular velocity and attitude")
@@ -34,7 +34,7 @@ def motion_figure(figure: Figure, trajectory: Trajectory) -> str:
     if sizes:
         _draw_sizes(panels[2], sizes, t)
     for axes in panels:
-        axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=4, frameon=False, borderaxespad=0.2)
+        _put_legend_above(axes)
     return (
         r"$\Omega_B$: components in the planes of body axes, coloured as the axis perpendicular to each. "
         r"Rotor: $a' = R a \tilde{R}$ takes body axes to space axes, $\dot{R} = -\frac{1}{2} R\,\Omega_B$. "
@@ -54,7 +54,7 @@ def drift_figure(figure: Figure, trajectory: Trajectory) -> str:
     t = _time_axis(figure, panels, trajectory)
     if sizes:
         _draw_sizes(panels[0], sizes, t)
-        panels[0].legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False, borderaxespad=0.2)
+        _put_legend_above(panels[0])
     for axes, (name, values) in zip(panels[bool(sizes) : -1], drifts.items(), strict=True):
         label, unit = QUANTITIES[name]
         _draw_change(axes, t, values, f"{label}, {proof.conserved[name]:.6g} {unit} at the start", ORANGE)
@@ -68,6 +68,12 @@ def drift_figure(figure: Figure, trajectory: Trajectory) -> str:
         return caption + "The motion is exact."
     error = "" if proof.error_estimate is None else f", estimated error {proof.error_estimate:.1g}"
     return caption + f"Method {proof.method}, steps of at most {proof.step:.3g} s{error}."
+
+
+def _put_legend_above(axes: Axes) -> None:
+    """Put the legend above axes in one row, which fits the column of a journal."""
+    place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0, 1), "borderaxespad": 0.2}
+    axes.legend(**place, ncols=4, frameon=False, handlelength=1.2, handletextpad=0.4, columnspacing=1.0)
 
 
 def _time_axis(figure: Figure, panels: tuple[Axes, ...], trajectory: Trajectory) -> Array:

@@ -51,7 +51,11 @@ def phase_figure(figure: Figure, trajectory: Trajectory, wheel: Array, view: Any
         caption += "Black: the separatrix through both ends of the axis of the middle moment. "
     if not shown.family:
         caption += "All moments are equal: $L$ is constant. "
-    return caption + "Left: the sphere (dashed: behind). Right: its equal-area map."
+    start = f"{'-' if frame.sign < 0 else ''}e_{frame.center + 1}"
+    return caption + (
+        "Left: the sphere (dashed: behind). Right: its equal-area map; the azimuth is from "
+        f"${start}$ towards $e_{frame.right + 1}$."
+    )
 
 
 def _chosen_frame(moments: Array, path: Array) -> Frame:
@@ -107,10 +111,8 @@ def _draw_map(axes: Axes, frame: Frame, shown: Portrait) -> None:
     dress(axes)
     axes.grid(visible=False)
     axes.set(xlim=(-180, 180), ylim=(-1, 1), xticks=range(-180, 181, 90))
-    center, right, up = (f"e_{k + 1}" for k in frame[:3])
-    sign = "-" if frame.sign < 0 else ""
-    axes.set_xlabel(f"azimuth of $L$ from ${sign}{center}$ towards ${right}$, degrees")
-    axes.set_ylabel(f"$L$ along ${up}$, over $|L|$")
+    axes.set_xlabel("azimuth of $L$, degrees")
+    axes.set_ylabel(f"$L$ along $e_{frame.up + 1}$, over $|L|$")
     axes.spines[["top", "right"]].set_visible(True)
 
 

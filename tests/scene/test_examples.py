@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+import polhode as ph
 from command_line import EXAMPLES, polhode, summary_of
 
 SCENES = sorted(path.stem for path in EXAMPLES.glob("*.toml"))
@@ -44,6 +45,9 @@ def test_examples_are_valid_and_print_a_summary(name, tmp_path):
     for section in ("Body", "Motion", "Conserved", "Run", "No file was written"):
         assert f"\n{section}" in done.stdout
     assert (EXAMPLES / f"{name}.toml").read_text().startswith("# ")
+    caption = ph.Scene.read(EXAMPLES / f"{name}.toml").caption
+    assert caption.endswith((".", "?"))
+    assert "\n" not in caption
 
 
 def test_the_nutating_top_draws_loops():

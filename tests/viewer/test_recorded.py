@@ -12,7 +12,7 @@ BODY = '[body]\nsolid = "cone"\nradius = "3 cm"\nheight = "8 cm"\nmass = "0.2 kg
 SPIN = '[initial]\nspin = { vector = [0.5, 0.1, "2 rev/s"] }\n'
 RUN = '[run]\nduration = "1 s"\nsamples = 51\nmethod = "rk4"\nstep = "10 ms"\n'
 SCENES = {
-    "free": f'title = "Free"\n{BODY}{SPIN}{RUN}',
+    "free": f'title = "Free"\ncaption = "Nothing acts\\non it."\n{BODY}{SPIN}{RUN}',
     "top": f'{BODY}{SPIN}[gravity]\nacceleration = 9.81\npivot = [0, 0, "-5 cm"]\n{RUN}',
     "moments": f"[body]\nmoments = [3, 1, 2.5]\n{SPIN}[torque]\nheavy = [0.1, 0, 2]\n{RUN}",
     "laws": f"{BODY}{SPIN}[torque]\nviscous_damping = 1e-7\n"

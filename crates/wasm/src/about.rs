@@ -17,7 +17,7 @@ pub fn about(of: &Opened) -> Value {
         rotor: setup.rotor.components(), omega_body: setup.omega.0, time: setup.time,
     };
     let mut facts = facts! {
-        title: scene.title.clone(), body: body(of), start: start,
+        title: scene.title.clone(), caption: scene.caption.clone(), body: body(of), start: start,
         laws: of.laws.iter().map(|law| law.facts()).collect::<Vec<_>>(),
         duration: scene.run.duration, samples: scene.run.samples,
         method: certificate.method, exact: of.motion.horizons().is_some(), horizon: horizon,

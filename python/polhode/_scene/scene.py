@@ -48,8 +48,8 @@ class Scene:
 
     Attributes
     ----------
-    path, text, title
-        The file, its content, and its title or None.
+    path, text, title, caption
+        The file, its content, its title and its caption; None without them.
     body
         The body; with gravity in axes whose origin is the fixed point.
     has_mass
@@ -82,6 +82,7 @@ class Scene:
     _core: _native.Scene = field(repr=False)
     text: str = field(init=False, repr=False)
     title: str | None = field(init=False)
+    caption: str | None = field(init=False)
     body: Body = field(init=False)
     has_mass: bool = field(init=False)
     solid: dict[str, Any] | None = field(init=False)

@@ -38,6 +38,7 @@ def scene_schema() -> Schema:
         **_table(
             {
                 "title": {"type": "string", "description": "name of the scene"},
+                "caption": {"type": "string", "description": "what the motion shows, in words"},
                 "body": _body(),
                 "initial": _initial(),
                 "define": {

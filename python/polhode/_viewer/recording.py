@@ -129,6 +129,7 @@ def _about(
     omega_body = origin.state.omega_body if origin and known else points.omega_body[0]
     return {
         "title": origin.title if isinstance(origin, Scene) else trajectory.attributes.get("title"),
+        "caption": origin.caption if isinstance(origin, Scene) else None,
         "body": {
             **_body(origin),
             "moments": inertia.principal_moments.tolist(),

@@ -55,6 +55,8 @@ export type Quadruple = [number, number, number, number];
 /** Properties of a motion besides its states. */
 export interface About {
   title: string | null;
+  /** What the motion shows, in words. */
+  caption: string | null;
   body: {
     /** kg; null if unknown. */
     mass: number | null;

@@ -21,6 +21,7 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
       return runClock(model);
     }
   }, [model, palette]);
+  const caption = model.caption.value ?? model.about.value?.caption ?? null;
   return (
     <section class="picture" aria-label="Picture">
       <div class="seen">
@@ -29,7 +30,7 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
         <Strobe model={model} />
         <ErrorMessage model={model} />
       </div>
-      {model.caption.value !== null && <p class="caption">{model.caption.value}</p>}
+      {caption !== null && <p class="caption">{caption}</p>}
     </section>
   );
 }

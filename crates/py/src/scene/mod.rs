@@ -62,6 +62,7 @@ impl Scene {
         let choice = &scene.run.choice;
         let result = PyDict::new(py);
         result.set_item("title", &scene.title)?;
+        result.set_item("caption", &scene.caption)?;
         result.set_item("text", &scene.text)?;
         result.set_item("body", Py::new(py, Body(*body))?)?;
         result.set_item("has_mass", scene.has_mass())?;

@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! title = "optional text"
+//! caption = "optional text: what the motion shows"
 //!
 //! [define]                   # optional: names and functions for formulas, in which numbers may have units
 //! "θ" = "30 deg"
@@ -109,6 +110,8 @@ const MOST_REPORTED: usize = 100;
 pub struct Scene {
     /// The title.
     pub title: Option<String>,
+    /// What the motion shows, in words.
+    pub caption: Option<String>,
     /// The body.
     pub body: BodySpec,
     /// The initial rotor from body axes to space axes.
@@ -222,15 +225,20 @@ impl Scene {
 }
 
 fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Option<Scene> {
-    let tables =
-        ["title", "define", "body", "initial", "gravity", "torque", "force", "run", "method", "ensemble"];
-    reader.only(root, &[&tables[..], &laws::FORMULAS.map(|(name, _)| name)].concat());
+    let names = [
+        "title", "caption", "define", "body", "initial", "gravity", "torque", "force", "run", "method",
+        "ensemble",
+    ];
+    reader.only(root, &[&names[..], &laws::FORMULAS.map(|(name, _)| name)].concat());
     reader.optional(root, "define", |reader, value| {
         let table = reader.table(value, "[define]")?;
         formulas::read(reader, &table);
         Some(())
     });
     let title = reader.optional(root, "title", |reader, value| reader.string(value).map(str::to_owned));
+    let caption = reader.optional(root, "caption", |reader, value| {
+        reader.string(value).map(|text| text.split_whitespace().collect::<Vec<_>>().join(" "))
+    });
     let body = section(reader, root, "body", "[body]").and_then(|table| body::read(reader, &table));
     let initial =
         section(reader, root, "initial", "[initial]").and_then(|table| initial::read(reader, &table));
@@ -246,6 +254,7 @@ fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Opt
     let initial = initial?;
     Some(Scene {
         title: title?,
+        caption: caption?,
         body: body?,
         attitude: initial.attitude,
         spin: initial.spin,

@@ -67,6 +67,13 @@ fn errors_with(old: &str, new: &str) -> Vec<String> {
 }
 
 #[test]
+fn a_caption_is_one_line() {
+    let text = format!("caption = \"\"\"\nA handle\n that  flips.\"\"\"\n{LEAST}");
+    assert_eq!(scene(&text).caption.as_deref(), Some("A handle that flips."));
+    assert_eq!(scene(LEAST).caption, None);
+}
+
+#[test]
 fn a_full_scene_is_read() {
     let scene = scene(GOOD);
     assert_eq!(scene.title.as_deref(), Some("T-handle"));

@@ -1,4 +1,4 @@
-"""Files of attitudes and motions in the formats of other programs.
+"""Files of motions and bodies in the formats of other programs.
 
 Quaternion order, direction and frames are those that a file states. Where a file does not state them, they
 must be given as arguments; they are never guessed.
@@ -9,6 +9,8 @@ from polhode._io.aem_writing import write_aem
 from polhode._io.convert import read, write
 from polhode._io.gltf import write_gltf
 from polhode._io.history import AttitudeHistory, FileError
+from polhode._io.meshes import read_mesh, solid_surface, write_stl
+from polhode._io.robots import write_mjcf, write_urdf
 from polhode._io.spice import read_ck, write_ck
 from polhode._io.tables import read_csv, read_netcdf, read_parquet
 
@@ -19,12 +21,17 @@ __all__ = [
     "read_aem",
     "read_ck",
     "read_csv",
+    "read_mesh",
     "read_netcdf",
     "read_parquet",
+    "solid_surface",
     "write",
     "write_aem",
     "write_ck",
     "write_gltf",
+    "write_mjcf",
+    "write_stl",
+    "write_urdf",
 ]
 
 

@@ -49,8 +49,9 @@ def write_gltf(
     ----------
     surface
         Vertices (n, 3) in m and triangles (m, 3), counter-clockwise seen from outside, in body axes through
-        the point whose position the motion has: the centre of mass, or the fixed point. By default a box with
-        the same principal moments as the body, in its principal axes.
+        the point whose position the motion has: the centre of mass, or the fixed point. `Scene.surface`,
+        `read_mesh` and `solid_surface` return such surfaces. By default a box with the same principal
+        moments as the body, in its principal axes.
     mass
         Mass of the box in kg. By default, the longest side of the box is 1 m.
 

@@ -9,10 +9,11 @@ from polhode._io.aem_writing import write_aem
 from polhode._io.convert import read, write
 from polhode._io.gltf import write_gltf
 from polhode._io.history import AttitudeHistory, FileError
+from polhode._io.members import read_netcdf, read_zarr
 from polhode._io.meshes import read_mesh, solid_surface, write_stl
 from polhode._io.robots import write_mjcf, write_urdf
 from polhode._io.spice import read_ck, write_ck
-from polhode._io.tables import read_csv, read_netcdf, read_parquet
+from polhode._io.tables import read_csv, read_parquet
 
 __all__ = [
     "AttitudeHistory",
@@ -24,6 +25,7 @@ __all__ = [
     "read_mesh",
     "read_netcdf",
     "read_parquet",
+    "read_zarr",
     "solid_surface",
     "write",
     "write_aem",

@@ -87,7 +87,7 @@ def test_what_is_missing_is_asked_for_by_option(convert, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "expected"),
     [
-        (("a.txt", "b.nc"), 2, "files that can be read end in .aem, .bc, .csv, .nc or .parquet"),
+        (("a.txt", "b.nc"), 2, "files that can be read end in .aem, .bc, .csv, .nc, .parquet or .zarr"),
         (("a.nc", "b.txt"), 2, "files that can be written end in"),
         (("a.nc", "b.csv", "--epoch", "2026-01-01T00:00:00"), 2, "--epoch does not apply from .nc to .csv"),
         (("none.csv", "b.nc"), 1, "none.csv: no such file"),

@@ -40,9 +40,10 @@ def add(commands: Any) -> None:
         _convert,
         help="convert files of motions and bodies",
         description="Convert the motion of one body from file A to file B: netCDF (.nc), CSV, Parquet and "
-        "CCSDS AEM (.aem) and SPICE CK (.bc) by their suffixes; B may also be a glTF animation (.glb, "
-        ".gltf). Quaternion order, direction and frames that a file does not state must be given; they are "
-        "never guessed. Or convert bodies: A is a scene (.toml), a mesh (.stl, .obj, .ply) or a robot file "
+        "CCSDS AEM (.aem) and SPICE CK (.bc) by their suffixes; A may also be the Zarr store of an ensemble "
+        "(.zarr), B a glTF animation (.glb, .gltf). Quaternion order, direction and frames that a file does "
+        "not state must be given; they are never guessed. Or convert bodies: A is a scene (.toml), a mesh "
+        "(.stl, .obj, .ply) or a robot file "
         "(.urdf, .sdf, MJCF as .xml), B a robot file (.urdf, .xml) with masses, centres of mass and "
         "inertias, or a mesh in principal axes (.stl).",
     )
@@ -73,7 +74,7 @@ def add(commands: Any) -> None:
     number = whole_number("number of the segment", 1, float("inf"))
     convert.add_argument("--segment", metavar="N", type=number, help="segment of an AEM, from 1")
     number = whole_number("number of the body", 0, float("inf"))
-    convert.add_argument("--body", metavar="N", type=number, help="body of a CSV or Parquet file of a batch")
+    convert.add_argument("--body", metavar="N", type=number, help="body of a batch or an ensemble, from 0")
     text = "kernel for a CK: leapseconds, clock and frames, each with its own --kernel"
     convert.add_argument("--kernel", dest="kernels", metavar="FILE", action="append", help=text)
     text = "scene whose mesh or mass gives the body of a glTF animation"

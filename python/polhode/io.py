@@ -13,11 +13,15 @@ from polhode._io.members import read_netcdf, read_zarr
 from polhode._io.meshes import read_mesh, solid_surface, write_stl
 from polhode._io.robots import write_mjcf, write_urdf
 from polhode._io.spice import read_ck, write_ck
+from polhode._io.spice_frames import CkFrame, FrameVector, TwoVectorFrame, write_fk, write_sclk
 from polhode._io.tables import read_csv, read_parquet
 
 __all__ = [
     "AttitudeHistory",
+    "CkFrame",
     "FileError",
+    "FrameVector",
+    "TwoVectorFrame",
     "read",
     "read_aem",
     "read_ck",
@@ -30,8 +34,10 @@ __all__ = [
     "write",
     "write_aem",
     "write_ck",
+    "write_fk",
     "write_gltf",
     "write_mjcf",
+    "write_sclk",
     "write_stl",
     "write_urdf",
 ]

@@ -95,6 +95,26 @@ def test_a_body_of_a_batch(tmp_path):
     assert (again.attributes["body"], again.inertia) == (1, ASYMMETRIC)
 
 
+def test_stores_that_xarray_wrote(data, tmp_path):
+    """Of one motion, of an ensemble without checksums, and of another kind."""
+    options = {"zarr_format": 3, "consolidated": False}
+    names = ["quaternion", "axis", "inertia_column"]  # texts warn in Zarr v3
+    one = ph.simulate(ASYMMETRIC, START, np.linspace(0, 1, 5))
+    one.to_xarray().drop_vars(names).to_zarr(tmp_path / "one.zarr", **options)
+    found = ph.io.read(tmp_path / "one.zarr")
+    assert np.array_equal(found.rotor.components, one.rotor.components)
+    assert found.inertia == ASYMMETRIC
+    with pytest.raises(ph.io.FileError, match="the store holds one body; leave out body=0"):
+        ph.io.read(tmp_path / "one.zarr", body=0)
+    few = data.isel(body=slice(3, 5)).drop_vars(names).drop_encoding()
+    few.to_zarr(tmp_path / "few.zarr", **options)
+    wxyz = ph.io.read(tmp_path / "few.zarr", body=1).rotor.to_quaternion(order="wxyz")
+    assert np.array_equal(wxyz, data.attitude[4])
+    xr.Dataset({"x": ("n", [1.0])}).to_zarr(tmp_path / "x.zarr", **options)
+    with pytest.raises(ph.io.FileError, match="not a motion that polhode wrote: 'time' is missing"):
+        ph.io.read(tmp_path / "x.zarr")
+
+
 def test_a_failed_body_ends_early(data, tmp_path):
     few = data.isel(body=slice(0, 3)).copy(deep=True)
     few.attitude[1, 4:], few.attitude[2] = np.nan, np.nan

@@ -61,21 +61,14 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
     fields, attributes = netcdf._content(path)
     if body is not None:
         raise FileError(f"{name}: error: the file holds one body; leave out body={body}")
-    if missing := [x for x in ("time", "attitude") if x not in fields]:
-        raise FileError(f"{name}: error: not a motion that polhode wrote: {missing[0]!r} is missing")
-    parts = {x: fields[x] for x in ALONG_TIME if x in fields}
-    kept = netcdf.of_user(attributes)
-    try:
-        wheels, inertia = fields.get("wheel_speed"), fields.get("inertia")
-        return of_parts(np.asarray(fields["time"], float), parts, wheels, kept, inertia)
-    except (TypeError, ValueError) as error:
-        raise FileError(f"{name}: error: not a motion that polhode wrote: {error}") from None
+    return _single(name, fields, attributes)
 
 
 def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
     """Read the attitudes of one body from the Zarr store of an ensemble, which need not be complete.
 
-    As `read_netcdf`, which describes `body`. The checksums of the body's block are verified.
+    As `read_netcdf`, which describes `body`. The checksums of the body's block are verified. Stores that
+    xarray wrote from `Trajectory.to_xarray` are read, too.
 
     Raises
     ------
@@ -94,11 +87,30 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
         _require_done(EnsembleStore.open(Path(path)), body)
     try:
         group = library.open_group(name, mode="r")
-        return _member(name, group, dict(group.attrs), body)
+        if "body" in group:
+            return _member(name, group, dict(group.attrs), body)
+        fields = {x: np.asarray(group[x][...]) for x in ("time", "wheel_speed", *netcdf.MOTION) if x in group}
+        attributes = dict(group.attrs)
     except FileError:
         raise
     except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
         raise FileError(f"{name}: error: cannot be read as a Zarr store: {error}") from None
+    if body is not None:
+        raise FileError(f"{name}: error: the store holds one body; leave out body={body}")
+    return _single(name, fields, attributes)
+
+
+def _single(name: str, fields: Mapping[str, Any], attributes: Mapping[str, Any]) -> AttitudeHistory:
+    """Return the history in a file of one body."""
+    if missing := [x for x in ("time", "attitude") if x not in fields]:
+        raise FileError(f"{name}: error: not a motion that polhode wrote: {missing[0]!r} is missing")
+    parts = {x: fields[x] for x in ALONG_TIME if x in fields}
+    kept = netcdf.of_user(dict(attributes))
+    try:
+        wheels, inertia = fields.get("wheel_speed"), fields.get("inertia")
+        return of_parts(np.asarray(fields["time"], float), parts, wheels, kept, inertia)
+    except (TypeError, ValueError) as error:
+        raise FileError(f"{name}: error: not a motion that polhode wrote: {error}") from None
 
 
 def _require_done(store: EnsembleStore, body: int) -> None:

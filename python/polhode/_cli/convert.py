@@ -43,9 +43,8 @@ def add(commands: Any) -> None:
         "CCSDS AEM (.aem) and SPICE CK (.bc) by their suffixes; A may also be the Zarr store of an ensemble "
         "(.zarr), B a glTF animation (.glb, .gltf). Quaternion order, direction and frames that a file does "
         "not state must be given; they are never guessed. Or convert bodies: A is a scene (.toml), a mesh "
-        "(.stl, .obj, .ply) or a robot file "
-        "(.urdf, .sdf, MJCF as .xml), B a robot file (.urdf, .xml) with masses, centres of mass and "
-        "inertias, or a mesh in principal axes (.stl).",
+        "(.stl, .obj, .ply) or a robot file (.urdf, .sdf, MJCF as .xml), B a robot file (.urdf, .xml) with "
+        "masses, centres of mass and inertias, or a mesh in principal axes (.stl).",
     )
     convert.add_argument("source", metavar="A", help="the file to read")
     convert.add_argument("target", metavar="B", help="the file to write")
@@ -77,7 +76,7 @@ def add(commands: Any) -> None:
     convert.add_argument("--body", metavar="N", type=number, help="body of a batch or an ensemble, from 0")
     text = "kernel for a CK: leapseconds, clock and frames, each with its own --kernel"
     convert.add_argument("--kernel", dest="kernels", metavar="FILE", action="append", help=text)
-    text = "scene whose mesh or mass gives the body of a glTF animation"
+    text = "scene whose mesh, solid or mass gives the body of a glTF animation"
     convert.add_argument("--scene", metavar="SCENE.toml", help=text)
     for name, text in {
         "density": "density in kg/m³ of the body in a mesh",
@@ -99,11 +98,17 @@ def _convert(options: argparse.Namespace) -> int:
 
 
 def _convert_motion(options: argparse.Namespace) -> int:
+    from polhode._io import bodies
     from polhode._io.convert import OPTIONS, READ, WRITTEN, form_of, load, write
     from polhode._io.history import FileError
 
     try:
-        of_target = form_of(options.target, WRITTEN, "written")
+        of_target = form_of(options.target, (*WRITTEN, *bodies.WRITTEN), "written")
+        if (form := Path(options.source).suffix.lower().removeprefix(".")) in bodies.READ:
+            raise ValueError(
+                f"a .{form} file has no motion, got {options.source!r}; a body is written as .urdf, .xml or "
+                ".stl, and polhode run computes the motion of a scene"
+            )
         of_source = form_of(options.source, READ, "read")
     except ValueError as error:
         options.parser.error(str(error))

@@ -87,8 +87,9 @@ def test_what_is_missing_is_asked_for_by_option(convert, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "expected"),
     [
-        (("a.txt", "b.nc"), 2, "files that can be read end in .aem, .bc, .csv, .nc or .parquet"),
+        (("a.txt", "b.nc"), 2, "files that can be read end in .aem, .bc, .csv, .nc, .parquet or .zarr"),
         (("a.nc", "b.txt"), 2, "files that can be written end in"),
+        (("a.toml", "b.nc"), 2, "a .toml file has no motion, got 'a.toml'; a body is written as .urdf"),
         (("a.nc", "b.csv", "--epoch", "2026-01-01T00:00:00"), 2, "--epoch does not apply from .nc to .csv"),
         (("none.csv", "b.nc"), 1, "none.csv: no such file"),
         (("bad.csv", "b.nc"), 3, "bad.csv:1:1: error: column 'q' is not known"),

@@ -24,6 +24,38 @@ def test_global_attributes_and_dimensions():
     assert set(data.dims) == set(data.coords)
 
 
+MOMENTUM = "kg m^2/s"
+
+
+@pytest.mark.parametrize(
+    ("moments", "law", "units"),
+    [
+        ([1, 2, 3], None, {"energy": "J", "angular_momentum": MOMENTUM}),
+        (
+            [2, 2, 1],
+            ph.torque.heavy([1, 0, 0]),
+            {
+                "energy": "J",
+                "vertical_angular_momentum": MOMENTUM,
+                "kovalevskaya_integral": "rad^4/s^4",
+            },
+        ),
+        (
+            [2, 2, 1],
+            ph.torque.heavy([0, 0, 1]),
+            {"energy": "J", "vertical_angular_momentum": MOMENTUM, "spin_angular_momentum": MOMENTUM},
+        ),
+        ([1, 2, 3], ph.torque.gravity_gradient(0.1), {"jacobi_integral": "J"}),
+    ],
+)
+def test_conserved_quantities_at_the_start_have_units(moments, law, units):
+    starts = ph.State(ph.Rotor.identity(), [[0.1, 1, 0], [0, 1, 0.2]])
+    laws = () if law is None else (law,)
+    data = ph.simulate(ph.Inertia.from_principal_moments(*moments), starts, [0, 0.1], *laws).to_xarray()
+    found = {str(name): x.units for name, x in data.data_vars.items() if str(name).endswith("_start")}
+    assert found == {f"{name}_start": unit for name, unit in units.items()}
+
+
 def test_angular_momentum_from_the_labelled_inertia():
     """``L = I Ω`` by the names of the dimensions."""
     data = MOTION.to_xarray()

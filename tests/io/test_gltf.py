@@ -115,6 +115,27 @@ def test_the_command_takes_the_mesh_of_a_scene(tmp_path, capsys):
     assert "--scene does not apply from .nc to .csv" in capsys.readouterr().err
 
 
+def test_the_command_draws_the_solid_of_a_scene(tmp_path, monkeypatch):
+    """trimesh finds a cylinder about its centre of mass, and one that hangs from its end about the end."""
+    library = pytest.importorskip("trimesh")
+    monkeypatch.chdir(tmp_path)
+    text = (
+        "[body]\nsolid = 'cylinder'\nradius = '5 cm'\nheight = '40 cm'\nmass = 1\n"
+        "[initial]\nspin = { vector = [0.1, 0, 1] }\n[run]\nduration = 1\nsamples = 11\n"
+    )
+    held = text + "[gravity]\nacceleration = 9.81\npivot = [0, 0, '20 cm']\n"
+    for name, content, middle in (("free", text, 0), ("held", held, -0.2)):
+        (tmp_path / f"{name}.toml").write_text(content)
+        ph.Scene.read(f"{name}.toml").run().save(f"{name}.nc")
+        assert main(["convert", f"{name}.nc", f"{name}.glb", "--scene", f"{name}.toml"]) == 0
+        (mesh,) = library.load(tmp_path / f"{name}.glb").geometry.values()
+        assert mesh.is_watertight
+        # Vertices are 32-bit floats; the cylinder has 64 faces.
+        np.testing.assert_allclose(mesh.extents, [0.1, 0.1, 0.4], rtol=1e-6)
+        np.testing.assert_allclose(mesh.center_mass, [0, 0, middle], atol=1e-7)
+        assert mesh.volume == pytest.approx(np.sinc(2 / 64) * np.pi * 0.05**2 * 0.4, rel=1e-6)
+
+
 def test_turns_that_an_animation_cannot_show_are_warned_of(tmp_path):
     fast = ph.simulate(ASYMMETRIC, ph.State(ph.Rotor.identity(), [0, 0, 5.0]), [0, 1, 2])
     with pytest.warns(UserWarning, match="turns by 286° between output times 0 and 1"):

@@ -6,18 +6,10 @@ import pytest
 import polhode as ph
 from motions import ASYMMETRIC, START
 from polhode._cli.main import main
+from spice_kernels import CLOCK_ERROR, EPOCH, LEAPSECONDS
 
 spice = pytest.importorskip("spiceypy")
 
-LEAPSECONDS = r"""KPL/LSK
-\begindata
-DELTET/DELTA_T_A = 32.184
-DELTET/K         = 1.657D-3
-DELTET/EB        = 1.671D-2
-DELTET/M         = ( 6.239996D0  1.99096871D-7 )
-DELTET/DELTA_AT  = ( 36, @2015-JUL-1, 37, @2017-JAN-1 )
-\begintext
-"""
 # Ticks of 1/65536 s since 2025-12-31T23:00 or so.
 CLOCK = r"""KPL/SCLK
 \begindata
@@ -44,12 +36,9 @@ CK_-999000_SCLK          = -999
 CK_-999000_SPK           = -999
 \begintext
 """
-EPOCH = "2026-01-01T00:00:00"
 NAMES = {"epoch": EPOCH, "body_frame": "CURLEW_BODY", "reference_frame": "J2000"}
 TIMES = np.linspace(0, 10, 41)
 MOTION = ph.simulate(ASYMMETRIC, START, TIMES)
-# Seconds since J2000 are 8.2e8; their rounding, and that of ticks, is 1.2e-7 s.
-CLOCK_ERROR = 2.5e-7
 
 
 @pytest.fixture

@@ -109,7 +109,7 @@ def test_missing_and_foreign_files(form, tmp_path):
 
 def test_other_suffixes_are_refused(tmp_path):
     with pytest.raises(
-        ValueError, match=r"files that can be read end in \.aem, \.bc, \.csv, \.nc or \.parquet"
+        ValueError, match=r"files that can be read end in \.aem, \.bc, \.csv, \.nc, \.parquet or \.zarr"
     ):
         ph.io.read(tmp_path / "a.txt")
     with pytest.raises(TypeError, match=r"a \.csv file has no option 'epoch'"):

@@ -37,6 +37,8 @@ mod _native {
     use crate::mechanics::simulation::{Motion, methods, simulate};
     #[pymodule_export]
     use crate::mechanics::stepper::Stepper;
+    #[pymodule_export]
+    use crate::mechanics::surfaces::{read_mesh, solid_surface};
 
     #[pymodule_export]
     use crate::mechanics::closed_forms::{DampedTop, LagrangeTop, LarmorSphere, symmetric_top};
@@ -60,7 +62,7 @@ mod _native {
     use crate::support::pool::{Buffer, buffer};
 
     #[pymodule_export]
-    use crate::scene::{Scene, SceneError, scene_mesh};
+    use crate::scene::{Scene, SceneError, scene_surface};
     #[pymodule_export]
     use crate::support::text::diagnostic;
 

@@ -109,7 +109,7 @@ def _doubts_of_scene(scene: Scene) -> Iterator[str]:
     from polhode._mechanics.robots.document import Source
 
     # A scene on standard input has no file from which its surface could be read again.
-    surface = scene.surface() if scene.path.exists() else None
+    surface = scene.surface() if scene.solid is None and scene.path.exists() else None
     if surface is None:
         return
     vertices, triangles = surface

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 import re
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from polhode._cli import common
-from polhode._cli.common import add_command, whole_number
+from polhode._cli.common import add_command, positive, whole_number
 from polhode._support.files import UnreadableError, check_target
 
 # Options that a reader takes, and those of the written file; each is given to the format that has it.
@@ -24,6 +25,7 @@ _READING = (
     "attitude_dir",
     "angvel_frame",
 )
+_OF_BODIES = ("density", "mass", "scale")
 _WRITING = (
     *("epoch", "time_system", "reference_frame", "body_frame", "version", "originator"),
     *("object_name", "object_id", "center_name"),
@@ -36,11 +38,13 @@ def add(commands: Any) -> None:
         commands,
         "convert",
         _convert,
-        help="convert files of attitudes and motions",
+        help="convert files of motions and bodies",
         description="Convert the motion of one body from file A to file B: netCDF (.nc), CSV, Parquet and "
-        "CCSDS AEM (.aem) and SPICE CK (.bc) by their suffixes; B may also be a glTF animation (.glb, "
-        ".gltf). Quaternion order, direction and frames that a file does not state must be given; they are "
-        "never guessed.",
+        "CCSDS AEM (.aem) and SPICE CK (.bc) by their suffixes; A may also be the Zarr store of an ensemble "
+        "(.zarr), B a glTF animation (.glb, .gltf). Quaternion order, direction and frames that a file does "
+        "not state must be given; they are never guessed. Or convert bodies: A is a scene (.toml), a mesh "
+        "(.stl, .obj, .ply) or a robot file (.urdf, .sdf, MJCF as .xml), B a robot file (.urdf, .xml) with "
+        "masses, centres of mass and inertias, or a mesh in principal axes (.stl).",
     )
     convert.add_argument("source", metavar="A", help="the file to read")
     convert.add_argument("target", metavar="B", help="the file to write")
@@ -69,41 +73,54 @@ def add(commands: Any) -> None:
     number = whole_number("number of the segment", 1, float("inf"))
     convert.add_argument("--segment", metavar="N", type=number, help="segment of an AEM, from 1")
     number = whole_number("number of the body", 0, float("inf"))
-    convert.add_argument("--body", metavar="N", type=number, help="body of a CSV or Parquet file of a batch")
+    convert.add_argument("--body", metavar="N", type=number, help="body of a batch or an ensemble, from 0")
     text = "kernel for a CK: leapseconds, clock and frames, each with its own --kernel"
     convert.add_argument("--kernel", dest="kernels", metavar="FILE", action="append", help=text)
-    text = "scene whose mesh or mass gives the body of a glTF animation"
+    text = "scene whose mesh, solid or mass gives the body of a glTF animation"
     convert.add_argument("--scene", metavar="SCENE.toml", help=text)
+    for name, text in {
+        "density": "density in kg/m³ of the body in a mesh",
+        "mass": "mass in kg of the body in a mesh",
+        "scale": "unit of a mesh file in m, such as 0.001 for millimetres, default 1",
+    }.items():
+        amount = partial(positive, wanted=f"{name} must be a positive number")
+        convert.add_argument(f"--{name}", metavar="X", type=amount, help=text)
     words_of_force = "overwrite an existing file even if polhode did not write it"
     convert.add_argument("--force", action="store_true", help=words_of_force)
 
 
 def _convert(options: argparse.Namespace) -> int:
+    from polhode._io import bodies
+
+    if Path(options.target).suffix.lower().removeprefix(".") in bodies.WRITTEN:
+        return _convert_bodies(options)
+    return _convert_motion(options)
+
+
+def _convert_motion(options: argparse.Namespace) -> int:
+    from polhode._io import bodies
     from polhode._io.convert import OPTIONS, READ, WRITTEN, form_of, load, write
     from polhode._io.history import FileError
-    from polhode._report.output import require_own
 
     try:
-        of_source, of_target = (
-            form_of(options.source, READ, "read"),
-            form_of(options.target, WRITTEN, "written"),
-        )
+        of_target = form_of(options.target, (*WRITTEN, *bodies.WRITTEN), "written")
+        if (form := Path(options.source).suffix.lower().removeprefix(".")) in bodies.READ:
+            raise ValueError(
+                f"a .{form} file has no motion, got {options.source!r}; a body is written as .urdf, .xml or "
+                ".stl, and polhode run computes the motion of a scene"
+            )
+        of_source = form_of(options.source, READ, "read")
     except ValueError as error:
         options.parser.error(str(error))
     takes = {"read": OPTIONS["read", of_source], "write": OPTIONS["write", of_target]}
-    given = {name: x for name in {*_READING, *_WRITING} if (x := getattr(options, name)) is not None}
-    for name in given:
-        if name not in takes["read"] and name not in takes["write"]:
-            options.parser.error(f"{_flag(name)} does not apply from .{of_source} to .{of_target}")
+    applying = {*takes["read"], *takes["write"]} - {*_OF_BODIES}  # the mass of a box is that of the scene
+    given = _given(options, applying, f"from .{of_source} to .{of_target}")
     shape: dict[str, Any] = {}
     if options.scene is not None:
         if "surface" not in takes["write"]:
             options.parser.error(f"--scene does not apply from .{of_source} to .{of_target}")
         shape = _shape(options.scene)
-    target = Path(options.target)
-    check_target(target)
-    if not options.force:
-        require_own(target)
+    target = _target(options)
     try:
         motion = load(options.source, **{name: x for name, x in given.items() if name in takes["read"]})
     except FileError as error:
@@ -114,6 +131,53 @@ def _convert(options: argparse.Namespace) -> int:
         raise ValueError(_with_flags(str(error))) from None
     print(f"Written\n  {target}")
     return common.OK
+
+
+def _convert_bodies(options: argparse.Namespace) -> int:
+    from polhode._io import bodies
+    from polhode._io.convert import form_of
+    from polhode._mechanics.robots.document import DocumentError
+
+    of_target = Path(options.target).suffix.lower().removeprefix(".")
+    try:
+        of_source = form_of(options.source, bodies.READ, f"converted to .{of_target}")
+        takes = bodies.options_of(of_source, of_target)
+    except ValueError as error:
+        options.parser.error(str(error))
+    if options.scene is not None:
+        options.parser.error(f"--scene does not apply from .{of_source} to .{of_target}")
+    given = _given(options, {*takes}, f"from .{of_source} to .{of_target}")
+    target = _target(options)
+    scene = common.read_scene(options.source) if of_source == "toml" else None
+    try:
+        lines = bodies.convert(options.source, target, scene, **given)
+    except DocumentError as error:
+        raise UnreadableError(str(error)) from None
+    except ValueError as error:
+        raise ValueError(_with_flags(str(error))) from None
+    print("\n".join(["Written", f"  {target}", *lines]))
+    return common.OK
+
+
+def _given(options: argparse.Namespace, takes: set[str], where: str) -> dict[str, Any]:
+    """Return the options that were given; an error for one that does not apply."""
+    names = {*_READING, *_WRITING, *_OF_BODIES}
+    given = {name: x for name in sorted(names) if (x := getattr(options, name)) is not None}
+    for name in given:
+        if name not in takes:
+            options.parser.error(f"{_flag(name)} does not apply {where}")
+    return given
+
+
+def _target(options: argparse.Namespace) -> Path:
+    """Return the file to write, which may be written."""
+    from polhode._report.output import require_own
+
+    target = Path(options.target)
+    check_target(target)
+    if not options.force:
+        require_own(target)
+    return target
 
 
 def _shape(name: str) -> dict[str, Any]:
@@ -131,7 +195,7 @@ def _shape(name: str) -> dict[str, Any]:
 def _with_flags(message: str) -> str:
     """Return a message with the options of the command for the arguments of Python."""
     message = message.replace("surface=(vertices, triangles)", "--scene=FILE.toml")
-    names = "|".join({*_READING, *_WRITING})
+    names = "|".join({*_READING, *_WRITING, *_OF_BODIES})
     return re.sub(rf"\b({names})=", lambda found: f"{_flag(found[1])}=", message)
 
 

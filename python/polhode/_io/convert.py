@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from polhode._io import aem, aem_writing, gltf, spice, tables
+from polhode._io import aem, aem_writing, gltf, members, spice, tables
 from polhode._io.history import AttitudeHistory, FileError
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report import netcdf
@@ -16,18 +16,16 @@ _READERS: dict[str, Callable[..., AttitudeHistory]] = {
     "aem": aem.read_aem,
     "bc": spice.read_ck,
     "csv": tables.read_csv,
-    "nc": tables.read_netcdf,
+    "nc": members.read_netcdf,
     "parquet": tables.read_parquet,
+    "zarr": members.read_zarr,
 }
 READ, WRITTEN = tuple(_READERS), ("aem", "bc", "csv", "glb", "gltf", "nc", "parquet")
 # Options of the formats, by what is done and the suffix.
-_OF_TABLES = ("body",)
 OPTIONS: dict[tuple[str, str], tuple[str, ...]] = {
     ("read", "aem"): ("segment", "epoch", "body_frame", "quaternion_type", "attitude_dir", "angvel_frame"),
     ("read", "bc"): ("kernels", "segment", "epoch", "time_system"),
-    ("read", "csv"): _OF_TABLES,
-    ("read", "parquet"): _OF_TABLES,
-    ("read", "nc"): (),
+    **{("read", form): ("body",) for form in ("csv", "nc", "parquet", "zarr")},
     ("write", "aem"): (
         *("epoch", "time_system", "reference_frame", "body_frame", "version", "originator"),
         *("object_name", "object_id", "center_name"),
@@ -52,8 +50,8 @@ def form_of(path: str | os.PathLike[str], forms: tuple[str, ...], done: str) -> 
 def read(path: str | os.PathLike[str], **options: Any) -> AttitudeHistory:
     """Read the attitudes of one body from a file, in the form of its suffix.
 
-    The suffixes are ``.aem``, ``.bc`` (SPICE CK), ``.csv``, ``.nc`` and ``.parquet``. Options are those of
-    `read_aem`, `read_ck`, `read_csv` and `read_parquet`.
+    The suffixes are ``.aem``, ``.bc`` (SPICE CK), ``.csv``, ``.nc``, ``.parquet`` and ``.zarr``. Options are
+    those of `read_aem`, `read_ck`, `read_csv`, `read_netcdf`, `read_parquet` and `read_zarr`.
     """
     form = form_of(path, READ, "read")
     return _READERS[form](path, **_with_kernels(options) if form == "bc" else options)
@@ -88,7 +86,7 @@ def _with_kernels(options: dict[str, Any]) -> dict[str, Any]:
 def load(path: str | os.PathLike[str], **options: Any) -> Trajectory | AttitudeHistory:
     """Return the motion in a file: a trajectory with all that it has, if the file has one, else a history."""
     if not options and form_of(path, READ, "read") == "nc":
-        history = tables.read_netcdf(path)
+        history = members.read_netcdf(path)
         try:
             return netcdf.read(path)
         except ValueError:

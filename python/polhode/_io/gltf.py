@@ -49,15 +49,17 @@ def write_gltf(
     ----------
     surface
         Vertices (n, 3) in m and triangles (m, 3), counter-clockwise seen from outside, in body axes through
-        the point whose position the motion has: the centre of mass, or the fixed point. By default a box with
-        the same principal moments as the body, in its principal axes.
+        the point whose position the motion has: the centre of mass, or the fixed point. `Scene.surface`,
+        `read_mesh` and `solid_surface` return such surfaces. By default a box with the same principal
+        moments as the body, in its principal axes.
     mass
         Mass of the box in kg. By default, the longest side of the box is 1 m.
 
     Raises
     ------
     ValueError
-        For a batch, fewer than two output times, another suffix, and a history without a surface.
+        For a batch, fewer than two output times, another suffix, and a motion with neither inertia nor
+        surface.
     OSError
         If the file cannot be written; an older file stays.
 
@@ -73,8 +75,7 @@ def write_gltf(
     history = AttitudeHistory.of(motion)
     if len(history) < 2:
         raise ValueError(f"an animation needs two output times or more, got {len(history)}")
-    inertia = motion.inertia if isinstance(motion, Trajectory) else None
-    vertices, triangles = _box(inertia, mass) if surface is None else _checked(surface)
+    vertices, triangles = _box(history.inertia, mass) if surface is None else _checked(surface)
     tree, binary = _tree(history, vertices, triangles)
     write_atomically({Path(path): _glb(tree, binary) if form == ".glb" else _text(tree, binary)})
 
@@ -158,9 +159,9 @@ def _warn_of_fast_turns(history: AttitudeHistory) -> None:
         )
 
 
-def _box(inertia: Any, mass: float | None) -> tuple[Array, Any]:
+def _box(inertia: Inertia | None, mass: float | None) -> tuple[Array, Any]:
     """Return the surface of a box with the moments of a body: ``I1 = m (b² + c²)/12``, and so on."""
-    if not isinstance(inertia, Inertia):
+    if inertia is None:
         raise ValueError("the shape of the body is not known; give surface=(vertices, triangles)")
     moments = np.asarray(inertia.principal_moments)
     squares = np.maximum(moments.sum() - 2 * moments, 0.0)  # of the sides, times m/6

@@ -44,6 +44,8 @@ class AttitudeHistory:
         Text and numbers. Those that have a meaning in CCSDS files: ``epoch`` and ``time_system``,
         ``reference_frame`` (the space axes) and ``body_frame``, ``object_name``, ``object_id``,
         ``center_name``, ``interpolation_method`` and ``interpolation_degree``.
+    inertia
+        The inertia that determines the motion, as that of a trajectory, or None.
 
     Raises
     ------
@@ -60,6 +62,7 @@ class AttitudeHistory:
     velocity: Multivector | None = None
     wheel_speed: Array | None = None
     attributes: dict[str, Any] = field(default_factory=dict)
+    inertia: Inertia | None = None
 
     def __post_init__(self) -> None:
         time = np.array(self.time, float)
@@ -113,6 +116,7 @@ class AttitudeHistory:
             motion.velocity,
             wheels if wheels.shape[-1] else None,
             dict(motion.attributes),
+            motion.inertia if isinstance(motion.inertia, Inertia) else None,
         )
 
     def trajectory(self, body: Body | Inertia) -> Trajectory:

@@ -1,4 +1,4 @@
-"""CSV, Parquet and netCDF files of attitudes and motions, read and written by column."""
+"""CSV and Parquet files of attitudes and motions read, these and netCDF files written, by column."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ import numpy as np
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.rotor import Rotor
 from polhode._io.history import AttitudeHistory, FileError
+from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.robots.document import Source
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report import netcdf, table
@@ -25,7 +26,7 @@ from polhode._support.files import write_atomically
 
 _LABELS = {"quaternion": "wxyz", "axis": "xyz"}
 # Quantities of a motion with a row for each time.
-_ALONG_TIME = {name: facts for name, facts in netcdf.MOTION.items() if name != "inertia"}
+ALONG_TIME = {name: facts for name, facts in netcdf.MOTION.items() if name != "inertia"}
 
 
 def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
@@ -102,29 +103,6 @@ def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> At
         raise FileError(f"{name}: error: {error}") from None
 
 
-def read_netcdf(path: str | os.PathLike[str]) -> AttitudeHistory:
-    """Read the attitudes of one body from a netCDF file that Polhode wrote, from a trajectory or a history.
-
-    Raises
-    ------
-    ValueError
-        If the file holds a batch, or was not written by Polhode.
-    ImportError
-        Without the libraries: ``pip install 'polhode[io]'``.
-    """
-    fields, attributes = netcdf._content(path)
-    if missing := [x for x in ("time", "attitude") if x not in fields]:
-        raise FileError(
-            f"{os.fsdecode(path)}: error: not a motion that polhode wrote: {missing[0]!r} is missing"
-        )
-    parts = {name: fields[name] for name in _ALONG_TIME if name in fields}
-    kept = netcdf.of_user(attributes)
-    try:
-        return _of_parts(np.asarray(fields["time"], float), parts, fields.get("wheel_speed"), kept)
-    except (TypeError, ValueError) as error:
-        raise FileError(f"{os.fsdecode(path)}: error: not a motion that polhode wrote: {error}") from None
-
-
 def write_table(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[str], form: str) -> None:
     """Write a motion as netCDF, CSV or Parquet (form ``"nc"``, ``"csv"``, ``"parquet"``), atomically."""
     if isinstance(motion, Trajectory):
@@ -162,7 +140,7 @@ def _number(source: Source, line: int, row: list[str], k: int) -> float:
 
 def _names(name: str) -> list[str]:
     """Return the columns of a quantity."""
-    dims = _ALONG_TIME[name][0]
+    dims = ALONG_TIME[name][0]
     return [f"{name}_{label}" for label in _LABELS[dims[0]]] if dims else [name]
 
 
@@ -178,7 +156,7 @@ def _history(columns: dict[str, Array], body: int | None, attributes: dict[str, 
     elif body is not None:
         raise ValueError(f"the file holds one body; leave out body={body}")
     wheels = sorted((x for x in columns if x.startswith("wheel_speed_")), key=lambda x: (len(x), x))
-    known = {"time", *wheels, *(column for name in _ALONG_TIME for column in _names(name))}
+    known = {"time", *wheels, *(column for name in ALONG_TIME for column in _names(name))}
     if unknown := [x for x in columns if x not in known]:
         raise ValueError(
             f"column {unknown[0]!r} is not known; rename or remove it. Known are {', '.join(known_columns())}"
@@ -187,7 +165,7 @@ def _history(columns: dict[str, Array], body: int | None, attributes: dict[str, 
         if needed not in columns:
             raise ValueError(f"the file has no column {needed!r}; it needs time and attitude_w, _x, _y, _z")
     parts = {}
-    for name in _ALONG_TIME:
+    for name in ALONG_TIME:
         present = [x for x in _names(name) if x in columns]
         if present and len(present) < len(_names(name)):
             raise ValueError(
@@ -195,19 +173,24 @@ def _history(columns: dict[str, Array], body: int | None, attributes: dict[str, 
             )
         if present:
             values = np.stack([columns[x] for x in present], axis=-1)
-            parts[name] = values if _ALONG_TIME[name][0] else values[:, 0]
+            parts[name] = values if ALONG_TIME[name][0] else values[:, 0]
     speeds = np.stack([columns[x] for x in wheels], axis=-1) if wheels else None
-    return _of_parts(columns["time"], parts, speeds, attributes)
+    return of_parts(columns["time"], parts, speeds, attributes)
 
 
 def known_columns() -> list[str]:
     """Return the names of the columns."""
-    return ["time", *(column for name in _ALONG_TIME for column in _names(name)), "wheel_speed_0, ..."]
+    return ["time", *(column for name in ALONG_TIME for column in _names(name)), "wheel_speed_0, ..."]
 
 
-def _of_parts(
-    time: Array, parts: dict[str, Array], wheels: Array | None, attributes: dict[str, Any]
+def of_parts(
+    time: Array,
+    parts: dict[str, Array],
+    wheels: Array | None,
+    attributes: dict[str, Any],
+    inertia: Array | None = None,
 ) -> AttitudeHistory:
+    """Return the history with these components, attitudes as quaternions w, x, y, z."""
     quaternions = np.asarray(parts["attitude"], float)
     norms = np.linalg.norm(quaternions, axis=-1)
     if not (np.abs(norms - 1) < 1e-3).all():
@@ -217,7 +200,13 @@ def _of_parts(
     found = {name: make(np.ascontiguousarray(parts[name])) for name, make in grades.items() if name in parts}
     rotor = Rotor._from_rows(np.ascontiguousarray(quaternions * [1.0, -1.0, -1.0, -1.0]))
     return AttitudeHistory(
-        time, rotor, **found, energy=parts.get("energy"), wheel_speed=wheels, attributes=attributes
+        time,
+        rotor,
+        **found,
+        energy=parts.get("energy"),
+        wheel_speed=wheels,
+        attributes=attributes,
+        inertia=None if inertia is None else Inertia.from_matrix(inertia),
     )
 
 
@@ -227,7 +216,7 @@ def _of_parts(
 def _parts(history: AttitudeHistory) -> dict[str, Array]:
     """Return the components of the known quantities."""
     parts = {"attitude": np.asarray(history.rotor.to_quaternion(order="wxyz"))}
-    for name in list(_ALONG_TIME)[1:]:
+    for name in list(ALONG_TIME)[1:]:
         values = getattr(history, name)
         if values is not None:
             parts[name] = np.asarray(getattr(values, "components", values))
@@ -267,6 +256,8 @@ def _netcdf(history: AttitudeHistory) -> bytes:
     variables = {name: netcdf._quantity(name, ("time",), x) for name, x in _parts(history).items()}
     if history.wheel_speed is not None:
         variables["wheel_speed"] = netcdf.wheels_of(("time",), history.wheel_speed)
+    if history.inertia is not None:
+        variables["inertia"] = netcdf._quantity("inertia", (), history.inertia.matrix)
     return netcdf.encoded(history.time, variables, _attributes(history))
 
 

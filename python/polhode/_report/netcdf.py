@@ -16,6 +16,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.result import Certificate, Crossings
 from polhode._mechanics.trajectory import Trajectory
+from polhode._report.summary import QUANTITIES
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 
@@ -50,6 +51,9 @@ MOTION: dict[str, tuple[tuple[str, ...], str, str]] = {
     "energy": ((), "J", "rotational kinetic and potential energy"),
     "inertia": (("axis", "inertia_column"), "kg m^2", "inertia matrix in body axes"),
 }
+
+# Powers in units, as UDUNITS reads them.
+_POWERS = str.maketrans({"²": "^2", "³": "^3", "⁴": "^4"})
 
 
 def components(states: Trajectory | Crossings, name: str) -> Array:
@@ -130,7 +134,8 @@ def _bodies(trajectory: Trajectory) -> dict[str, Any]:
         "failure_time": (failed, "s", "time up to which a failed body was computed"),
     }
     for name, start in proof.conserved.items():
-        columns[f"{name}_start"] = (start, "SI", f"{name} at the start")
+        unit = QUANTITIES[name][1].translate(_POWERS)
+        columns[f"{name}_start"] = (start, unit, f"{name} at the start")
         columns[f"{name}_drift"] = (proof.drift[name], "1", f"largest relative change of the {name}")
     texts = {"failure": (messages, "error of a failed body")}
     if not isinstance(proof.method, str):

@@ -64,6 +64,10 @@ def is_own(path: Path) -> bool:
             return head.startswith(b"CCSDS_AEM_VERS") and b"\nCOMMENT Written by polhode " in head
         case ".glb" | ".gltf":
             return b'"generator":"Polhode ' in head
+        case ".urdf" | ".xml":
+            return b"\n<!-- Written by polhode " in head
+        case ".stl":
+            return head.startswith(b"Written by polhode ")
         case ".png":
             return head.startswith(b"\x89PNG") and b"tEXtSoftware\0Polhode" in head
         case ".html" | ".htm":

@@ -136,12 +136,14 @@ class Scene:
             self.__dict__[name] = given[name]
 
     def surface(self) -> tuple[Array, Array] | None:
-        """Return the mesh of the body: vertices (n, 3) in body axes in m, and triangles (m, 3).
+        """Return the surface of the mesh or the solid in the file, as the page draws it.
 
-        None without a mesh.
+        Vertices (n, 3) in body axes in m, and triangles (m, 3), counter-clockwise seen from outside. A round
+        solid has 64 faces about its axis, with vertices on the solid; a rod and a disc are given a thickness.
+        None for a body known by its moments.
         """
-        mesh = _native.scene_mesh(os.fspath(self.path))
-        return None if mesh is None else (mesh[0], np.array(mesh[1], int))
+        surface = _native.scene_surface(os.fspath(self.path))
+        return None if surface is None else (surface[0], np.array(surface[1], int))
 
     @property
     def result_bytes(self) -> int:

@@ -10,4 +10,5 @@ pub(crate) mod free;
 pub(crate) mod law_value;
 pub(crate) mod simulation;
 pub(crate) mod stepper;
+pub(crate) mod surfaces;
 pub(crate) mod torque;

@@ -6,6 +6,7 @@ use crate::algebra::value;
 use crate::mechanics::bodies::{Body, Inertia};
 use crate::mechanics::ensemble::{Results, run_many};
 use crate::mechanics::simulation::Motion;
+use crate::mechanics::surfaces::{Triangles, triangles};
 use crate::mechanics::torque::Law;
 use crate::support::arrays::{Array, Rows, bad, line, numbers, table};
 use crate::support::facts::dict;
@@ -175,15 +176,14 @@ impl Scene {
     }
 }
 
-/// The mesh of a scene in body axes, in metres: vertices (n, 3) and triangles (m, 3); None without a mesh.
+/// The surface of the mesh or the solid of a scene in body axes, in metres; None if it has neither.
 #[pyfunction]
-pub(crate) fn scene_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Option<(Array<'_>, Vec<[u32; 3]>)>> {
+pub(crate) fn scene_surface(py: Python<'_>, path: PathBuf) -> PyResult<Option<Triangles<'_>>> {
     let read = py.detach(|| {
         let scene = scene::Scene::read(&path).map_err(|problems| report(&problems))?;
-        let mesh = scene.mesh_with(&TriangleMesh::read).transpose().map_err(bad)?;
-        Ok::<_, PyErr>(mesh.map(|mesh| mesh.moved(scene.shift())))
+        scene.surface_with(&TriangleMesh::read).transpose().map_err(bad)
     })?;
-    read.map(|mesh| Ok((table(py, mesh.vertices().iter().map(|v| v.0))?, mesh.faces().to_vec()))).transpose()
+    read.map(|surface| triangles(py, &surface.vertices, surface.faces)).transpose()
 }
 
 /// A law with its name in `polhode.torque` and its arguments.

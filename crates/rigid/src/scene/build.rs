@@ -5,6 +5,7 @@ use crate::body::Body;
 use crate::body::inertia::Inertia;
 use crate::body::mesh::{MeshError, MeshProblem, TriangleMesh};
 use crate::body::solids::{Amount, Solid};
+use crate::body::surface::Surface;
 use crate::error::BodyError;
 use crate::laws::torque::Torque;
 use crate::state::checks::check_moments;
@@ -138,6 +139,15 @@ impl Scene {
         let BodySpec::Mesh { file, length_unit, .. } = &self.body else { return None };
         let path = self.path.parent().unwrap_or(Path::new("")).join(file);
         Some(mesh(&path).and_then(|mesh| mesh.scaled(*length_unit)))
+    }
+
+    /// The surface of the body's solid or mesh, in body axes in metres; None if the body has neither.
+    pub fn surface_with(&self, mesh: MeshSource<'_>) -> Option<Result<Surface, MeshError>> {
+        let surface = match self.solid() {
+            Some(solid) => Ok(Surface::of_solid(solid)),
+            None => self.mesh_with(mesh)?.map(|mesh| Surface::of_mesh(&mesh)),
+        };
+        Some(surface.map(|surface| surface.transformed(|x| x + self.shift())))
     }
 
     fn mesh_body(&self, mesh: MeshSource<'_>, amount: Amount) -> Result<Body, Diagnostic> {

@@ -50,7 +50,7 @@ impl Opened {
         let read = OnceCell::new();
         let source = |path: &Path| read.get_or_init(|| mesh_among(files, path)).clone();
         let (body, laws) = scene.build_with(&source).map_err(|problems| texts(&problems))?;
-        let surface = surface_of(&scene, &source);
+        let surface = scene.surface_with(&source).and_then(Result::ok);
         let problem = scene.problem(&body, &laws);
         let motion = problem.simulate(&scene.times(), scene.options(), &mut |_: Progress| go_on());
         let motion = motion.map_err(|error| match error {
@@ -83,15 +83,7 @@ impl Opened {
 /// The surface of the mesh or the solid of a scene, in body axes; None if it has neither or cannot be read.
 pub fn surface(text: &str, name: &str, files: &Files) -> Option<Surface> {
     let scene = Scene::parse(text, Path::new(name)).ok()?;
-    surface_of(&scene, &|path: &Path| mesh_among(files, path))
-}
-
-fn surface_of(scene: &Scene, source: &dyn Fn(&Path) -> Result<TriangleMesh, MeshError>) -> Option<Surface> {
-    let surface = match scene.solid() {
-        Some(solid) => Surface::of_solid(solid),
-        None => Surface::of_mesh(&scene.mesh_with(source)?.ok()?),
-    };
-    Some(surface.transformed(|x| x + scene.shift()))
+    scene.surface_with(&|path: &Path| mesh_among(files, path))?.ok()
 }
 
 /// The mesh in one of the files.

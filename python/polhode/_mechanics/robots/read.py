@@ -41,7 +41,7 @@ def read_urdf(path: str | os.PathLike[str]) -> dict[str, Body]:
     FileNotFoundError
         If there is no such file.
     """
-    return _bodies(path, "robot")
+    return bodies_of(path, "robot")
 
 
 def read_mjcf(path: str | os.PathLike[str]) -> dict[str, Body]:
@@ -62,7 +62,7 @@ def read_mjcf(path: str | os.PathLike[str]) -> dict[str, Body]:
 
     Returns and errors are those of `read_urdf`.
     """
-    return _bodies(path, "mujoco")
+    return bodies_of(path, "mujoco")
 
 
 def read_sdf(path: str | os.PathLike[str]) -> dict[str, Body]:
@@ -76,7 +76,7 @@ def read_sdf(path: str | os.PathLike[str]) -> dict[str, Body]:
 
     Returns and errors are those of `read_urdf`.
     """
-    return _bodies(path, "sdf")
+    return bodies_of(path, "sdf")
 
 
 def read_links(path: str | os.PathLike[str], root_tag: str | None = None) -> tuple[str, list[Link]]:
@@ -99,7 +99,8 @@ def read_links(path: str | os.PathLike[str], root_tag: str | None = None) -> tup
     return name, links
 
 
-def _bodies(path: str | os.PathLike[str], root_tag: str) -> dict[str, Body]:
+def bodies_of(path: str | os.PathLike[str], root_tag: str | None = None) -> dict[str, Body]:
+    """Return the bodies of a robot file by name; `root_tag` fixes the format."""
     _, links = read_links(path, root_tag)
     errors = [error for link in links for error in link.errors]
     if errors:

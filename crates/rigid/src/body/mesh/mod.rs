@@ -123,12 +123,6 @@ impl TriangleMesh {
         TriangleMesh::named(&self.name, vertices, self.faces.clone())
     }
 
-    /// The mesh with all positions moved.
-    pub fn moved(mut self, by: Vector) -> TriangleMesh {
-        self.vertices.iter_mut().for_each(|x| *x += by);
-        self
-    }
-
     /// The enclosed volume, negative if the faces are wound inwards. The mesh must be closed, which is not checked.
     pub fn volume(&self) -> f64 {
         integrals(self, check::middle(self)).volume

@@ -1,0 +1,190 @@
+"""One body of many: from netCDF files of batches and ensembles, and from Zarr stores."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from polhode._io.history import AttitudeHistory, FileError
+from polhode._io.tables import ALONG_TIME, of_parts
+from polhode._report import netcdf
+from polhode._report.ensemble.store import EnsembleStore, zarr
+from polhode._support.arrays import Array
+from polhode._support.extras import optional
+
+# Attributes that describe the file, not the body.
+_OF_FILE = ("batch_shape", "bodies_complete", "number", "varied")
+
+
+def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
+    """Read the attitudes of one body from a netCDF file that Polhode wrote.
+
+    The file is that of a trajectory, a batch, an ensemble or a history. Of many bodies only the chosen one is
+    read. Quantities that the file has once for a body, because they are constant, are repeated at all times;
+    position and velocity at the start, of an ensemble without forces, become those of uniform motion.
+
+    Parameters
+    ----------
+    body
+        Number of the body, from 0, for the file of a batch or an ensemble.
+
+    Raises
+    ------
+    ValueError
+        If the file holds many bodies and `body` is not one of them, or was not written by Polhode.
+    ImportError
+        Without the libraries: ``pip install 'polhode[io]'``.
+
+    Warns
+    -----
+    UserWarning
+        If the body failed; its attitudes before that are read.
+    """
+    name = os.fsdecode(path)
+    library = optional("h5py", "io", "a netCDF file")
+    if os.path.isfile(path):
+        try:
+            with library.File(path, "r") as file:
+                if "body" in file:
+                    attributes = {x: netcdf._attribute(y) for x, y in file.attrs.items()}
+                    return _member(name, file, attributes, body)
+        except FileError:
+            raise
+        except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+            # The library raises any of these for a damaged file.
+            raise FileError(f"{name}: error: cannot be read as a netCDF file: {error}") from None
+    fields, attributes = netcdf._content(path)
+    if body is not None:
+        raise FileError(f"{name}: error: the file holds one body; leave out body={body}")
+    return _single(name, fields, attributes)
+
+
+def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
+    """Read the attitudes of one body from the Zarr store of an ensemble, which need not be complete.
+
+    As `read_netcdf`, which describes `body`. The checksums of the body's block are verified. Stores that
+    xarray wrote from `Trajectory.to_xarray` are read, too.
+
+    Raises
+    ------
+    ValueError
+        If there is no such body, its block is missing or corrupt, or there are no attitudes.
+    FileNotFoundError
+        If there is no such store.
+    ImportError
+        Without the libraries: ``pip install 'polhode[zarr]'``.
+    """
+    name = os.fsdecode(path)
+    if not os.path.lexists(path):
+        raise FileNotFoundError(f"{name}: no such store")
+    library = zarr()
+    if EnsembleStore.exists(Path(path)) and body is not None:
+        _require_done(EnsembleStore.open(Path(path)), body)
+    try:
+        group = library.open_group(name, mode="r")
+        if "body" in group:
+            return _member(name, group, dict(group.attrs), body)
+        fields = {x: np.asarray(group[x][...]) for x in ("time", "wheel_speed", *netcdf.MOTION) if x in group}
+        attributes = dict(group.attrs)
+    except FileError:
+        raise
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+        raise FileError(f"{name}: error: cannot be read as a Zarr store: {error}") from None
+    if body is not None:
+        raise FileError(f"{name}: error: the store holds one body; leave out body={body}")
+    return _single(name, fields, attributes)
+
+
+def _single(name: str, fields: Mapping[str, Any], attributes: Mapping[str, Any]) -> AttitudeHistory:
+    """Return the history in a file of one body."""
+    if missing := [x for x in ("time", "attitude") if x not in fields]:
+        raise FileError(f"{name}: error: not a motion that polhode wrote: {missing[0]!r} is missing")
+    parts = {x: fields[x] for x in ALONG_TIME if x in fields}
+    kept = netcdf.of_user(dict(attributes))
+    try:
+        wheels, inertia = fields.get("wheel_speed"), fields.get("inertia")
+        return of_parts(np.asarray(fields["time"], float), parts, wheels, kept, inertia)
+    except (TypeError, ValueError) as error:
+        raise FileError(f"{name}: error: not a motion that polhode wrote: {error}") from None
+
+
+def _require_done(store: EnsembleStore, body: int) -> None:
+    _require_body(str(store.path), body, store.number)
+    index = body // store.block
+    if (state := store.state(index)) != "done":
+        rows = store.rows(index)
+        raise FileError(
+            f"{store.path}: error: the block of body {body} is {state}, as bodies {rows.start} to "
+            f"{rows.stop - 1}; compute it with polhode run --resume"
+        )
+
+
+def _require_body(name: str, body: int | None, count: int) -> int:
+    if body is None:
+        raise FileError(
+            f"{name}: error: the file holds {count} bodies; choose one by its number, as in body=0"
+        )
+    if not 0 <= body < count:
+        raise FileError(f"{name}: error: body must be from 0 to {count - 1}, got {body}")
+    return body
+
+
+def _member(name: str, arrays: Any, attributes: Mapping[str, Any], body: int | None) -> AttitudeHistory:
+    """Return the history of a body from the arrays of a file, whose first axis is that of the bodies."""
+    for needed in ("time", "attitude"):
+        if needed not in arrays:
+            raise FileError(f"{name}: error: no attitudes of bodies: {needed!r} is missing")
+    body = _require_body(name, body, arrays["attitude"].shape[0])
+    time = np.asarray(arrays["time"][...], float)
+    known = [x for x in (*ALONG_TIME, "wheel_speed") if x in arrays]
+    parts = {x: np.asarray(arrays[x][body], float) for x in known}
+    inertia = _inertia(arrays, body)
+    wheels = parts.pop("wheel_speed", None)
+    parts = _along(time, parts)
+    count = _complete(name, time, parts["attitude"], body)
+    kept = {x: y for x, y in netcdf.of_user(dict(attributes)).items() if x not in _OF_FILE}
+    parts = {x: y[:count] for x, y in parts.items()}
+    wheels = None if wheels is None else wheels[:count]
+    try:
+        return of_parts(time[:count], parts, wheels, {**kept, "body": body}, inertia)
+    except (TypeError, ValueError) as error:
+        raise FileError(f"{name}: error: not bodies that polhode wrote: {error}") from None
+
+
+def _along(time: Array, parts: dict[str, Array]) -> dict[str, Array]:
+    """Return the quantities at all times; some are in the file once for each body."""
+    found = {}
+    for name, values in parts.items():
+        if values.ndim > len(ALONG_TIME[name][0]):
+            found[name] = values
+        else:
+            found[name] = np.repeat(values[np.newaxis], len(time), axis=0)
+            if name == "position":
+                found[name] += np.multiply.outer(time - time[0], parts["velocity"])
+    return found
+
+
+def _inertia(arrays: Any, body: int) -> Array | None:
+    """Return the inertia matrix of a body; the file has one for each or one for all."""
+    if "inertia" not in arrays:
+        return None
+    matrices = arrays["inertia"]
+    return np.asarray(matrices[body] if len(matrices.shape) == 3 else matrices[...], float)
+
+
+def _complete(name: str, time: Array, attitudes: Array, body: int) -> int:
+    """Return the number of times before a body failed, with a warning if it did."""
+    finite = np.isfinite(attitudes).all(axis=-1)
+    count = len(time) if finite.all() else int(np.argmin(finite))
+    if not count:
+        raise FileError(f"{name}: error: body {body} has no attitudes: it failed, or was not computed")
+    if count < len(time):
+        warnings.warn(
+            f"{name}: body {body} failed after {time[count - 1]:g} s; later times are left out", stacklevel=4
+        )
+    return count

@@ -1,0 +1,133 @@
+"""Triangle meshes: surfaces of solids and files, and STL files in principal axes."""
+
+from __future__ import annotations
+
+import os
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.transform import RigidTransform
+from polhode._mechanics.bodies import Body
+from polhode._scene.scene import Scene
+from polhode._support.arrays import Array, as_float, as_floats
+from polhode._support.files import write_atomically
+
+_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def read_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> tuple[Array, Array]:
+    """Return the triangle mesh in a file (STL, OBJ or PLY), for `write_gltf`.
+
+    Parameters
+    ----------
+    scale
+        Unit of the file in m, such as 0.001 for millimetres.
+
+    Returns
+    -------
+    vertices, triangles
+        Positions (n, 3) in m, and numbers of vertices (m, 3), counter-clockwise seen from outside.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        As `polhode.Body.from_mesh`: the mesh must enclose a body.
+    """
+    if not os.path.lexists(path):
+        raise FileNotFoundError(f"{os.fspath(path)}: no such file")
+    vertices, triangles = _native.read_mesh(os.fspath(path), as_float(scale, "the scale"))
+    return vertices, np.array(triangles, int)
+
+
+def solid_surface(kind: str, *sizes: Any) -> tuple[Array, Array]:
+    """Return the surface of a solid as a triangle mesh, as the page draws it, for `write_gltf`.
+
+    Vertices lie on the solid; a round one has 64 faces about its axis, so that its volume is too small by
+    less than 1 %. A rod and a disc are given a thickness of 3 % of the length and of the diameter.
+
+    Parameters
+    ----------
+    kind
+        Name of a constructor of `polhode.Body`, from ``"box"`` to ``"capsule"``.
+    sizes
+        Its sizes in m, as ``"cylinder", 0.1, 0.5`` or ``"box", [1, 2, 3]``.
+
+    Returns
+    -------
+    vertices, triangles
+        As `read_mesh`, in the axes of the solid: a cone has its base, not its centre of mass, at the origin.
+
+    Raises
+    ------
+    ValueError
+        For another kind, another number of sizes, and sizes that no such solid has.
+    """
+    lengths = np.concatenate([np.ravel(as_floats(x, f"the sizes of a {kind}")) for x in sizes or ([],)])
+    vertices, triangles = _native.solid_surface(kind, lengths.tolist())
+    return vertices, np.array(triangles, int)
+
+
+def write_stl(
+    mesh: str | os.PathLike[str] | Scene, path: str | os.PathLike[str], *, scale: float = 1.0
+) -> RigidTransform:
+    """Write a mesh as binary STL in its principal axes about its centre of mass, in m, atomically.
+
+    The uniform body in the written mesh has its centre of mass at 0, and its inertia matrix is diagonal, with
+    the moments in the order of `Inertia.principal_moments`. Where moments are equal, the axes are one choice
+    of many. Numbers are floats of 32 bits, as STL has them.
+
+    Parameters
+    ----------
+    mesh
+        The path of a mesh (STL, OBJ or PLY), or a scene with a mesh or a solid.
+    scale
+        Unit of the mesh file in m. A scene states its own.
+
+    Returns
+    -------
+    RigidTransform
+        The displacement T that was applied: ``T.apply(x)`` is the written position of the point x, in m, of
+        the mesh, or of the body axes of the scene. ``T.rotor`` turns the axes of the mesh into the principal
+        ones.
+
+    Raises
+    ------
+    ValueError
+        For a mesh that encloses no body, a scene with neither mesh nor solid, another suffix, and triangles
+        too small for floats of 32 bits.
+    FileNotFoundError, OSError
+        If there is no such mesh; if the file cannot be written, and an older file stays.
+    """
+    if Path(path).suffix.lower() != ".stl":
+        raise ValueError(f"a mesh is saved as FILE.stl, not {os.fspath(path)!r}")
+    if isinstance(mesh, Scene):
+        surface, body = mesh.surface(), mesh.body
+        if surface is None:
+            raise ValueError(f"{mesh.name} has neither a mesh nor a solid, so its shape is not known")
+    else:
+        surface, body = read_mesh(mesh, scale=scale), Body.from_mesh(mesh, density=1.0, scale=scale)
+    to_axes = ~body.inertia.principal_frame
+    applied = RigidTransform(to_axes, -to_axes(body.center_of_mass))
+    vertices, triangles = surface
+    write_atomically({Path(path): _binary(np.asarray(applied.apply(vertices)), triangles)})
+    return applied
+
+
+def _binary(vertices: Array, triangles: Array) -> bytes:
+    """Return the content of a binary STL file."""
+    corners = vertices[triangles].astype("<f4")
+    edges = np.diff(corners.astype(float), axis=1)
+    normals = np.cross(edges[:, 0], edges[:, 1])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    if not np.isfinite(corners).all() or not (lengths > 0).all():
+        k = int(np.argmax(~((lengths[:, 0] > 0) & np.isfinite(corners).all(axis=(1, 2)))))
+        raise ValueError(f"triangle {k} cannot be written in the 32-bit floats of STL; simplify the mesh")
+    facets = np.zeros(len(triangles), _FACET)
+    facets["normal"], facets["corners"] = normals / lengths, corners
+    # The header has 80 bytes; it must not begin with "solid", by which text is known.
+    header = f"Written by polhode {_native.__version__}, in metres, in principal axes".encode()
+    return header.ljust(80) + struct.pack("<I", len(facets)) + facets.tobytes()

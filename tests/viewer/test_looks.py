@@ -145,6 +145,16 @@ def test_phone_needs_no_sideways_scrolling(shown, opened):
     assert outside == []
 
 
+@pytest.mark.parametrize("size", [(1280, 800), (360, 740)], ids=["wide", "narrow"])
+def test_document_does_not_scroll(size, opened):
+    """The app scrolls within itself, also where labels for screen readers stand far below."""
+    page = opened("t-handle", viewport=dict(zip(("width", "height"), size, strict=True)))
+    page.page.evaluate(f"{VIEWER}.shadowRoot.querySelectorAll('details').forEach(one => one.open = true)")
+    page.drawn()
+    page.page.evaluate("window.scrollTo(0, 1e5)")
+    assert page.page.evaluate("[scrollY, document.documentElement.scrollHeight]") == [0, size[1]]
+
+
 def test_stroboscopic_picture_has_a_warning(opened):
     """At 60 frames per second, 100 turns per second are visible at up to a tenth of the true speed."""
     page = opened("gyroscope")

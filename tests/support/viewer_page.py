@@ -96,6 +96,7 @@ class ViewerPage:
 
     def compare(self, followed, tolerance=1e-12):
         """Compare the page with a motion at output times, relative to the size of each quantity."""
+        self.until("!model.solving.value")
         times, expected = followed.outputs()
         for k, time in enumerate(times):
             self.seek(time)

@@ -1,7 +1,7 @@
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { render } from "preact";
 import { Problem, State } from "./core/core.ts";
-import { loadCore } from "./core/wasm.ts";
+import { loadCore } from "./core/load.ts";
 import { type PageDocument, parsed, type ViewState } from "./document.ts";
 import { Model, words } from "./model/model.ts";
 import { paletteOf, variables } from "./model/theme.ts";
@@ -124,7 +124,7 @@ export class PolhodeViewer extends HTMLElement {
     const given = this.given ?? (await this.child()) ?? (await this.source());
     this.given ??= given;
     if (given) await model.show(given);
-    if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
+    if (!given?.scene && !given?.recorded) await openPreset(model, PRESETS[0]!);
     else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
       model.look({ playing: mayAutoplay() });
   }
@@ -210,7 +210,8 @@ export class PolhodeViewer extends HTMLElement {
     const about = model.about.value;
     const row = model.row.value;
     const data = this.dataset;
-    data["state"] = model.problem.value === null ? "ready" : "problem";
+    const settled = model.problem.value === null ? "ready" : "problem";
+    data["state"] = model.solving.value ? "solving" : settled;
     data["method"] = about?.method ?? "";
     data["regime"] = regimeOf(about);
     const of = (first: number, count: number) =>

@@ -11,9 +11,10 @@ from polhode._viewer.document import Document, title_of
 
 _BUNDLE = Path(__file__).with_name("viewer.js")
 
-# No connections in or out. The core is WebAssembly, which the policy must allow.
+# No connections in or out. The core is WebAssembly, which the policy must allow; the viewer solves scenes in a worker,
+# whose script it holds itself.
 _INLINE_POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'unsafe-inline'; "
+    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval'; worker-src blob:; style-src 'unsafe-inline'; "
     "img-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"
 )
 

@@ -25,7 +25,7 @@ _HOST = "127.0.0.1"
 _HEADERS = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": (
-        "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; "
+        "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src blob:; connect-src 'self'; "
         "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; base-uri 'none'; "
         "form-action 'none'; frame-ancestors 'none'"
     ),

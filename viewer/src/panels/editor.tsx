@@ -9,7 +9,7 @@ export function Editor({ model }: { model: Model }) {
   const { draft } = model;
   const scene = draft.value ?? model.scene.value;
   if (scene === null) return <p class="note">This recorded motion has no scene to edit.</p>;
-  const apply = (): void => model.open(scene);
+  const apply = (): void => void model.open(scene);
   const copy = async (): Promise<void> => {
     area.current?.select();
     // Where the clipboard is not accessible, the selected text can be copied by hand.

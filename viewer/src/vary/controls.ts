@@ -114,7 +114,7 @@ export class Controls {
     if (this.frame !== 0) return;
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
-      this.model.change(this.tables());
+      void this.model.change(this.tables());
     });
   }
 

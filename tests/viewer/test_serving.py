@@ -13,7 +13,7 @@ def served():
     """The address of a server for the T-handle."""
     command = [POLHODE, "view", EXAMPLES / "t-handle.toml", "--no-browser"]
     with processes.start(command, stderr=None) as process:
-        yield re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline())[0]
+        yield re.search(r"http://127\.0\.0\.1:\d+/[\w-]+/", process.stdout.readline())[0]
 
 
 def test_served_page(served, pages, follow):

@@ -23,8 +23,8 @@ const PAPER: Palette = { ...LIGHT, background: "#ffffff" };
  * `<polhode-viewer>`: a motion, its read-outs and its controls. It shows the document in its property `document`, in a
  * child `<script type="application/json">` or at the address in `src`; without one, the first preset.
  *
- * Attributes: `theme` is auto, light or dark; `compact` leaves out panels where space is small; `bare` draws nothing
- * but what `capture` returns. It dispatches `connected` and `disconnected`: notebooks remove cells that are scrolled
+ * Attributes: `theme` is auto, light or dark; `compact` leaves out panels where space is small; `titled` gives the
+ * document the title of the scene; `bare` draws nothing but what `capture` returns. It dispatches `connected` and `disconnected`: notebooks remove cells that are scrolled
  * away, and restore them. The attributes `data-…` have the state that is shown, with all digits.
  */
 export class PolhodeViewer extends HTMLElement {
@@ -201,6 +201,10 @@ export class PolhodeViewer extends HTMLElement {
         this.colours.textContent = `:host { ${set.join(" ")} }`;
       }),
       effect(() => this.publish(model)),
+      effect(() => {
+        const title = model.about.value?.title ?? null;
+        if (title !== null && this.hasAttribute("titled")) this.ownerDocument.title = title;
+      }),
       bindKeys(this, model),
       commitOnEnter(this),
     ];

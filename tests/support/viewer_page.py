@@ -124,7 +124,8 @@ class ViewerPage:
         return self.page.evaluate(f"async () => (await {VIEWER}.ready).scene.value")
 
     def drawn(self):
-        """Wait for two frames, after which changes are on the screen."""
+        """Wait for two frames, after which changes are on the screen, and for the paths."""
         self.page.evaluate(
             "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
         )
+        self.until(f"{VIEWER}.shadowRoot.querySelector('.stage')?.dataset.complete !== 'false'")

@@ -106,4 +106,3 @@ def test_page_without_workers_solves_its_scenes_itself(how, new_page, opened, fo
     assert not page.page.evaluate(f"async () => (await {VIEWER}.ready).solver.available")
     ask(page, "[body")
     page.until("model.problem.value !== null")
-

@@ -1,5 +1,6 @@
 import { batch, computed, signal } from "@preact/signals";
-import { type About, type Files, Problem, sizeAt, State } from "../core/core.ts";
+import { type About, type Files, Problem, State } from "../core/core.ts";
+import { defaultSpeed } from "./speed.ts";
 import { Solver } from "../core/solver.ts";
 import type { Core, Motion } from "../core/wasm.ts";
 import type { CameraName, GivenValue, PageDocument, Shown, ViewState } from "../document.ts";
@@ -58,6 +59,8 @@ export class Model {
   readonly caption = signal<string | null>(null);
   /** Number of requests to fit the picture into view. */
   readonly fitted = signal(0);
+  /** The last request to turn the camera: steps across and down, and the factor of nearness. */
+  readonly turned = signal<[across: number, down: number, closer: number] | null>(null);
 
   readonly about = computed<About | null>(() => this.motion.value?.about ?? null);
   /** The state at the time shown, a row of `State`. */
@@ -289,7 +292,7 @@ export class Model {
     this.base = scene;
     this.opened.value = this.about.value;
     this.time.value = time;
-    this.speed.value = defaultSpeed(this.motion.value);
+    this.speed.value = this.motion.value ? defaultSpeed(this.motion.value) : 1;
   }
 
   private become(motion: Motion, scene: string | null): void {
@@ -307,32 +310,12 @@ export class Model {
 /** Instead of the motion of a scene that was given up for a newer one. */
 const GIVEN_UP = Symbol();
 
-/** The state at the start of a motion. */
-export function firstRow(motion: Motion): Float64Array {
-  return motion.states([motion.about.start.time]);
-}
-
 /** The first and last time at which a motion is known. */
 export function span(about: About): [number, number] {
   const start = about.start.time;
   if (!about.exact) return [start, start + about.duration];
   if (about.horizon === null) return [-Number.MAX_VALUE, Number.MAX_VALUE];
   return [start - about.horizon, start + about.horizon];
-}
-
-/**
- * The default speed, 1, 2 or 5 times a power of ten: about one turn in three seconds, up to three times as fast for a
- * body that takes long to flip.
- */
-function defaultSpeed(motion: Motion | null): number {
-  const row = motion && firstRow(motion);
-  if (!motion || !row) return 1;
-  const rate = sizeAt(row, State.omegaSpace);
-  const calm = rate > 0 ? (2 * Math.PI) / rate / 3 : motion.about.duration / 20;
-  const wanted = Math.min(Math.max((motion.about.free?.flip_time ?? 0) / 6, calm), 3 * calm);
-  const power = 10 ** Math.floor(Math.log10(wanted));
-  const first = wanted / power;
-  return (first < 1.5 ? 1 : first < 3.5 ? 2 : first < 7.5 ? 5 : 10) * power;
 }
 
 function floats(bytes: Uint8Array): Float64Array {

@@ -1,7 +1,8 @@
 import { batch, computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { type About, sizeAt, State, type Triple } from "../core/core.ts";
 import { rateUnit, timeUnit } from "../format/units.ts";
-import { firstRow, type Model } from "../model/model.ts";
+import type { Model } from "../model/model.ts";
+import { firstRow } from "../model/speed.ts";
 import { type BodyChoice, bodyOf, bodyTable } from "./body.ts";
 import { HOLDING, type LawForm, type LawsChoice, WEIGHT, lawsFor, lawTables, noLaws } from "./laws.ts";
 import { type StartChoice, startOf, startTable } from "./start.ts";

@@ -12,10 +12,12 @@ THEMES = ("light", "dark")
 CONTRAST = """
     const channels = (colour) => {
         const numbers = colour.match(/[-\\d.e]+/g).map(Number);
-        return colour.startsWith("color(") ? numbers : [...numbers.slice(0, 3).map((x) => x / 255), numbers[3] ?? 1];
+        if (colour.startsWith("color(")) return numbers;
+        return [...numbers.slice(0, 3).map((x) => x / 255), numbers[3] ?? 1];
     };
     const luminance = (colour) => {
-        const [r, g, b] = channels(colour).map((x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4));
+        const linear = (x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+        const [r, g, b] = channels(colour).map(linear);
         return 0.2126 * r + 0.7152 * g + 0.0722 * b;
     };
     const contrast = (one, other) => {
@@ -41,12 +43,14 @@ TEXTS = f"""(least) => {{
     for (const element of root.querySelectorAll("*")) {{
         const written = [...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim());
         if (!(written || element.matches("input[type=number]")) || !element.checkVisibility()) continue;
-        if (element.closest("style, .hidden, :disabled, option") || getComputedStyle(element).opacity === "0") continue;
+        if (element.closest("style, .hidden, :disabled, option")) continue;
+        if (getComputedStyle(element).opacity === "0") continue;
         const [text, on] = [getComputedStyle(element).color, ground(element)];
         // The editor's own text is transparent: a highlighted copy lies over it.
         if (!opaque(text)) continue;
         count += 1;
-        if (contrast(text, on) < least) poor.push([element.textContent.slice(0, 30), text, on, contrast(text, on)]);
+        const found = contrast(text, on);
+        if (found < least) poor.push([element.textContent.slice(0, 30), text, on, found]);
     }}
     return [count, poor];
 }}"""

@@ -143,6 +143,10 @@ def test_phone_needs_no_sideways_scrolling(shown, opened):
             .map((control) => control.id)"""
     )
     assert outside == []
+    if shown == "t-handle":
+        # Time and what plays are on one line, the rest on a second one.
+        low, high = (page.page.locator(f"#{name}").bounding_box()["y"] for name in ("faster", "restart"))
+        assert low == pytest.approx(high, abs=1)
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (360, 740)], ids=["wide", "narrow"])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from polhode._viewer import document as _document
+from viewer_page import VIEWER
 
 
 def test_page_opens_paused_at_the_start(opened, follow):
@@ -153,9 +154,7 @@ def test_default_speed_shows_what_is_slow(name, opened, follow):
     files = {} if followed.mesh is None else {"files": _document.of_scene(followed.scene)["files"]}
     page = opened({"format": 1, "scene": followed.text, **files})
     slow, least, most = SLOW[name]
-    speed = page.page.evaluate(
-        "async () => (await document.querySelector('polhode-viewer').ready).speed.value"
-    )
+    speed = page.page.evaluate(f"async () => (await {VIEWER}.ready).speed.value")
     assert least < slow / speed < most
 
 

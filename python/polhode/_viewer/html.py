@@ -13,8 +13,8 @@ from polhode._viewer.document import Document, title_of
 
 _BUNDLE = Path(__file__).with_name("viewer.js")
 
-# No connections in or out, and no script but the viewer. Its core is WebAssembly, which the policy must allow; it solves
-# scenes in a worker, whose script it holds itself.
+# No connections in or out, and no script but the viewer. Its core is WebAssembly, which the policy must
+# allow; it solves scenes in a worker, whose script it holds itself.
 _INLINE_POLICY = (
     "default-src 'none'; script-src 'sha256-{digest}' 'wasm-unsafe-eval'; worker-src blob:; "
     "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"

@@ -110,7 +110,7 @@ function Speed({ model }: { model: Model }) {
         id="speed"
         label={`Speed, ${unit ? label : "seconds of motion per second"}`}
         shown={shown}
-        width={`${Math.max(3, shown.length) + 1}ch`}
+        width={`${Math.max(3, shown.length) + 0.5}ch`}
         onNumber={(number) => setSpeed(model, number * (unit?.size ?? 1))}
       />
       <span class="unit">{label}</span>

@@ -28,7 +28,7 @@ def test_page_answers_while_a_scene_is_solved(opened):
     ask(page, SLOW)
     assert page.viewer.get_attribute("data-state") == "solving"
     assert "old" in page.page.locator(".seen").get_attribute("class").split()
-    note = page.page.get_by_text("this picture is the old one")
+    note = page.page.get_by_text("This picture is old")
     assert note.is_visible()
     page.seek(2.0)
     assert page.data("time") == 2.0

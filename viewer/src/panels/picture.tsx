@@ -39,7 +39,7 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
 function Solving({ model }: { model: Model }) {
   return (
     <p class="solving" id="solving" role="status">
-      {model.solving.value && "Computing the new motion; this picture is the old one."}
+      {model.solving.value && "Computing… This picture is old."}
     </p>
   );
 }

@@ -159,6 +159,16 @@ def test_document_does_not_scroll(size, opened):
     assert page.page.evaluate("[scrollY, document.documentElement.scrollHeight]") == [0, size[1]]
 
 
+def test_styles_of_the_playback_bar_stay_there(opened):
+    """Lines of formulas have the same class as those of the bar, and no space between a formula and its value."""
+    page = opened({"format": 1, "page": "algebra", "lines": "a = e1\nb = 2 a"})
+    style = page.page.locator("li.line").first.evaluate(
+        "line => { const { rowGap, alignItems, flexWrap } = getComputedStyle(line);"
+        " return [rowGap, alignItems, flexWrap]; }"
+    )
+    assert style == ["normal", "normal", "nowrap"]
+
+
 def test_stroboscopic_picture_has_a_warning(opened):
     """At 60 frames per second, 100 turns per second are visible at up to a tenth of the true speed."""
     page = opened("gyroscope")

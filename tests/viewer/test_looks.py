@@ -160,7 +160,7 @@ def test_document_does_not_scroll(size, opened):
 
 
 def test_styles_of_the_playback_bar_stay_there(opened):
-    """Lines of formulas have the same class as those of the bar, and no space between a formula and its value."""
+    """Lines of formulas have the same class as its lines, and no space between a formula and its value."""
     page = opened({"format": 1, "page": "algebra", "lines": "a = e1\nb = 2 a"})
     style = page.page.locator("li.line").first.evaluate(
         "line => { const { rowGap, alignItems, flexWrap } = getComputedStyle(line);"

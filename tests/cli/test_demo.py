@@ -28,7 +28,7 @@ def test_the_demo_writes_its_page_and_figures(bundle, tmp_path, capsys):
     for name in FIGURES:
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     page = (tmp_path / "t-handle.html").read_text()
-    assert "<polhode-viewer>" in page
+    assert "<polhode-viewer titled>" in page
     assert "<title>T-handle in free flight" in page
     printed = capsys.readouterr().out
     assert printed.startswith("T-handle in free flight\n\nBody\n")

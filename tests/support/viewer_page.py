@@ -96,6 +96,7 @@ class ViewerPage:
 
     def compare(self, followed, tolerance=1e-12):
         """Compare the page with a motion at output times, relative to the size of each quantity."""
+        self.until("!model.solving.value")
         times, expected = followed.outputs()
         for k, time in enumerate(times):
             self.seek(time)
@@ -123,7 +124,8 @@ class ViewerPage:
         return self.page.evaluate(f"async () => (await {VIEWER}.ready).scene.value")
 
     def drawn(self):
-        """Wait for two frames, after which changes are on the screen."""
+        """Wait for two frames, after which changes are on the screen, and for the paths."""
         self.page.evaluate(
             "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
         )
+        self.until(f"{VIEWER}.shadowRoot.querySelector('.stage')?.dataset.complete !== 'false'")

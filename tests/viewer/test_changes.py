@@ -83,6 +83,18 @@ def test_typed_numbers_are_in_the_scene(box, tmp_path):
     assert body.inertia.principal_moments == pytest.approx(expected.inertia.principal_moments, rel=1e-12)
 
 
+def test_angles_end_where_their_range_does(box):
+    """An angle off an axis beyond 90 degrees is one from another axis."""
+    for name, entry, taken in (("off", "500", "90"), ("off", "-1", "0"), ("tilt", "500", "180")):
+        type_in(box, name, entry)
+        box.drawn()
+        assert box.page.locator(f"#{name}-number").input_value() == taken
+    # An azimuth is one of many that differ by turns.
+    type_in(box, "turn", "500")
+    box.drawn()
+    assert box.page.locator("#turn-number").input_value() == "500"
+
+
 def test_changes_keep_the_time(box):
     box.seek(1.5)
     box.page.locator("#rate").press("ArrowRight")
@@ -104,6 +116,8 @@ def test_local_files_can_be_opened(box, follow):
     followed = follow("t-handle")
     box.page.locator("#file").set_input_files([followed.path, followed.mesh])
     box.page.get_by_role("heading", name="T-handle in free flight").wait_for()
+    # The name of the window follows.
+    box.until("document.title === 'T-handle in free flight'")
     box.compare(followed)
 
 

@@ -1,5 +1,7 @@
 """Self-contained pages: no external content, escaped scripts, and how the command writes them."""
 
+import base64
+import hashlib
 import json
 import re
 from html.parser import HTMLParser
@@ -73,6 +75,16 @@ def test_a_page_loads_nothing():
     assert addresses == ["data:,"]
     # The policy precedes what it applies to.
     assert text.index("Content-Security-Policy") < text.index("<style")
+
+
+@pytest.mark.usefixtures("bundle")
+def test_the_policy_allows_no_script_but_the_viewer():
+    """By its hash: a script in the title or the data of a page cannot run."""
+    text = _html.page({"format": 1, "scene": NASTY, "name": NASTY})
+    scripts = re.search(r"script-src ([^;]*)", text)[1].split()
+    script = re.search(r'<script type="module">(.*?)</script>', text, re.DOTALL)[1]
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert scripts == [f"'sha256-{digest}'", "'wasm-unsafe-eval'"]
 
 
 def test_a_bundle_that_cannot_be_embedded_is_refused(bundle):

@@ -143,6 +143,30 @@ def test_phone_needs_no_sideways_scrolling(shown, opened):
             .map((control) => control.id)"""
     )
     assert outside == []
+    if shown == "t-handle":
+        # Time and what plays are on one line, the rest on a second one.
+        low, high = (page.page.locator(f"#{name}").bounding_box()["y"] for name in ("faster", "restart"))
+        assert low == pytest.approx(high, abs=1)
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (360, 740)], ids=["wide", "narrow"])
+def test_document_does_not_scroll(size, opened):
+    """The app scrolls within itself, also where labels for screen readers stand far below."""
+    page = opened("t-handle", viewport=dict(zip(("width", "height"), size, strict=True)))
+    page.page.evaluate(f"{VIEWER}.shadowRoot.querySelectorAll('details').forEach(one => one.open = true)")
+    page.drawn()
+    page.page.evaluate("window.scrollTo(0, 1e5)")
+    assert page.page.evaluate("[scrollY, document.documentElement.scrollHeight]") == [0, size[1]]
+
+
+def test_styles_of_the_playback_bar_stay_there(opened):
+    """Lines of formulas have the same class as its lines, and no space between a formula and its value."""
+    page = opened({"format": 1, "page": "algebra", "lines": "a = e1\nb = 2 a"})
+    style = page.page.locator("li.line").first.evaluate(
+        "line => { const { rowGap, alignItems, flexWrap } = getComputedStyle(line);"
+        " return [rowGap, alignItems, flexWrap]; }"
+    )
+    assert style == ["normal", "normal", "nowrap"]
 
 
 def test_stroboscopic_picture_has_a_warning(opened):

@@ -29,6 +29,12 @@ def test_scene_error_has_its_place(opened, tmp_path):
     assert "^^^^" in expected
     assert expected in message_of(page)
     assert page.viewer.get_attribute("data-state") == "problem"
+    # Once, also beside the editor, which names it as its description.
+    page.page.locator("#panel-text").evaluate("panel => panel.open = true")
+    area = page.page.get_by_label("Scene, in TOML")
+    assert page.page.get_by_text("wrong.toml:6:1: error").count() == 1
+    assert area.get_attribute("aria-invalid") == "true"
+    assert area.get_attribute("aria-describedby") == "problem"
 
 
 def test_wrong_file_keeps_the_motion_and_right_file_ends_the_message(opened, tmp_path):

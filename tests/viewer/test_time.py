@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 
+from polhode._viewer import document as _document
+from viewer_page import VIEWER
+
 
 def test_page_opens_paused_at_the_start(opened, follow):
     page = opened("t-handle")
@@ -94,6 +97,85 @@ def test_space_plays_and_arrows_step(opened):
     assert page.data("time") == 0
 
 
+def test_arrows_step_wherever_the_focus_is(opened):
+    """Also on the picture, which other keys turn."""
+    page = opened("t-handle")
+    canvas = page.page.locator(".stage canvas").first
+    canvas.focus()
+    before = view(page)
+    page.page.keyboard.press("ArrowRight")
+    assert page.data("time") > 0
+    page.page.keyboard.press("ArrowLeft")
+    assert page.data("time") == pytest.approx(0, abs=1e-12)
+    page.seek(3.0)
+    page.page.keyboard.press("Home")
+    assert page.data("time") == 0
+    np.testing.assert_array_equal(view(page), before)
+
+
+@pytest.mark.parametrize("focus", ["#play", ".stage canvas"])
+def test_keys_turn_the_picture(focus, opened):
+    page = opened("t-handle")
+    page.page.locator(focus).first.focus()
+    for one, other in ("jl", "ik", "+-"):
+        before = view(page)
+        page.page.keyboard.press(one)
+        page.drawn()
+        turned = view(page)
+        assert np.abs(turned - before).max() > 1e-2
+        page.page.keyboard.press(other)
+        page.drawn()
+        np.testing.assert_allclose(view(page), before, rtol=0, atol=1e-9)
+    assert page.data("time") == 0
+
+
+def view(page):
+    """Return the place of the camera."""
+    return np.array(
+        page.page.locator(".stage canvas").first.get_attribute("data-camera").split(), dtype=float
+    )
+
+
+# The time scale to be seen, from the scene or the summary of its motion, and in how many seconds it plays.
+SLOW = {
+    # A precession about L of 304 days, of 400.
+    "earth": (304.4 * 86_400, 4, 16),
+    # A precession of 7 s while the wheel makes 100 turns a second.
+    "gyroscope": (13.0, 5, 60),
+    "t-handle": (12.0, 5, 90),
+    "gravity-gradient": (86_400.0, 10, 60),
+    "toutatis": (60 * 86_400.0, 10, 90),
+}
+
+
+@pytest.mark.parametrize("name", SLOW)
+def test_default_speed_shows_what_is_slow(name, opened, follow):
+    followed = follow(name)
+    files = {} if followed.mesh is None else {"files": _document.of_scene(followed.scene)["files"]}
+    page = opened({"format": 1, "scene": followed.text, **files})
+    slow, least, most = SLOW[name]
+    speed = page.page.evaluate(f"async () => (await {VIEWER}.ready).speed.value")
+    assert least < slow / speed < most
+
+
+def test_speed_can_be_typed(opened):
+    page = opened("t-handle")
+    field = page.page.get_by_label("Speed, seconds of motion per second")
+    for entry, speed, shown, unit in (
+        ("0.37", 0.37, "0.37", "×"),
+        ("-2", -2, "-2", "×"),
+        ("1e300", 1e15, "31700000", "yr/s"),
+    ):
+        field.fill(entry)
+        field.press("Enter")
+        page.until("model.speed.value === speed", speed=speed)
+        page.drawn()
+        assert page.page.locator("#speed").input_value() == shown
+        assert page.page.locator(".speed .unit").inner_text() == unit
+    page.page.get_by_role("button", name="Slower").click()
+    page.until("model.speed.value === 5e14")
+
+
 @pytest.mark.slow
 def test_playback_has_the_shown_speed(opened, new_page, tmp_path):
     opened("t-handle")
@@ -102,7 +184,7 @@ def test_playback_has_the_shown_speed(opened, new_page, tmp_path):
     page.page.clock.install()
     page.open(next(tmp_path.glob("*.html")))
     page.page.get_by_role("button", name="Faster").click()
-    speed = float(page.page.locator("#speed").inner_text().rstrip("×"))
+    speed = float(page.page.locator("#speed").input_value())
     page.page.get_by_role("button", name="Play").click()
     page.until("model.time.value > 0")
     page.page.clock.pause_at(page.page.evaluate("Date.now() + 1000"))

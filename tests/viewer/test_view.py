@@ -35,11 +35,12 @@ def serving(source):
         thread.join()
 
 
-def answer(server, path, method="GET", host=None):
-    """Status, headers and content of an answer of the server."""
+def answer(server, path, method="GET", host=None, folder=None):
+    """Status, headers and content of an answer of the server; paths are within its folder."""
     connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=10)
     hosts = [f"127.0.0.1:{server.port}"] if host is None else host
-    connection.putrequest(method, path, skip_host=True)
+    within = server.folder.rstrip("/") if folder is None else folder
+    connection.putrequest(method, within + path, skip_host=True)
     for name in hosts:
         connection.putheader("Host", name)
     connection.endheaders()
@@ -53,7 +54,7 @@ def test_page_document_and_bundle_are_served(served):
     status, headers, content = answer(served, "/")
     assert status == 200
     assert headers["Content-Type"] == "text/html; charset=utf-8"
-    assert b'<polhode-viewer src="/document.json">' in content
+    assert b'<polhode-viewer titled src="document.json">' in content
     status, headers, content = answer(served, "/viewer.js")
     assert (status, headers["Content-Type"]) == (200, "text/javascript; charset=utf-8")
     assert content == SCRIPT.encode()
@@ -78,6 +79,21 @@ def test_nothing_else_is_served(path, served):
     status, _, content = answer(served, path)
     assert status == 404
     assert b"moments" not in content
+
+
+def test_addresses_begin_with_a_random_token(served, scene):
+    """At least 128 bits, new for each server: 22 characters of base64."""
+    with _view.Server(_view.Source(scene), b"") as other:
+        assert other.folder != served.folder
+    token = served.folder.strip("/")
+    assert len(token) >= 22
+    assert served.url.endswith(f":{served.port}/{token}/")
+    near = token[:-1] + ("a" if token[-1] != "a" else "b")
+    for folder in ("", f"/{near}", f"/{token[:-1]}", f"/{token.swapcase()}", "/%c3%a9"):
+        for path in ("/", "/viewer.js", "/document.json"):
+            status, _, content = answer(served, path, folder=folder)
+            assert (status, content) == (404, b"not found\n")
+    assert answer(served, "", folder=f"/{token}")[0] == 404
 
 
 def test_only_this_machine_is_served(served):
@@ -256,7 +272,7 @@ def test_the_browser_is_opened_at_the_page(scene, bundle, monkeypatch, capsys):
 def test_ctrl_c_ends_it(scene):
     with processes.start([POLHODE, "view", scene, "--no-browser"]) as process:
         url = process.stdout.readline().split()[-1]
-        port = int(url.removeprefix("http://127.0.0.1:").removesuffix("/"))
+        port = int(url.removeprefix("http://127.0.0.1:").partition("/")[0])
         with socket.create_connection(("127.0.0.1", port), timeout=10):
             process.send_signal(signal.SIGINT)
             _, errors = process.communicate()

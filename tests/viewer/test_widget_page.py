@@ -133,9 +133,27 @@ def test_changes_in_the_page_reach_python(shown):
     notebook.agree()
     assert (viewer.time, viewer.camera, viewer.shown["polhode"]) == (1.5, "along e3", not before)
     notebook.ask("(model, change) => model.change(change)", "[body]\nmoments = [1.0, 2.0, 2.5]")
+    # Also in a notebook the scene is solved in a worker.
+    assert notebook.ask("model => model.solver.proved && model.solver.available")
     notebook.agree()
     assert viewer.run().inertia.principal_moments.tolist() == [1, 2, 2.5]
     assert viewer.time == 1.5
+
+
+def test_a_scene_set_by_python_is_not_replaced_while_it_is_solved(shown):
+    """The page reports nothing until the scene that Python has set is solved."""
+    notebook = shown(INERTIA, START, duration=60)
+    viewer = notebook.viewer
+    slow = viewer.scene + '[torque]\nquadratic_damping = 0.1\n[method]\nname = "rk4"\nstep = "200 us"\n'
+    viewer.scene = slow
+    notebook.pass_on()
+    notebook.page.until("model.solving.value")
+    notebook.ask("model => model.toggle('polhode')")
+    notebook.quiet()
+    assert viewer.scene == slow
+    notebook.page.until("!model.solving.value")
+    notebook.agree()
+    assert viewer.scene == slow
 
 
 def test_the_state_is_the_same_before_and_after_the_page_answers(shown):

@@ -1,7 +1,7 @@
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { render } from "preact";
 import { Problem, State } from "./core/core.ts";
-import { loadCore } from "./core/wasm.ts";
+import { loadCore } from "./core/load.ts";
 import { type PageDocument, parsed, type ViewState } from "./document.ts";
 import { Model, words } from "./model/model.ts";
 import { paletteOf, variables } from "./model/theme.ts";
@@ -23,8 +23,8 @@ const PAPER: Palette = { ...LIGHT, background: "#ffffff" };
  * `<polhode-viewer>`: a motion, its read-outs and its controls. It shows the document in its property `document`, in a
  * child `<script type="application/json">` or at the address in `src`; without one, the first preset.
  *
- * Attributes: `theme` is auto, light or dark; `compact` leaves out panels where space is small; `bare` draws nothing
- * but what `capture` returns. It dispatches `connected` and `disconnected`: notebooks remove cells that are scrolled
+ * Attributes: `theme` is auto, light or dark; `compact` leaves out panels where space is small; `titled` gives the
+ * document the title of the scene; `bare` draws nothing but what `capture` returns. It dispatches `connected` and `disconnected`: notebooks remove cells that are scrolled
  * away, and restore them. The attributes `data-…` have the state that is shown, with all digits.
  */
 export class PolhodeViewer extends HTMLElement {
@@ -124,7 +124,7 @@ export class PolhodeViewer extends HTMLElement {
     const given = this.given ?? (await this.child()) ?? (await this.source());
     this.given ??= given;
     if (given) await model.show(given);
-    if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
+    if (!given?.scene && !given?.recorded) await openPreset(model, PRESETS[0]!);
     else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
       model.look({ playing: mayAutoplay() });
   }
@@ -201,6 +201,10 @@ export class PolhodeViewer extends HTMLElement {
         this.colours.textContent = `:host { ${set.join(" ")} }`;
       }),
       effect(() => this.publish(model)),
+      effect(() => {
+        const title = model.about.value?.title ?? null;
+        if (title !== null && this.hasAttribute("titled")) this.ownerDocument.title = title;
+      }),
       bindKeys(this, model),
       commitOnEnter(this),
     ];
@@ -210,7 +214,8 @@ export class PolhodeViewer extends HTMLElement {
     const about = model.about.value;
     const row = model.row.value;
     const data = this.dataset;
-    data["state"] = model.problem.value === null ? "ready" : "problem";
+    const settled = model.problem.value === null ? "ready" : "problem";
+    data["state"] = model.solving.value ? "solving" : settled;
     data["method"] = about?.method ?? "";
     data["regime"] = regimeOf(about);
     const of = (first: number, count: number) =>

@@ -3,7 +3,7 @@ import { render } from "./widget.ts";
 
 define();
 
-export { loadCore } from "./core/wasm.ts";
+export { loadCore } from "./core/load.ts";
 export { PolhodeViewer } from "./element.tsx";
 
 /** For anywidget. */

@@ -47,3 +47,38 @@ export const DARK: Palette = {
   body: "#5a6678",
   weight: "#a8b2c1",
 };
+
+/** Contrast of text with what it stands on, at least: WCAG 2.2, level AA. */
+const CONTRAST = 4.5;
+/** Steps from a colour to that of text. */
+const MIXES = 50;
+
+/** A colour for text: the nearest one, towards that of other text, with enough contrast on the page and its panels. */
+export function readable(colour: string, palette: Palette): string {
+  const [from, to] = [channels(colour), channels(palette.text)];
+  const grounds = [palette.background, palette.surface].map((ground) => luminance(channels(ground)));
+  for (let k = 0; k < MIXES; k++) {
+    const mixed = from.map((channel, c) => Math.round(channel + ((to[c]! - channel) * k) / MIXES));
+    if (grounds.every((ground) => contrast(luminance(mixed), ground) >= CONTRAST)) return `rgb(${mixed})`;
+  }
+  return palette.text;
+}
+
+/** Contrast of two relative luminances: from 1 to 21. */
+function contrast(a: number, b: number): number {
+  return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+}
+
+/** Red, green and blue of `#rrggbb`, from 0 to 255. */
+function channels(colour: string): number[] {
+  return [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
+}
+
+/** Relative luminance of sRGB, as WCAG defines it. */
+function luminance(rgb: readonly number[]): number {
+  const [r, g, b] = rgb.map((channel) => {
+    const part = channel / 255;
+    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * r! + 0.7152 * g! + 0.0722 * b!;
+}

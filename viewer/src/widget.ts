@@ -88,6 +88,8 @@ function connected(viewer: { document: PageDocument | null }, model: Model, trai
   const send = () => {
     clearTimeout(timer);
     timer = undefined;
+    // Python may just have set the scene that is being solved: the old one must not replace it.
+    if (model.solving.peek()) return;
     sending = true;
     for (const [name, value] of Object.entries(reported(model))) traits.set(name, value);
     sending = false;
@@ -97,6 +99,7 @@ function connected(viewer: { document: PageDocument | null }, model: Model, trai
   let played = false;
   const stop = effect(() => {
     reported(model); // subscribes to its signals
+    void model.solving.value;
     const stopped = played && !model.playing.value;
     played = model.playing.value;
     if (stopped) send();
@@ -112,7 +115,11 @@ function connected(viewer: { document: PageDocument | null }, model: Model, trai
       viewer.document = present(traits);
       return;
     }
-    if (names.includes("scene")) open(model, traits.get("scene") as string | null);
+    const scene = names.includes("scene") ? (traits.get("scene") as string | null) : null;
+    if (scene !== null && scene !== model.scene.value) void model.replace(scene).then(() => look(names));
+    else look(names);
+  };
+  const look = (names: readonly string[]) => {
     model.look(known(traits, names));
     sendSoon(); // values that were not accepted
   };
@@ -132,15 +139,6 @@ function connected(viewer: { document: PageDocument | null }, model: Model, trai
     changed.clear();
     for (const deafen of heard) deafen();
   };
-}
-
-/** Shows another scene with the same time and speed. */
-function open(model: Model, scene: string | null): void {
-  if (scene === null || scene === model.scene.value) return;
-  const { time, speed } = model;
-  const before = { speed: speed.value, time: time.value };
-  model.open(scene);
-  model.look(before);
 }
 
 /** The values that are sent to Python. */

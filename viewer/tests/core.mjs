@@ -14,7 +14,7 @@ const vite = await createServer({
   optimizeDeps: { noDiscovery: true, include: [] },
   server: { middlewareMode: true, hmr: false, ws: false, watch: null },
 });
-const { loadCore } = await vite.ssrLoadModule("/src/core/wasm.ts");
+const { loadCore } = await vite.ssrLoadModule("/src/core/load.ts");
 const { Problem } = await vite.ssrLoadModule("/src/core/core.ts");
 // The time budget of the core counts CPU time here, so that a loaded machine fails no test.
 performance.now = () => process.cpuUsage().user / 1000;

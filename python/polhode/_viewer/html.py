@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import html
 import json
 import re
@@ -11,10 +13,11 @@ from polhode._viewer.document import Document, title_of
 
 _BUNDLE = Path(__file__).with_name("viewer.js")
 
-# No connections in or out. The core is WebAssembly, which the policy must allow.
+# No connections in or out, and no script but the viewer. Its core is WebAssembly, which the policy must
+# allow; it solves scenes in a worker, whose script it holds itself.
 _INLINE_POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'unsafe-inline'; "
-    "img-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"
+    "default-src 'none'; script-src 'sha256-{digest}' 'wasm-unsafe-eval'; worker-src blob:; "
+    "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"
 )
 
 _PAGE = """\
@@ -56,22 +59,25 @@ def page(shown: Document, bare: bool = False) -> str:
     A bare one draws nothing by itself; it takes pictures. A FileNotFoundError if the viewer was not built.
     """
     data = json.dumps(shown, allow_nan=False).replace("<", "\\u003c")
+    script = "\n" + _inline(bundle_path().read_text(encoding="utf-8"))
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    policy = _INLINE_POLICY.format(digest=digest)
     return _PAGE.format(
-        policy=f'\n<meta http-equiv="Content-Security-Policy" content="{_INLINE_POLICY}">',
+        policy=f'\n<meta http-equiv="Content-Security-Policy" content="{policy}">',
         title=_title(title_of(shown)),
-        element=f"<polhode-viewer{' bare' * bare}>"
+        element=f"<polhode-viewer{' bare' if bare else ' titled'}>"
         f'<script type="application/json">{data}</script></polhode-viewer>',
-        script=f'<script type="module">\n{_inline(bundle_path().read_text(encoding="utf-8"))}</script>',
+        script=f'<script type="module">{script}</script>',
     )
 
 
 def served_page(title: str) -> str:
-    """Return a page that fetches the viewer and its document from its own server."""
+    """Return a page that fetches the viewer and its document from beside itself on its server."""
     return _PAGE.format(
         policy="",
         title=_title(title),
-        element='<polhode-viewer src="/document.json"></polhode-viewer>',
-        script='<script type="module" src="/viewer.js"></script>',
+        element='<polhode-viewer titled src="document.json"></polhode-viewer>',
+        script='<script type="module" src="viewer.js"></script>',
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import secrets
 import sys
 import threading
 import webbrowser
@@ -25,7 +26,7 @@ _HOST = "127.0.0.1"
 _HEADERS = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": (
-        "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; "
+        "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src blob:; connect-src 'self'; "
         "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; base-uri 'none'; "
         "form-action 'none'; frame-ancestors 'none'"
     ),
@@ -121,12 +122,16 @@ class Source:
 
 
 class Server(ThreadingHTTPServer):
-    """Server of one file for browsers on this machine; the file is read at each load of the page."""
+    """Server of one file for browsers on this machine; the file is read at each load of the page.
+
+    Its paths begin with a random token, which other users and programs of the machine do not know.
+    """
 
     daemon_threads = True
 
     def __init__(self, source: Source, script: bytes, port: int = 0) -> None:
         self.source, self.script = source, script
+        self.folder = f"/{secrets.token_urlsafe(16)}/"
         try:
             super().__init__((_HOST, port), _Handler)
         except OSError as error:
@@ -141,7 +146,7 @@ class Server(ThreadingHTTPServer):
     @property
     def url(self) -> str:
         """Address of the page."""
-        return f"http://{_HOST}:{self.port}/"
+        return f"http://{_HOST}:{self.port}{self.folder}"
 
     @property
     def hosts(self) -> set[str]:
@@ -179,12 +184,16 @@ class _Handler(BaseHTTPRequestHandler):
         if self.headers.get_all("Host", []) not in [[host] for host in self.server.hosts]:
             self._send(HTTPStatus.FORBIDDEN, "text/plain", b"not a host name of this server\n")
             return
-        match self.path:
-            case "/":
+        folder = self.server.folder
+        name = self.path[len(folder) :]
+        if not secrets.compare_digest(self.path[: len(folder)].encode(), folder.encode()):
+            name = "not found"
+        match name:
+            case "":
                 self._send(HTTPStatus.OK, "text/html", served_page(self.server.source.path.name).encode())
-            case "/viewer.js":
+            case "viewer.js":
                 self._send(HTTPStatus.OK, "text/javascript", self.server.script)
-            case "/document.json":
+            case "document.json":
                 self._document()
             case _:
                 self._send(HTTPStatus.NOT_FOUND, "text/plain", b"not found\n")

@@ -2,6 +2,7 @@ import type { ReadonlySignal } from "@preact/signals";
 import { Box3, Vector3 } from "three";
 import type { Triple } from "../core/core.ts";
 import type { Palette } from "../palette.ts";
+import { type Turn, TURNS } from "../stage/camera.ts";
 import type { Label } from "../stage/labels.ts";
 import { AXES } from "../stage/rotor.ts";
 import { Shapes } from "../stage/shapes.ts";
@@ -23,6 +24,15 @@ const SIDES = [
   [1, 0.6],
   [-1, 0.6],
 ] as const;
+
+/** Keys that turn the drawing while it has the focus; Home returns to the first view. */
+const KEYS: Readonly<Record<string, Turn>> = {
+  ...TURNS,
+  ArrowLeft: TURNS["j"]!,
+  ArrowRight: TURNS["l"]!,
+  ArrowUp: TURNS["i"]!,
+  ArrowDown: TURNS["k"]!,
+};
 
 /** The colours of items, in order. */
 export function colours(palette: Palette): string[] {
@@ -49,6 +59,7 @@ export class Drawing extends Viewport {
     super(host);
     this.handles = new Handles(host, () => this.scale.unit, move);
     this.viewpoint.go("oblique", AXES[2], true);
+    this.canvas.addEventListener("keydown", this.pressed);
     this.watch(() => this.build(items.value, palette.value));
   }
 
@@ -63,6 +74,15 @@ export class Drawing extends Viewport {
     this.build(this.items.peek(), this.palette.peek());
     this.viewpoint.go("oblique", AXES[2], this.calm.matches);
   }
+
+  private readonly pressed = (event: KeyboardEvent): void => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const turn = KEYS[event.key];
+    if (turn) this.viewpoint.turn(turn);
+    else if (event.key === "Home") this.home();
+    else return;
+    event.preventDefault();
+  };
 
   protected override show(): void {
     const { right, up } = this.directions();

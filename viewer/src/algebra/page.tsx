@@ -3,7 +3,7 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import { IconButton } from "../inputs/button.tsx";
 import { Choices } from "../inputs/fields.tsx";
 import { type Model, words } from "../model/model.ts";
-import type { Palette } from "../palette.ts";
+import { type Palette, readable } from "../palette.ts";
 import styles from "./algebra.css?inline";
 import { colours, Drawing } from "./drawing.ts";
 import { GivenValues } from "./given.tsx";
@@ -24,7 +24,7 @@ export function AlgebraPage({ model, palette }: { model: Model; palette: Readonl
     const given = model.values.value.map((value, k) => drawableOfGiven(value, written.length + k));
     return [...written, ...given];
   });
-  const tones = useComputed(() => colours(palette.value));
+  const tones = useComputed(() => colours(palette.value).map((tone) => readable(tone, palette.value)));
   const change = useMemo(
     () => (line: number, text: (old: string) => string) => {
       const all = model.lines.peek().split("\n");

@@ -10,6 +10,9 @@ export class Problem extends Error {}
 /** Files that scenes name, by their names in the scene. */
 export type Files = ReadonlyMap<string, Uint8Array>;
 
+/** Maximum number of bodies of an ensemble that are drawn. */
+export const BODIES = 1000;
+
 /** Numbers per row of states. */
 export const ROW = 24;
 

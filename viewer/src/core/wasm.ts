@@ -1,7 +1,6 @@
-import packed from "virtual:polhode-core";
-import { unpacked } from "../packed.ts";
 import {
   type About,
+  BODIES,
   type Files,
   type LawEntry,
   type Line,
@@ -39,24 +38,47 @@ interface Exports {
 /** Default limit on the time to solve a scene, s. */
 const BUDGET = 10;
 
-/** Loads the core from this bundle. */
-export async function loadCore(): Promise<Core> {
-  const imports = { page: { now: () => performance.now() / 1000 } };
-  const module = await WebAssembly.compile(await unpacked(packed));
-  const instance = await WebAssembly.instantiate(module, imports);
-  return new Core(instance.exports as unknown as Exports);
-}
+/** What the core needs from the page. */
+const IMPORTS = { page: { now: () => performance.now() / 1000 } };
+
+/** Bytes of a page of WebAssembly memory. */
+const PAGE = 65_536;
 
 type Given = string | Uint8Array | Float64Array | readonly number[];
 
 /** The core. What a call takes is put into rooms first; its reply is read afterwards. */
 export class Core {
-  /** The torque laws of the registry. */
-  readonly laws: readonly LawEntry[];
+  readonly exports: Exports;
+  private registry: readonly LawEntry[] | null = null;
 
-  constructor(readonly exports: Exports) {
-    this.call(exports.law_registry);
-    this.laws = this.json();
+  private constructor(
+    readonly module: WebAssembly.Module,
+    instance: WebAssembly.Instance,
+  ) {
+    this.exports = instance.exports as unknown as Exports;
+  }
+
+  /** A core with a memory of its own; with that of another one if `memory` is a copy of it. */
+  static async of(module: WebAssembly.Module, memory?: ArrayBuffer): Promise<Core> {
+    const core = new Core(module, await WebAssembly.instantiate(module, IMPORTS));
+    if (!memory) return core;
+    // A core at rest is its memory: between calls its stack is empty.
+    const own = core.exports.memory;
+    own.grow(Math.max(0, (memory.byteLength - own.buffer.byteLength) / PAGE));
+    new Uint8Array(own.buffer).set(new Uint8Array(memory));
+    return core;
+  }
+
+  /** A copy of the memory, with all motions in it. */
+  memory(): ArrayBuffer {
+    return this.exports.memory.buffer.slice(0);
+  }
+
+  /** The torque laws of the registry. */
+  get laws(): readonly LawEntry[] {
+    if (this.registry) return this.registry;
+    this.call(this.exports.law_registry);
+    return (this.registry = this.json<LawEntry[]>());
   }
 
   /** Solves a scene. A Problem if the scene is wrong or takes longer than `budget` seconds. */
@@ -177,9 +199,12 @@ export class Core {
 
 /** The motion of a scene, or a recorded one. */
 export class Motion {
+  /** Whether the bodies of its ensemble are still being computed elsewhere. */
+  awaitsBodies = false;
+
   constructor(
     private readonly core: Core,
-    private readonly handle: number,
+    readonly handle: number,
     readonly about: About,
   ) {}
 
@@ -214,8 +239,11 @@ export class Motion {
     return [...this.core.floats()] as Triple;
   }
 
-  /** The first bodies of an ensemble: rotors (n × 4) at a time, body axes to space axes; n at most `count`. */
-  bodies(time: number, count: number): Float64Array {
+  /**
+   * The first bodies of an ensemble: rotors (n × 4) at a time, body axes to space axes; n at most `count`. The first
+   * call computes them.
+   */
+  bodies(time: number, count = BODIES): Float64Array {
     this.core.call(() => this.core.exports.bodies(this.handle, time, count, BUDGET));
     return this.core.floats();
   }

@@ -2,7 +2,7 @@ import { useSignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { typed } from "../format/numbers.ts";
 import type { Unit } from "../format/units.ts";
-import { POSITIONS, positionOf, type Range, valueAt } from "./range.ts";
+import { accepted, POSITIONS, positionOf, type Range, valueAt } from "./range.ts";
 
 /** A number field. `shown` replaces whatever is entered that is not a number, or that `onNumber` does not accept. */
 export function NumberField(props: {
@@ -36,7 +36,10 @@ export function NumberField(props: {
   );
 }
 
-/** A slider with a number field in a unit. The field also accepts numbers beyond the range of the slider. */
+/**
+ * A slider with a number field in a unit. The field also accepts numbers beyond the range of the slider, unless that is
+ * `closed`: the nearest end is then taken.
+ */
 export function Slider(props: {
   id: string;
   label: string;
@@ -64,7 +67,7 @@ export function Slider(props: {
         id={`${id}-number`}
         label={`${label}${unit.label && `, ${unit.label}`}`}
         shown={shown}
-        onNumber={(number) => onChange(number * unit.size)}
+        onNumber={(number) => onChange(accepted(number * unit.size, range))}
       />
       <span class="unit">{unit.label}</span>
     </div>

@@ -3,17 +3,26 @@ import type { Unit } from "../format/units.ts";
 /** Number of slider positions, fine enough that each pixel has one. */
 export const POSITIONS = 1000;
 
-/** The range of a slider in SI units. A logarithmic range covers powers of ten; with `zero`, its left end is 0. */
+/**
+ * The range of a slider in SI units. A logarithmic range covers powers of ten; with `zero`, its left end is 0. There are
+ * no values beyond a closed range.
+ */
 export interface Range {
   min: number;
   max: number;
   scale: "linear" | "log";
   zero?: boolean;
+  closed?: boolean;
 }
 
 /** A logarithmic range from a fraction of a value to a multiple of it. */
 export function around(value: number, times = 10): Range {
   return { min: value / times, max: value * times, scale: "log" };
+}
+
+/** The nearest value of the range if it is closed; any value otherwise. */
+export function accepted(value: number, { min, max, zero, closed }: Range): number {
+  return closed ? Math.min(Math.max(value, zero ? 0 : min), max) : value;
 }
 
 export function positionOf(value: number, { min, max, scale, zero }: Range): number {

@@ -1,11 +1,10 @@
 import { batch, computed, signal } from "@preact/signals";
-import { type About, type Files, Problem, sizeAt, State } from "../core/core.ts";
+import { type About, type Files, Problem, State } from "../core/core.ts";
+import { defaultSpeed } from "./speed.ts";
+import { Solver } from "../core/solver.ts";
 import type { Core, Motion } from "../core/wasm.ts";
 import type { CameraName, GivenValue, PageDocument, Shown, ViewState } from "../document.ts";
 import { unpacked } from "../packed.ts";
-
-/** Time limit for solving a scene in the page, in s. */
-const BUDGET = 8;
 
 /** Default visibility. */
 export const SHOWN: Shown = {
@@ -42,6 +41,8 @@ export class Model {
   readonly draft = signal<string | null>(null);
   /** Errors of the scene, or of an opened file, with their places; the last motion stays. */
   readonly problem = signal<string | null>(null);
+  /** Whether a newer motion is being computed: what is shown is old. */
+  readonly solving = signal(false);
   readonly time = signal(0);
   readonly playing = signal(false);
   /** Seconds of motion per second. */
@@ -58,6 +59,8 @@ export class Model {
   readonly caption = signal<string | null>(null);
   /** Number of requests to fit the picture into view. */
   readonly fitted = signal(0);
+  /** The last request to turn the camera: steps across and down, and the factor of nearness. */
+  readonly turned = signal<[across: number, down: number, closer: number] | null>(null);
 
   readonly about = computed<About | null>(() => this.motion.value?.about ?? null);
   /** The state at the time shown, a row of `State`. */
@@ -70,8 +73,14 @@ export class Model {
   private base: string | null = null;
   /** Name and files of an invalid scene, for when it is corrected. */
   private pending: Opened | null = null;
+  private readonly solver: Solver;
+  /** Number of the newest scene to solve, and of the newest one to open. */
+  private asked = 0;
+  private opening = 0;
 
-  constructor(readonly core: Core) {}
+  constructor(readonly core: Core) {
+    this.solver = new Solver(core);
+  }
 
   /** Shows a document. */
   async show(document: PageDocument): Promise<void> {
@@ -87,31 +96,54 @@ export class Model {
       if (document.lines !== undefined) this.lines.value = document.lines;
       this.values.value = document.values ?? [];
       this.page.value = document.page ?? "motion";
-      if (document.recorded && rows) {
-        this.record(document, rows, files);
-      } else if (document.scene !== undefined) {
-        this.open(document.scene, { name: document.name ?? "scene.toml", files });
-      }
-      if (document.view) this.look(document.view);
+      if (document.recorded && rows) this.record(document, rows, files);
     });
+    if (!document.recorded && document.scene !== undefined) {
+      const options = { name: document.name ?? "scene.toml", files };
+      if (!(await this.open(document.scene, options))) return;
+    }
+    if (document.view) this.look(document.view);
   }
 
-  /** Shows another scene from its start. If it is invalid, `problem` says why, and the last motion stays. */
-  open(scene: string, options: Opened | null = this.pending): void {
+  /**
+   * Shows another scene from its start. If it is invalid, `problem` says why, and the last motion stays. False if a
+   * newer scene was opened in the meantime.
+   */
+  async open(scene: string, options: Opened | null = this.pending): Promise<boolean> {
     const { name, files } = options ?? { name: this.name, files: this.files };
-    if (!this.follow(scene, name, files)) {
+    const motion = await this.solved(scene, name, files, true);
+    if (motion === GIVEN_UP) return false;
+    if (motion === null) {
       this.draft.value = scene;
       this.pending = options;
-      return;
+      return true;
     }
     batch(() => {
+      this.become(motion, scene);
       if (options) this.take(scene, options);
-      this.begin(scene, this.about.value?.start.time ?? 0);
+      this.begin(scene, motion.about.start.time);
+    });
+    return true;
+  }
+
+  /** Shows another scene at the present time and speed. */
+  async replace(scene: string): Promise<void> {
+    const motion = await this.solved(scene, this.name, this.files, true);
+    if (motion === GIVEN_UP) return;
+    if (motion === null) {
+      this.draft.value = scene;
+      return;
+    }
+    const [time, speed] = [this.time.value, this.speed.value];
+    batch(() => {
+      this.become(motion, scene);
+      this.begin(scene, motion.about.start.time);
+      this.look({ time, speed });
     });
   }
 
   /** Opens the scene again with files that it refers to. */
-  supply(files: Files): void {
+  async supply(files: Files): Promise<void> {
     const { name, files: others } = this.pending ?? { name: this.name, files: this.files };
     const scene = this.draft.value ?? this.scene.value;
     const given = [...files.keys()].join(", ");
@@ -120,22 +152,27 @@ export class Model {
       this.problem.value = `${given}: ${of} does not refer to ${files.size > 1 ? "these files" : "this file"}`;
       return;
     }
-    this.open(scene, { name, files: new Map([...others, ...files]) });
-    if (this.problem.value !== null) {
+    const newest = await this.open(scene, { name, files: new Map([...others, ...files]) });
+    if (newest && this.problem.value !== null) {
       this.problem.value = `${given}: was added to ${name}, which is still invalid:\n${this.problem.value}`;
     }
   }
 
   /** Shows the scene as it was given. */
   reset(): void {
-    if (this.original !== null) this.open(this.original, null);
+    if (this.original !== null) void this.open(this.original, null);
   }
 
-  /** Replaces tables and fields of the opened scene by those of a TOML text; the time does not change. */
-  change(tables: string): void {
-    if (this.base === null) return;
+  /**
+   * Replaces tables and fields of the opened scene by those of a TOML text; the time does not change. Nothing happens
+   * while another scene is being opened.
+   */
+  async change(tables: string): Promise<void> {
+    if (this.base === null || this.opening !== 0) return;
     try {
-      this.follow(this.core.merged(this.base, tables), this.name, this.files);
+      const scene = this.core.merged(this.base, tables);
+      const motion = await this.solved(scene, this.name, this.files, false);
+      if (motion && motion !== GIVEN_UP) this.become(motion, scene);
     } catch (error) {
       this.problem.value = words(error);
     }
@@ -186,6 +223,7 @@ export class Model {
   }
 
   dispose(): void {
+    this.solver.dispose();
     const motion = this.motion.value;
     batch(() => {
       this.playing.value = false;
@@ -194,23 +232,51 @@ export class Model {
     motion?.close();
   }
 
-  private follow(scene: string, name: string, files: Files): boolean {
+  /** Solves a scene; null if it is invalid, and `problem` then says why. */
+  private async solved(
+    scene: string,
+    name: string,
+    files: Files,
+    opens: boolean,
+  ): Promise<Motion | null | typeof GIVEN_UP> {
+    const number = ++this.asked;
+    if (opens) this.opening = number;
+    this.solving.value = true;
+    let shown: Motion | null = null;
+    const complete = (motion: Motion): void => {
+      if (this.motion.peek() !== shown) return;
+      this.motion.value = motion;
+    };
     try {
-      this.become(this.core.open(scene, { name, files, budget: BUDGET }), scene);
-      return true;
+      shown = await this.solver.solve({ scene, name, files, only: opens, complete });
+      return shown ?? GIVEN_UP;
     } catch (error) {
+      // What is wrong with an older scene does not matter.
+      if (number !== this.asked) return GIVEN_UP;
       this.problem.value = words(error);
-      return false;
+      return null;
+    } finally {
+      if (this.opening === number) this.opening = 0;
+      if (this.asked === number) this.solving.value = false;
     }
   }
 
   private record(document: PageDocument, rows: Float64Array, files: Files): void {
+    this.giveUp();
     const { scene, name = "scene.toml", recorded } = document;
     const of = scene === undefined ? undefined : { scene, name, files };
     const motion = this.core.recorded(recorded?.about ?? "", rows, of);
     this.become(motion, scene ?? null);
     this.take(scene ?? null, { name, files });
     this.begin(scene ?? null, rows[State.time] ?? 0);
+  }
+
+  /** Forgets the scenes that are being solved. */
+  private giveUp(): void {
+    this.solver.dispose();
+    this.asked += 1;
+    this.opening = 0;
+    this.solving.value = false;
   }
 
   /** Remembers a scene as it was given. */
@@ -226,7 +292,7 @@ export class Model {
     this.base = scene;
     this.opened.value = this.about.value;
     this.time.value = time;
-    this.speed.value = defaultSpeed(this.motion.value);
+    this.speed.value = this.motion.value ? defaultSpeed(this.motion.value) : 1;
   }
 
   private become(motion: Motion, scene: string | null): void {
@@ -241,10 +307,8 @@ export class Model {
   }
 }
 
-/** The state at the start of a motion. */
-export function firstRow(motion: Motion): Float64Array {
-  return motion.states([motion.about.start.time]);
-}
+/** Instead of the motion of a scene that was given up for a newer one. */
+const GIVEN_UP = Symbol();
 
 /** The first and last time at which a motion is known. */
 export function span(about: About): [number, number] {
@@ -252,21 +316,6 @@ export function span(about: About): [number, number] {
   if (!about.exact) return [start, start + about.duration];
   if (about.horizon === null) return [-Number.MAX_VALUE, Number.MAX_VALUE];
   return [start - about.horizon, start + about.horizon];
-}
-
-/**
- * The default speed, 1, 2 or 5 times a power of ten: about one turn in three seconds, up to three times as fast for a
- * body that takes long to flip.
- */
-function defaultSpeed(motion: Motion | null): number {
-  const row = motion && firstRow(motion);
-  if (!motion || !row) return 1;
-  const rate = sizeAt(row, State.omegaSpace);
-  const calm = rate > 0 ? (2 * Math.PI) / rate / 3 : motion.about.duration / 20;
-  const wanted = Math.min(Math.max((motion.about.free?.flip_time ?? 0) / 6, calm), 3 * calm);
-  const power = 10 ** Math.floor(Math.log10(wanted));
-  const first = wanted / power;
-  return (first < 1.5 ? 1 : first < 3.5 ? 2 : first < 7.5 ? 5 : 10) * power;
 }
 
 function floats(bytes: Uint8Array): Float64Array {

@@ -1,5 +1,5 @@
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
-import { DARK, LIGHT, type Palette } from "../palette.ts";
+import { DARK, LIGHT, type Palette, readable } from "../palette.ts";
 import type { Model } from "./model.ts";
 
 /** The palette of the model's theme, which may follow the system's; `dispose` stops following it. */
@@ -24,6 +24,8 @@ export function variables(palette: Palette): [string, string][] {
     ["color-scheme", palette === DARK ? "dark" : "light"],
     ...axes.map((colour, k): [string, string] => [`--axis-${k + 1}`, colour]),
     ...Object.entries(others).map(([name, colour]): [string, string] => [`--${name}`, colour]),
+    ["--holds", readable(axes[2], palette)],
+    ["--fails", readable(palette.omega, palette)],
     ["--on-accent", palette === DARK ? palette.background : palette.surface],
   ];
 }

@@ -2,14 +2,14 @@ import { useSignal } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import type { Model } from "../model/model.ts";
 
-/** A text editor for the scene. */
+/** A text editor for the scene. Its errors are shown over the picture. */
 export function Editor({ model }: { model: Model }) {
   const copied = useSignal(false);
   const area = useRef<HTMLTextAreaElement>(null);
   const { draft } = model;
   const scene = draft.value ?? model.scene.value;
   if (scene === null) return <p class="note">This recorded motion has no scene to edit.</p>;
-  const apply = (): void => model.open(scene);
+  const apply = (): void => void model.open(scene);
   const copy = async (): Promise<void> => {
     area.current?.select();
     // Where the clipboard is not accessible, the selected text can be copied by hand.
@@ -17,7 +17,6 @@ export function Editor({ model }: { model: Model }) {
     copied.value = true;
     setTimeout(() => (copied.value = false), 1500);
   };
-  const problem = model.problem.value;
   return (
     <form
       class="editor"
@@ -35,19 +34,14 @@ export function Editor({ model }: { model: Model }) {
         rows={16}
         spellcheck={false}
         autocomplete="off"
-        aria-invalid={problem !== null}
-        aria-describedby="scene-problem"
+        aria-invalid={draft.value !== null && model.problem.value !== null}
+        aria-describedby="problem"
         value={scene}
         onInput={(event) => (draft.value = event.currentTarget.value)}
         onKeyDown={(event) => {
           if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) apply();
         }}
       />
-      {problem !== null && (
-        <pre id="scene-problem" class="problem-text">
-          {problem}
-        </pre>
-      )}
       <div class="buttons">
         <button id="apply" class="primary" type="submit" title="Apply (Ctrl+Enter)">
           Apply

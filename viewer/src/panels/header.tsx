@@ -64,7 +64,7 @@ function Scenes({ model }: { model: Model }) {
         options={PRESETS.map(({ name, title }) => [name, title])}
         other="Scenes…"
         onChange={(name) =>
-          openPreset(
+          void openPreset(
             model,
             PRESETS.find((preset) => preset.name === name)!,
           )

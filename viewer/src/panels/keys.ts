@@ -1,5 +1,6 @@
 import { CAMERAS } from "../document.ts";
 import type { Model } from "../model/model.ts";
+import { TURNS } from "../stage/camera.ts";
 
 /** The keys and their actions, for the help. */
 export const KEYS: [string, string][] = [
@@ -8,6 +9,8 @@ export const KEYS: [string, string][] = [
   ["Home", "go to the start"],
   ["[ ]", "slower, faster"],
   ["1 – 6", `camera: ${CAMERAS.join(", ")}`],
+  ["I J K L", "turn the picture up, left, down, right"],
+  ["+ -", "nearer, farther"],
   ["F", "fit everything into the picture"],
   ["P", "show or hide Poinsot’s ellipsoid"],
   ["D", "light or dark colours"],
@@ -29,13 +32,20 @@ export function step(model: Model, count: number): void {
 
 /** Changes the speed to the next one of 1, 2, 5, 10, … */
 export function changeSpeed(model: Model, direction: 1 | -1): void {
-  const speed = model.speed.value;
+  const sign = Math.sign(model.speed.value) || 1;
+  const speed = Math.abs(model.speed.value);
   const power = 10 ** Math.floor(Math.log10(speed) + 1e-9);
   const speeds = [0.5, 1, 2, 5, 10].map((first) => first * power);
   const next =
     direction > 0 ? speeds.find((s) => s > speed * 1.01) : speeds.findLast((s) => s < speed * 0.99);
   if (next !== undefined && next >= SLOWEST && next <= FASTEST)
-    model.speed.value = Number(next.toPrecision(3));
+    model.speed.value = sign * Number(next.toPrecision(3));
+}
+
+/** Sets the speed, within its limits; a negative one plays backwards. */
+export function setSpeed(model: Model, speed: number): void {
+  const size = Math.min(Math.max(Math.abs(speed), SLOWEST), FASTEST);
+  model.speed.value = speed < 0 ? -size : size;
 }
 
 /**
@@ -92,9 +102,11 @@ function perform(event: KeyboardEvent, host: HTMLElement, model: Model): boolean
     d: () => model.look({ theme: isDark(host) ? "light" : "dark" }),
     "?": () => host.shadowRoot?.querySelector<HTMLElement>("#help")?.click(),
   };
-  const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-  action?.();
-  return action !== undefined;
+  const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+  const turn = TURNS[key];
+  if (turn) model.turned.value = [...turn];
+  actions[key]?.();
+  return turn !== undefined || actions[key] !== undefined;
 }
 
 function isDark(host: HTMLElement): boolean {
@@ -107,7 +119,7 @@ function takesKeys(event: KeyboardEvent): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog")) return true;
   if (target instanceof HTMLInputElement) {
-    if (target.type === "range") return event.key !== " ";
+    if (target.type === "range") return /^(Arrow|Page|Home|End)/.test(event.key);
     return target.type === "checkbox" ? event.key === " " : true;
   }
   if (target.matches("button, summary, a")) return event.key === " " || event.key === "Enter";

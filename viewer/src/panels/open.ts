@@ -30,7 +30,7 @@ export async function openFiles(model: Model, files: readonly File[]): Promise<v
     const contents = meshes.map(async (file) => [file.name, new Uint8Array(await bytes(file))] as const);
     const others = new Map(await Promise.all(contents));
     if (!scene) {
-      model.supply(others);
+      await model.supply(others);
       return;
     }
     const text = new TextDecoder().decode(await bytes(scene));
@@ -38,7 +38,7 @@ export async function openFiles(model: Model, files: readonly File[]): Promise<v
       await model.show(parsed(text, scene.name));
     } else {
       model.page.value = "motion";
-      model.open(text, { name: scene.name, files: others });
+      await model.open(text, { name: scene.name, files: others });
     }
   } catch (error) {
     model.page.value = "motion";

@@ -24,14 +24,24 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
   const caption = model.caption.value ?? model.about.value?.caption ?? null;
   return (
     <section class="picture" aria-label="Picture">
-      <div class="seen">
+      <div class={model.solving.value ? "seen old" : "seen"}>
         <div class="stage" ref={place} />
         {missing.value !== null && <p class="missing">{missing.value}</p>}
+        <Solving model={model} />
         <Strobe model={model} />
         <ErrorMessage model={model} />
       </div>
       {caption !== null && <p class="caption">{caption}</p>}
     </section>
+  );
+}
+
+/** Says that the picture is old, if the new motion takes so long that it is seen (see page.css). */
+function Solving({ model }: { model: Model }) {
+  return (
+    <p class="solving" id="solving" role="status">
+      {model.solving.value && "Computing… This picture is old."}
+    </p>
   );
 }
 

@@ -6,7 +6,7 @@ import { IconButton, type IconName } from "../inputs/button.tsx";
 import { NumberField } from "../inputs/fields.tsx";
 import { type Model, span } from "../model/model.ts";
 import { methodOf } from "./facts.tsx";
-import { changeSpeed, step } from "./keys.ts";
+import { changeSpeed, setSpeed, step } from "./keys.ts";
 
 const STEPS: [id: string, label: string, press: string, icon: IconName, act: (model: Model) => void][] = [
   ["restart", "To the start", "Home", "restart", (model) => model.toStart()],
@@ -97,15 +97,23 @@ function TimeField({ model, about }: { model: Model; about: About }) {
   );
 }
 
+/** The speed, as a multiple of real time or as a time per second. */
 function Speed({ model }: { model: Model }) {
   const speed = model.speed.value;
-  const shown = speed < 200 ? `${typed(speed, 3)}×` : `${duration(speed, 3, timeUnit(2 * speed))}/s`;
+  const unit = Math.abs(speed) < 200 ? null : timeUnit(2 * speed);
+  const label = unit ? `${unit.label}/s` : "×";
+  const shown = typed(speed / (unit?.size ?? 1), 3);
   return (
     <div class="field speed" role="group" aria-label="Speed">
       <IconButton id="slower" label="Slower" press="[" icon="minus" onClick={() => changeSpeed(model, -1)} />
-      <output id="speed" title="Seconds of motion per second of real time">
-        {shown}
-      </output>
+      <NumberField
+        id="speed"
+        label={`Speed, ${unit ? label : "seconds of motion per second"}`}
+        shown={shown}
+        width={`${Math.max(3, shown.length) + 0.5}ch`}
+        onNumber={(number) => setSpeed(model, number * (unit?.size ?? 1))}
+      />
+      <span class="unit">{label}</span>
       <IconButton id="faster" label="Faster" press="]" icon="plus" onClick={() => changeSpeed(model, 1)} />
     </div>
   );

@@ -2,7 +2,8 @@ import { useComputed } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { sizeAt, State } from "../core/core.ts";
 import { PLANES, type Scale, scaled, scaleFor, significant, small } from "../format/numbers.ts";
-import { firstRow, type Model } from "../model/model.ts";
+import type { Model } from "../model/model.ts";
+import { firstRow } from "../model/speed.ts";
 
 const ROTOR: Scale = { factor: 1, decimals: 4, width: 6, power: "" };
 

@@ -6,9 +6,9 @@ import type { Controls } from "../vary/controls.ts";
 import type { Attitude, Spin } from "../vary/start.ts";
 
 const CIRCLE: Range = { min: -Math.PI, max: Math.PI, scale: "linear" };
-const HALF: Range = { min: 0, max: Math.PI, scale: "linear" };
+const HALF: Range = { min: 0, max: Math.PI, scale: "linear", closed: true };
 /** From a thousandth of a degree, a small perturbation, to ninety degrees. */
-const OFF: Range = { min: DEGREE.size / 1000, max: Math.PI / 2, scale: "log", zero: true };
+const OFF: Range = { min: DEGREE.size / 1000, max: Math.PI / 2, scale: "log", zero: true, closed: true };
 const SENSES = ["", "−"].flatMap((sign, sense) =>
   PLANES.map((plane, k) => [k + 3 * sense, `${sign}${plane}, about ${sign}e${"₁₂₃"[k]}`] as const),
 );

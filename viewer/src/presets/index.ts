@@ -145,12 +145,12 @@ export function mayAutoplay(): boolean {
 }
 
 /** Opens a preset and plays it, unless the user prefers reduced motion. */
-export function openPreset(model: Model, preset: Preset): void {
+export async function openPreset(model: Model, preset: Preset): Promise<void> {
   const files: Files = new Map(
     Object.entries(preset.files ?? {}).map(([name, text]) => [name, decoded(text)]),
   );
-  model.open(preset.scene, { name: preset.name, files });
-  if (model.problem.value !== null) return;
+  const newest = await model.open(preset.scene, { name: preset.name, files });
+  if (!newest || model.problem.value !== null) return;
   model.caption.value = preset.caption;
   model.shown.value = SHOWN;
   model.look({ camera: "oblique", playing: mayAutoplay(), ...preset.view });

@@ -12,7 +12,7 @@ const NEAREST = 0.2;
 const FARTHEST = 4;
 /** Duration of a move to a preset, in s. */
 const MOVE = 0.6;
-/** The angle of one press of an arrow key. */
+/** The angle of one step of a turn. */
 const STEP = (5 * Math.PI) / 180;
 
 /** Direction of the preset 'oblique': e1 points left and towards the viewer, e2 right, e3 up. */
@@ -22,12 +22,15 @@ const OBLIQUE = new Vector3(Math.cos(0.33) * Math.cos(0.6), Math.cos(0.33) * Mat
 const TO_Y = new Quaternion().setFromUnitVectors(AXES[2], AXES[1]);
 const FROM_Y = TO_Y.clone().invert();
 
-/** Keys that move the camera: by angles, and the factor of the distance. */
-const KEYS: Record<string, [theta: number, phi: number, closer: number]> = {
-  ArrowLeft: [-STEP, 0, 1],
-  ArrowRight: [STEP, 0, 1],
-  ArrowUp: [0, -STEP, 1],
-  ArrowDown: [0, STEP, 1],
+/** A turn of the camera: steps to the right and down around the figure, and the factor of nearness. */
+export type Turn = readonly [across: number, down: number, closer: number];
+
+/** Keys that turn the camera. */
+export const TURNS: Readonly<Record<string, Turn>> = {
+  j: [-1, 0, 1],
+  l: [1, 0, 1],
+  i: [0, -1, 1],
+  k: [0, 1, 1],
   "+": [0, 0, 1.1],
   "=": [0, 0, 1.1],
   "-": [0, 0, 1 / 1.1],
@@ -41,10 +44,7 @@ interface Move {
   passed: number;
 }
 
-/**
- * The camera, which looks at the middle of the figure; pointer and keys move it. `home` is called to return to the
- * preset.
- */
+/** The camera, which looks at the middle of the figure; the pointer moves it. */
 export class Viewpoint {
   readonly camera = new PerspectiveCamera(LENS, 1, 0.1, 100);
   /** How much space turns back under the body: from 0, not at all, to 1, where the body is at rest. */
@@ -54,9 +54,8 @@ export class Viewpoint {
   private move: Move | null = null;
 
   constructor(
-    private readonly canvas: HTMLCanvasElement,
+    canvas: HTMLCanvasElement,
     private readonly changed: () => void,
-    private readonly home: () => void,
   ) {
     this.camera.up.copy(AXES[2]);
     this.camera.position.copy(OBLIQUE);
@@ -65,7 +64,6 @@ export class Viewpoint {
     this.controls.rotateSpeed = 0.8;
     this.controls.addEventListener("change", changed);
     this.controls.addEventListener("start", this.grabbed);
-    canvas.addEventListener("keydown", this.pressed);
   }
 
   /** Moves to a preset; `momentum` is the axial vector of L. */
@@ -129,6 +127,15 @@ export class Viewpoint {
     this.stand(at);
   }
 
+  /** Turns at once, from where the camera is. */
+  turn([across, down, closer]: Turn): void {
+    const at = this.here;
+    at.set(at.radius / closer, at.phi + down * STEP, at.theta + across * STEP);
+    this.grabbed();
+    this.stand(at);
+    this.changed();
+  }
+
   /** Sets the point to look at. */
   look(at: Vector3): void {
     if (this.controls.target.equals(at)) return;
@@ -138,26 +145,12 @@ export class Viewpoint {
   }
 
   dispose(): void {
-    this.canvas.removeEventListener("keydown", this.pressed);
     this.controls.dispose();
   }
 
   private readonly grabbed = (): void => {
     if (this.move) this.withBody = this.move.withTo;
     this.move = null;
-  };
-
-  private readonly pressed = (event: KeyboardEvent): void => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.key === "Home") return this.home();
-    const by = KEYS[event.key];
-    if (!by) return;
-    const at = this.here;
-    at.set(at.radius / by[2], at.phi + by[1], at.theta + by[0]);
-    event.preventDefault();
-    this.grabbed();
-    this.stand(at);
-    this.changed();
   };
 
   private stand(at: Spherical): void {

@@ -1,11 +1,9 @@
 import { Box3, BoxGeometry, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion, Vector3 } from "three";
-import { Problem } from "../core/core.ts";
+import { BODIES, Problem } from "../core/core.ts";
 import { REACH } from "./figure.ts";
 import type { Part, Setting } from "./part.ts";
 import { quaternion } from "./rotor.ts";
 
-/** Maximum number of bodies. */
-const MOST = 1000;
 /** The length of a small body. */
 const SIZE = 0.06;
 
@@ -16,6 +14,10 @@ const SIZE = 0.06;
 export function crowd({ figure, palette, say }: Setting): Part | null {
   const { about, motion, traced } = figure;
   if (about.ensemble === null) return null;
+  if (motion.awaitsBodies) {
+    say("The other bodies are being computed…");
+    return null;
+  }
   const sides = new Box3().setFromArray(figure.surface.vertices).getSize(new Vector3());
   const box = new BoxGeometry(...sides.multiplyScalar(SIZE / Math.max(...sides)));
   const material = new MeshLambertMaterial({
@@ -23,7 +25,7 @@ export function crowd({ figure, palette, say }: Setting): Part | null {
     emissive: palette.trace,
     emissiveIntensity: 0.15,
   });
-  const bodies = new InstancedMesh(box, material, Math.min(MOST, about.ensemble));
+  const bodies = new InstancedMesh(box, material, Math.min(BODIES, about.ensemble));
   bodies.frustumCulled = false;
   let drawn = Number.NaN;
 
@@ -44,7 +46,7 @@ export function crowd({ figure, palette, say }: Setting): Part | null {
       if (!bodies.visible || time === drawn) return;
       drawn = time;
       try {
-        draw(motion.bodies(Math.max(time, about.start.time), MOST));
+        draw(motion.bodies(Math.max(time, about.start.time)));
       } catch (error) {
         if (!(error instanceof Problem)) throw error;
         bodies.visible = false;

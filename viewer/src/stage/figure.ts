@@ -1,7 +1,8 @@
 import { Vector3 } from "three";
 import { type About, ROW, sizeAt, State, type Surface, type Triple } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
-import { firstRow, span } from "../model/model.ts";
+import { span } from "../model/model.ts";
+import { firstRow } from "../model/speed.ts";
 import { AXES, vector } from "./rotor.ts";
 
 /** Length of the arrows f1, f2, f3, and radius of the sphere with the path of one of their tips. */

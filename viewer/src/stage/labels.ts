@@ -1,4 +1,5 @@
 import { Box2, type Camera, type Matrix4, Vector2, Vector3 } from "three";
+import { LIGHT, readable } from "../palette.ts";
 
 /** CSS pixels. */
 const HEIGHT = 19;
@@ -46,8 +47,8 @@ interface Piece {
 /** The layer of labels over the canvas. Those without room are hidden. */
 export class Labels {
   readonly element = document.createElement("canvas");
-  /** The colour of the halo that separates letters from lines. */
-  background = "";
+  /** Colours of letters are readable on this one's background, which is also that of their halo. */
+  palette = LIGHT;
   private readonly context = this.element.getContext("2d")!;
   private labels: Label[] = [];
   private placed: { label: Label; pieces: Piece[]; box: Box2 }[] = [];
@@ -64,7 +65,7 @@ export class Labels {
       index: "",
       ...style,
       symbol,
-      colour,
+      colour: readable(colour, this.palette),
       at: new Vector3(),
       value: "",
       hidden: false,
@@ -105,7 +106,7 @@ export class Labels {
 
   /** Draws the labels at their last places, in CSS pixels. */
   draw(context: CanvasRenderingContext2D): void {
-    [context.strokeStyle, context.lineWidth, context.lineJoin] = [this.background, HALO, "round"];
+    [context.strokeStyle, context.lineWidth, context.lineJoin] = [this.palette.background, HALO, "round"];
     for (const { label, pieces, box } of this.placed) {
       context.fillStyle = label.colour;
       for (const { text, font, x, y } of pieces) {

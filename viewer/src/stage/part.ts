@@ -33,6 +33,8 @@ export interface Instant {
   up: Vector3;
   /** Seconds for which the motion has played. */
   played: number;
+  /** Whether everything must be drawn now: by default, parts may take some frames. */
+  whole: boolean;
 }
 
 /** A part of the picture of one motion in one palette, which follows the state. */

@@ -6,6 +6,7 @@ import { type Figure, REACH } from "./figure.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Ribbon } from "./ribbon.ts";
 import { quaternion, vector } from "./rotor.ts";
+import { advance, statesOf, type Steps } from "./steps.ts";
 
 /** Maximum number of points of a path. */
 const POINTS = 10_000;
@@ -14,6 +15,8 @@ const TURNS = 8;
 const MOST_TURNS = 60;
 /** Tolerance of a line in drawn units: a fifth of a pixel in the default view. */
 const NEAR = 1e-3;
+/** Time in ms for the paths of one frame, so that the page stays responsive. */
+const FRAME = 12;
 /** The longest piece of a line, so that fading along it is even. */
 const LONGEST = 0.15;
 /** Scale of the polhode, so that it is drawn over the ellipsoid on which it lies. */
@@ -31,42 +34,27 @@ interface Path {
 /**
  * The path of a body axis in space, and those of ω: the herpolhode in space, the polhode in the body. They are computed
  * for a stretch of three tails around a multiple of the tail; while the present is next to that, only the fading
- * changes.
+ * changes. Frames are drawn while they are computed.
  */
 export class Paths implements Part {
   readonly inSpace = new Group();
   readonly inBody = new Group();
   /** Those that are drawn by stretches, and the polhode if it is closed. */
-  private readonly open: Path[];
+  private open: Path[] = [];
   private readonly closed: Path[] = [];
   private readonly figure: Figure;
-  /** Duration of a tail in s, and the middle of the stretch. */
-  private readonly tail: number;
+  private readonly screen: Setting["screen"];
+  private readonly palette: Setting["palette"];
+  /** Duration of a tail in s, the middle of the stretch, and that of the stretch that is being computed. */
+  private tail = Number.NaN;
   private middle = Number.NaN;
+  private wanted = Number.NaN;
   private asked = 0;
+  private work: Steps<void> | null;
 
   constructor({ figure, palette, screen }: Setting) {
-    this.figure = figure;
-    this.tail = tailOf(figure);
-    // ω repeats the same curves.
-    const turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
-    const path = (name: Path["name"], width: number, tail: number, points: Path["points"]): Path => {
-      const ribbon = new Ribbon(screen, palette[name], { width, behind: name === "trace" ? 0.3 : 0.35 });
-      (name === "polhode" ? this.inBody : this.inSpace).add(ribbon.object);
-      return { name, ribbon, tail, points };
-    };
-    const polhode = path("polhode", 2.4, turns, (rows) => taken(rows, State.omegaBody, LIFTED * figure.rate));
-    this.open = [
-      path("trace", 2.2, this.tail, (rows) => traced(rows, figure.traced)),
-      path("herpolhode", 2, turns, (rows) => taken(rows, State.omegaSpace, figure.rate)),
-    ];
-    const period = figure.about.free?.period ?? null;
-    if (period !== null && within(figure, period)) {
-      polhode.ribbon.set(polhodeOf(figure, period), { closed: true });
-      this.closed.push(polhode);
-    } else {
-      this.open.push(polhode);
-    }
+    [this.figure, this.palette, this.screen] = [figure, palette, screen];
+    this.work = this.prepared();
   }
 
   /** Number of states of the visible paths. */
@@ -76,16 +64,66 @@ export class Paths implements Part {
     return states.reduce((sum, count) => sum + count, this.open.filter(seen).length * this.asked);
   }
 
-  update({ time }: Instant, shown: Shown): void {
-    for (const { name, ribbon } of [...this.open, ...this.closed]) ribbon.object.visible = shown[name];
-    if (!this.open.some(({ name }) => shown[name])) return;
-    // The stretch depends on the time alone, so that equal times give equal pictures.
-    const middle = this.tail * Math.round(time / this.tail);
-    if (middle !== this.middle) this.ask(middle);
-    for (const { ribbon, tail } of this.open) ribbon.fade((time - middle) / tail);
+  /** Whether further frames are needed. */
+  get unfinished(): boolean {
+    return this.work !== null;
   }
 
-  private ask(time: number): void {
+  update({ time, whole }: Instant, shown: Shown): void {
+    const end = performance.now() + FRAME;
+    do {
+      this.request(time, shown);
+      if (this.work && advance(this.work, whole ? Infinity : end - performance.now())) this.work = null;
+    } while (this.request(time, shown) && (whole || performance.now() < end));
+    for (const { name, ribbon } of [...this.open, ...this.closed]) ribbon.object.visible = shown[name];
+    for (const { ribbon, tail } of this.open) ribbon.fade((time - this.middle) / tail);
+  }
+
+  /** Begins to compute another stretch if it is needed. */
+  private request(time: number, shown: Shown): boolean {
+    if (Number.isNaN(this.tail) || !this.open.some(({ name }) => shown[name])) return this.unfinished;
+    // The stretch depends on the time alone, so that equal times give equal pictures.
+    const middle = this.tail * Math.round(time / this.tail);
+    if (middle !== this.wanted) {
+      this.wanted = middle;
+      this.work = middle === this.middle ? null : this.stretch(middle);
+    }
+    return this.unfinished;
+  }
+
+  /** Decides how long tails are, and computes a closed polhode. */
+  private *prepared(): Steps<void> {
+    const { figure } = this;
+    const tail = yield* tailOf(figure);
+    // ω repeats the same curves.
+    const turns = Math.min(tail, (2 * TURNS * Math.PI) / figure.omega);
+    const polhode = this.path("polhode", 2.4, turns, (rows) =>
+      taken(rows, State.omegaBody, LIFTED * figure.rate),
+    );
+    const open = [
+      this.path("trace", 2.2, tail, (rows) => traced(rows, figure.traced)),
+      this.path("herpolhode", 2, turns, (rows) => taken(rows, State.omegaSpace, figure.rate)),
+    ];
+    const period = figure.about.free?.period ?? null;
+    if (period !== null && within(figure, period)) {
+      polhode.ribbon.set(yield* polhodeOf(figure, period), { closed: true });
+      this.closed.push(polhode);
+    } else {
+      open.push(polhode);
+    }
+    [this.open, this.tail] = [open, tail];
+  }
+
+  private path(name: Path["name"], width: number, tail: number, points: Path["points"]): Path {
+    const ribbon = new Ribbon(this.screen, this.palette[name], {
+      width,
+      behind: name === "trace" ? 0.3 : 0.35,
+    });
+    (name === "polhode" ? this.inBody : this.inSpace).add(ribbon.object);
+    return { name, ribbon, tail, points };
+  }
+
+  private *stretch(time: number): Steps<void> {
     const { figure } = this;
     // Times are multiples of one step, so that successive stretches have the same points.
     const [first, last] = span(figure.about);
@@ -95,23 +133,26 @@ export class Paths implements Part {
     const times = Float64Array.from({ length: Math.max(to - from + 1, 1) }, (_, k) =>
       Math.min(Math.max((from + k) * step, first), last),
     );
-    const rows = figure.motion.states(times);
-    this.middle = time;
-    this.asked = times.length;
+    const rows = yield* statesOf(figure.motion, times);
+    const drawn: (() => void)[] = [];
     for (const path of this.open) {
       const points = path.points(rows);
+      yield;
       const kept = thinned(points);
       const parameters = kept.map((k) => (times[k]! - time) / path.tail);
-      path.ribbon.set(
-        kept.map((k) => points[k]!),
-        { parameters },
-      );
+      const seen = kept.map((k) => points[k]!);
+      drawn.push(() => path.ribbon.set(seen, { parameters }));
+      yield;
     }
+    // All at once: they fade together.
+    for (const draw of drawn) draw();
+    this.middle = time;
+    this.asked = times.length;
   }
 }
 
 /** Duration of a tail: for a free body some turns and a period; for a top as long as its path is resolved. */
-function tailOf(figure: Figure): number {
+function* tailOf(figure: Figure): Steps<number> {
   const { about } = figure;
   const turn = (2 * Math.PI) / figure.omega;
   if (!about.held) {
@@ -123,17 +164,17 @@ function tailOf(figure: Figure): number {
     );
   }
   let tail = about.duration;
-  for (let halved = 0; halved < 12 && !resolved(figure, tail); halved++) tail /= 2;
+  for (let halved = 0; halved < 12 && !(yield* resolved(figure, tail)); halved++) tail /= 2;
   return tail;
 }
 
 /** Whether the path turns little between its points, except at cusps. */
-function resolved(figure: Figure, tail: number): boolean {
+function* resolved(figure: Figure, tail: number): Steps<boolean> {
   const count = 600;
   const step = (3 * tail) / POINTS;
   const { start, duration } = figure.about;
   const times = Float64Array.from({ length: count }, (_, k) => start.time + Math.min(k * step, duration));
-  const path = traced(figure.motion.states(times), figure.traced);
+  const path = traced(yield* statesOf(figure.motion, times), figure.traced);
   let bent = 0;
   for (let k = 1; k < path.length - 1; k++) {
     const [before, after] = [piece(path, k - 1), piece(path, k)];
@@ -169,12 +210,11 @@ function offsets(rows: Float64Array): number[] {
 }
 
 /** A closed polhode. The speed of ω varies greatly near a saddle, so intervals are halved until points are close. */
-function polhodeOf(figure: Figure, period: number): Vector3[] {
+function* polhodeOf(figure: Figure, period: number): Steps<Vector3[]> {
   const near = 0.02;
   const start = figure.about.start.time;
-  const at = (times: number[]) => taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
   let times = Array.from({ length: 256 }, (_, k) => start + (period * k) / 256);
-  let points = at(times);
+  let points = yield* rates(figure, times);
   for (let halved = 0; halved < 12 && times.length < POINTS / 4; halved++) {
     const finer = times.flatMap((time, k) => {
       const gap = points[k]!.distanceTo(points[(k + 1) % times.length]!);
@@ -182,9 +222,15 @@ function polhodeOf(figure: Figure, period: number): Vector3[] {
     });
     if (finer.length === times.length) break;
     times = finer;
-    points = at(times);
+    points = yield* rates(figure, times);
   }
   return points;
+}
+
+/** Points of the polhode. */
+function* rates(figure: Figure, times: number[]): Steps<Vector3[]> {
+  const rows = yield* statesOf(figure.motion, Float64Array.from(times));
+  return taken(rows, State.omegaBody, LIFTED * figure.rate);
 }
 
 /** From a point of a path to the next one. */

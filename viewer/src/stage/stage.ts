@@ -47,6 +47,7 @@ export class Stage extends Viewport {
   private camera: CameraName | null = null;
   private fitting = false;
   private played = 0;
+  private whole = false;
 
   constructor(
     host: HTMLElement,
@@ -55,9 +56,13 @@ export class Stage extends Viewport {
   ) {
     super(host);
     let fitted = model.fitted.peek();
+    let turned = model.turned.peek();
     this.watch(() => {
       this.fitting ||= model.fitted.value > fitted;
       fitted = model.fitted.value;
+      const turn = model.turned.value;
+      if (turn && turn !== turned) this.viewpoint.turn(turn);
+      turned = turn;
       for (const watched of [model.motion, model.row, model.shown, model.camera, model.playing, palette]) {
         void watched.value;
       }
@@ -82,6 +87,7 @@ export class Stage extends Viewport {
       this.camera = this.model.camera.peek();
       this.viewpoint.from(...view);
     }
+    this.whole = true;
     this.show();
     const context = canvas.getContext("2d")!;
     context.drawImage(this.canvas, 0, 0);
@@ -102,6 +108,10 @@ export class Stage extends Viewport {
       this.played += seconds;
     }
     return playing;
+  }
+
+  protected override get unfinished(): boolean {
+    return this.paths?.unfinished ?? false;
   }
 
   protected override show(): void {
@@ -130,6 +140,7 @@ export class Stage extends Viewport {
     [this.motion, this.painted, this.parts] = [motion, palette, []];
     this.replace(palette);
     this.say(null);
+    this.paths = null;
     if (!motion) return;
     const figure = figureOf(motion);
     const setting: Setting = {
@@ -184,6 +195,7 @@ export class Stage extends Viewport {
       doubleKinetic: vector(row, State.omegaBody).dot(vector(row, State.momentumBody)),
       ...this.directions(),
       played: this.played,
+      whole: this.whole,
     };
   }
 
@@ -203,6 +215,6 @@ export class Stage extends Viewport {
     ];
     const drawn = things.filter(([seen]) => seen).map(([, thing]) => thing);
     const bodies = about?.ensemble ? ` One of ${about.ensemble} bodies.` : "";
-    return `${about?.title ?? "A rigid body in motion"}.${bodies} Drawn: ${drawn.join(", ") || "nothing"}. Arrow keys turn the view, + and − zoom, Home goes back.`;
+    return `${about?.title ?? "A rigid body in motion"}.${bodies} Drawn: ${drawn.join(", ") || "nothing"}. The keys I, J, K and L turn the view, + and − zoom, F fits it.`;
   }
 }

@@ -64,7 +64,7 @@ export abstract class Viewport {
     });
     if (!context) throw new NoWebGL();
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
-    this.viewpoint = new Viewpoint(this.canvas, this.draw, () => this.home());
+    this.viewpoint = new Viewpoint(this.canvas, this.draw);
     // The lamp moves with the camera, at its upper left.
     this.lamp.position.set(-3, 4, 6);
     this.viewpoint.camera.add(this.lamp, this.lamp.target);
@@ -82,6 +82,11 @@ export abstract class Viewport {
 
   /** Advances by some seconds before a frame; returns whether there is more to come. */
   protected advance(_seconds: number): boolean {
+    return false;
+  }
+
+  /** Whether a frame has left something to the next ones. */
+  protected get unfinished(): boolean {
     return false;
   }
 
@@ -124,7 +129,7 @@ export abstract class Viewport {
     this.hemisphere.intensity = dark ? 2.1 : 2.2;
     this.lamp.intensity = dark ? 2.0 : 1.9;
     this.message.style.color = palette.text;
-    this.labels.background = palette.background;
+    this.labels.palette = palette;
   }
 
   /** Right and up on the screen, in space axes. */
@@ -209,12 +214,14 @@ export abstract class Viewport {
     } finally {
       this.drawing = false;
     }
-    going ||= this.viewpoint.moving;
+    going ||= this.viewpoint.moving || (this.seen && this.unfinished);
     this.last = going ? now : null;
     if (going) this.draw();
     const took = performance.now() - began;
     this.spent += (took - this.spent) * (this.drawn < 10 ? 0.5 : 0.1);
     this.drawn += 1;
+    this.canvas.dataset.camera = this.viewpoint.camera.position.toArray().join(" ");
+    this.host.dataset.complete = String(!this.unfinished);
     this.host.dataset.drawn = String(this.drawn);
     this.host.dataset.frameMs = this.spent.toFixed(3);
   };

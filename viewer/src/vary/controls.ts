@@ -1,7 +1,8 @@
 import { batch, computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { type About, sizeAt, State, type Triple } from "../core/core.ts";
 import { rateUnit, timeUnit } from "../format/units.ts";
-import { firstRow, type Model } from "../model/model.ts";
+import type { Model } from "../model/model.ts";
+import { firstRow } from "../model/speed.ts";
 import { type BodyChoice, bodyOf, bodyTable } from "./body.ts";
 import { HOLDING, type LawForm, type LawsChoice, WEIGHT, lawsFor, lawTables, noLaws } from "./laws.ts";
 import { type StartChoice, startOf, startTable } from "./start.ts";
@@ -114,7 +115,7 @@ export class Controls {
     if (this.frame !== 0) return;
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
-      this.model.change(this.tables());
+      void this.model.change(this.tables());
     });
   }
 

@@ -60,7 +60,7 @@ mod _native {
     use crate::support::pool::{Buffer, buffer};
 
     #[pymodule_export]
-    use crate::scene::{Scene, SceneError, scene_mesh};
+    use crate::scene::{BinCounts, Scene, SceneError, kept_words, regimes, scene_mesh};
     #[pymodule_export]
     use crate::support::text::diagnostic;
 

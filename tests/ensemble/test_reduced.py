@@ -149,7 +149,7 @@ def test_bits_do_not_depend_on_blocks_and_threads(free, monkeypatch):
 
 def test_failed_bodies_have_no_last_state(tmp_path):
     # Too few steps for fast bodies.
-    scene = read(tmp_path, TORQUED + "[method]\nmax_steps = 40\n")
+    scene = read(tmp_path, TORQUED + "[method]\nmax_steps = 75\n")
     reduced, motions = scene.reduce(["last", "extrema"]), scene.run()
     failed = np.array([failure.index[0] for failure in motions.failures])
     assert 0 < len(failed) < len(motions)

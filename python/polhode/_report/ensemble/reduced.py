@@ -76,19 +76,26 @@ class ReducedBlock:
 
 
 class Reduction:
-    """How the motions of a scene's bodies are reduced: what they are compared with.
+    """How the motions of a scene's bodies are reduced: what they are compared with, and what is computed.
 
-    `counting`: whether bodies are counted for quantiles. `nominal` is the motion of the scene's own body.
+    That is what the scene keeps; with `nominal`, the motion of the scene's own body, also what the summary
+    reports.
     """
 
-    def __init__(self, scene: Scene, counting: bool, nominal: Trajectory | None = None) -> None:
+    def __init__(self, scene: Scene, nominal: Trajectory | None = None) -> None:
         assert scene.ensemble is not None
+        keep = {*scene.ensemble.keep}
+        counting = nominal is not None or "quantiles" in keep
+        described = nominal is not None or not keep.isdisjoint({"regime", "periods"})
         for word in ("regime", "periods"):
             if word in scene.ensemble.keep and scene.kind != "free":
-                raise ValueError(f"{word!r} in keep needs a body without torques; this motion is {scene.kind}")
+                raise ValueError(
+                    f"{word!r} in keep needs a body without torques; this motion is {scene.kind}"
+                )
         self.scene, self.counting = scene, counting
+        self._described = described and scene.kind == "free"
         self._watched: tuple[Array, Any, Array] | None = None
-        if counting or not _COMPARED.isdisjoint(scene.ensemble.keep):
+        if counting or not _COMPARED.isdisjoint(keep):
             nominal = nominal_motion(scene) if nominal is None else nominal
             upright = tilt_reference(scene, nominal)[0]
             self._watched = (
@@ -128,7 +135,7 @@ class Reduction:
     ) -> tuple[dict[str, Array], Certificate, tuple[Failure, ...]]:
         scene, n = self.scene, rows.stop - rows.start
         columns = scene._core.reduce_many(
-            rows.start, n, scene.times, self._watched, scene.kind == "free", counts, threads, progress
+            rows.start, n, scene.times, self._watched, self._described, counts, threads, progress
         )
         summary, centers = columns.pop("summary"), columns.pop("centers")
         if "position" not in columns:
@@ -142,9 +149,8 @@ class Reduction:
 
 @functools.lru_cache(maxsize=4)
 def reduction_of(scene: Scene) -> Reduction:
-    """Return the reduction of a scene, with counts only if it keeps quantiles."""
-    assert scene.ensemble is not None
-    return Reduction(scene, "quantiles" in scene.ensemble.keep)
+    """Return the reduction of a scene to what it keeps; of the last scenes the same one."""
+    return Reduction(scene)
 
 
 def nominal_motion(scene: Scene) -> Trajectory:
@@ -197,7 +203,7 @@ class ReducedRecords:
         self.regimes: Counter[str] = Counter()
         self.methods: Counter[str] = Counter()
         self.failures: list[Failure] = []
-        self._reduction = Reduction(scene, True, nominal)
+        self._reduction = Reduction(scene, nominal)
         self._counts = _native.BinCounts(len(scene.times))
         self._worst: dict[str, dict[str, Any]] = {}
         self._names = _native.regimes()

@@ -95,7 +95,7 @@ def reduce(
     check_progress(progress)
     number, wanted = scene.ensemble.number, scene.ensemble.number * bytes_of_body(scene)
     memory.require(_COPIES * wanted, f"reduced outputs of {number} bodies", "keep less, or use a store")
-    layout, reduction = layout_of(scene), Reduction(scene, "quantiles" in scene.ensemble.keep)
+    layout, reduction = layout_of(scene), Reduction(scene)
     counts = _native.BinCounts(len(scene.times))
     arrays: dict[str, Array] = {}
     variables: dict[str, Variable] = {

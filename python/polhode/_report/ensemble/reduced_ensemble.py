@@ -103,7 +103,7 @@ def reduce(
     }
     failures: list[Failure] = []
     for rows, block in blocks_of(reduction, progress, checked_threads(threads)):
-        for one in layout.of_bodies(rows, block):  # type: ignore[arg-type]  # of a reduced layout
+        for one in layout.of_bodies(rows, block):
             if one.name not in arrays:
                 arrays[one.name] = np.empty((number, *one.values.shape[1:]), one.values.dtype)
                 variables[one.name] = replace(one, dims=("body", *one.dims), values=arrays[one.name])

@@ -152,7 +152,8 @@ def _drawn(ensemble: dict[str, Any]) -> Iterator[Row]:
     if not ensemble["varied"]:
         yield "", "identical: [ensemble] varies nothing"
     if ensemble["keep"]:
-        yield "kept", f"{', '.join(ensemble['keep'])}; quantiles below to {ReducedRecords.resolution:.1g}"
+        yield "kept", f"{', '.join(ensemble['keep'])}"
+        yield "", f"quantiles below have a relative error of up to {ReducedRecords.resolution:.1g}"
 
 
 def _motion(motion: dict[str, Any], bodies: int, who: str) -> Iterator[Row]:

@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from polhode._mechanics.statistics import Moments
     from polhode._mechanics.stepper import Stepper
     from polhode._mechanics.trajectory import Trajectory
+    from polhode._report.ensemble.reduced_ensemble import ReducedEnsemble
     from polhode._scene.scene import Scene
     from polhode._viewer.notebook import view
 
@@ -65,8 +66,8 @@ if TYPE_CHECKING:
 __all__ = [
     "CGA", "PGA", "Agreement", "Algebra", "Alignment", "Body", "Certificate", "Crossings", "DampedTop",
     "Failure", "Fit", "FlowDerivatives", "Formula", "FormulaError", "FreeMotion", "I", "Inertia",
-    "LagrangeTop", "LarmorSphere", "LinearMap", "Moments", "Multivector", "RigidTransform", "Rotor",
-    "RotorSpline", "Scene", "SceneError", "Screw", "State", "Stepper", "SymmetricTop", "Trajectory",
+    "LagrangeTop", "LarmorSphere", "LinearMap", "Moments", "Multivector", "ReducedEnsemble", "RigidTransform",
+    "Rotor", "RotorSpline", "Scene", "SceneError", "Screw", "State", "Stepper", "SymmetricTop", "Trajectory",
     "adjoint_matrix", "algebra", "align", "attitude_from_rates", "axial", "bivector", "cga", "concatenate",
     "cross", "describe_free", "e1", "e2", "e3", "evaluate", "event", "fit", "force", "formula",
     "from_axial", "from_dict", "from_pauli", "io", "left_jacobian", "mean", "multivector",
@@ -104,6 +105,7 @@ _LATER = {
         "_mechanics.state": "State",
         "_mechanics.statistics": "Moments",
         "_mechanics.stepper": "Stepper",
+        "_report.ensemble.reduced_ensemble": "ReducedEnsemble",
         "_outputs": "DampedTop FreeMotion LagrangeTop LarmorSphere Scene SymmetricTop Trajectory"
         " simulate simulate_blocks view",
     }.items()

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from polhode._report.ensemble.reduced_ensemble import ReducedEnsemble
     from polhode._viewer.widget import Viewer
 
 
@@ -225,6 +226,57 @@ def view_of(self: Any, duration: float | None = None) -> Viewer:
     return view(self, duration=duration)
 
 
+def reduce(
+    self: Any,
+    keep: Sequence[str] | None = None,
+    progress: Callable[[int, float], object] | None = None,
+    threads: int | None = None,
+) -> ReducedEnsemble:
+    """Return reduced outputs of the bodies of an ensemble, whose motions are not kept.
+
+    Bodies are computed and reduced in blocks: the memory is that of the outputs, and bits do not depend on
+    blocks and threads. `Scene.run(store=...)` and ``polhode run -o`` write these outputs for scenes with
+    `keep`.
+
+    Parameters
+    ----------
+    keep
+        Some of the words below; None for ``keep`` of the table `[ensemble]`.
+    progress, threads
+        As for `polhode.simulate`.
+
+    Returns
+    -------
+    ReducedEnsemble
+        Arrays by name. Angles are in rad: `from_nominal` is the angle between the attitude and that of the
+        scene's own body, `tilt` that of a body axis from L (from the vertical if the body is held, from up
+        on an orbit), `rate` is the norm of Ω in rad/s. Unknown values, such as the last state of failed
+        bodies, are NaN.
+
+        - ``last``: `last_attitude` (number, 4), quaternions wxyz from body to space; `last_omega_body`
+          (number, 3) in rad/s in body axes; `last_position`, `last_velocity` in m and m/s of moving bodies.
+        - ``extrema``: `from_nominal_min`, `from_nominal_max`, the same of `tilt` and `rate` and, unless it
+          is constant, of `energy` in J: over the output times, in single precision.
+        - ``regime``, ``periods``, of bodies without torques: the code of the regime; `period` of Ω in the
+          body and `precession_period` about L in s, as `FreeMotion.describe`.
+        - ``quantiles``: `from_nominal_quantiles`, `tilt_quantiles`, `rate_quantiles` (5, n) over the bodies
+          at n times, at the levels `quantile`, from counts in bins of a relative width of 1/1024.
+        - ``events``: `flips`, how often the tilt passes 90° between output times, with `first_flip` and
+          `last_flip` in s; `beyond_10_degrees` and `beyond_90_degrees`, the first time at which
+          `from_nominal` is more. Times are interpolated linearly between output times.
+
+    Raises
+    ------
+    ValueError
+        Without an ensemble, or with words that are unknown or do not fit; else as for `Scene.run`.
+    MemoryError
+        If the outputs would not fit into memory; raised before the run.
+    """
+    from polhode._report.ensemble.reduced_ensemble import reduce
+
+    return reduce(self, keep, progress, threads)
+
+
 def run_into(
     self: Any,
     store: str | os.PathLike[str],
@@ -249,6 +301,7 @@ for _method in (to_xarray, to_dataframe, save, plot, film, _repr_html_):
 setattr(Trajectory, "read", staticmethod(read))  # noqa: B010, declared for type checkers only
 for _kind in (Trajectory, Scene, FreeMotion, ClosedForm):
     setattr(_kind, "view", view_of)  # noqa: B010
+setattr(Scene, "reduce", reduce)  # noqa: B010
 setattr(Scene, "_run_into", run_into)  # noqa: B010
 for _public in (Trajectory, Scene, FreeMotion, SymmetricTop, DampedTop, LagrangeTop, LarmorSphere):
     _public.__module__ = "polhode"  # unpickling imports the class from there, with these methods

@@ -90,6 +90,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _scene(path: str) -> Finding:
+    from polhode._report.ensemble.netcdf import bytes_of_file
     from polhode._support.memory import size
 
     try:
@@ -99,8 +100,9 @@ def _scene(path: str) -> Finding:
     facts: dict[str, Any] = {"scene": path, "ok": True, "body": repr(scene.body)}
     words = f"{path}: ok, {scene.body!r}, {len(scene.times)} output times"
     if scene.ensemble is not None:
-        facts |= {"bodies": scene.ensemble.number, "bytes": scene.result_bytes}
-        words += f", {scene.ensemble.number} bodies, {size(scene.result_bytes)} of results"
+        wanted = bytes_of_file(scene) if scene.ensemble.keep else scene.result_bytes
+        facts |= {"bodies": scene.ensemble.number, "bytes": wanted}
+        words += f", {scene.ensemble.number} bodies, {size(wanted)} of results"
     return Finding(facts, [words], warnings=list(_doubts_of_scene(scene)))
 
 

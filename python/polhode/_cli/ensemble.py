@@ -14,10 +14,13 @@ from typing import Any
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.ensemble.collect import EnsembleRecords
 from polhode._report.ensemble.netcdf import EnsembleFile, bytes_of_file
+from polhode._report.ensemble.reduced import ReducedRecords
 from polhode._scene.scene import Scene
 from polhode._support import memory as _memory
 from polhode._support.extras import progress_bar
 from polhode._support.files import unfinished, write_atomically
+
+Records = EnsembleRecords | ReducedRecords
 
 
 class InterruptedRunError(KeyboardInterrupt):
@@ -26,7 +29,7 @@ class InterruptedRunError(KeyboardInterrupt):
 
 def run(
     scene: Scene, targets: list[Path], threads: int | None, pages: Mapping[Path, bytes], quiet: bool = False
-) -> EnsembleRecords:
+) -> Records:
     """Run all bodies and write them and the figures to the targets, if any, and the pages.
 
     A quiet run shows no progress bar.
@@ -39,7 +42,7 @@ def run(
         If Ctrl-C stopped the run after some bodies were complete, and there are targets.
     """
     require_room(scene, targets)
-    records = EnsembleRecords(scene, _nominal(scene))
+    records = _kind(scene)(scene, _nominal(scene))
     if not targets:
         _run_bodies(records, None, threads, quiet)
         write_atomically(pages)
@@ -51,7 +54,12 @@ def run(
     return records
 
 
-def _stopped(part: Path, records: EnsembleRecords, threads: int | None, quiet: bool) -> bool:
+def _kind(scene: Scene) -> type[Records]:
+    assert scene.ensemble is not None
+    return ReducedRecords if scene.ensemble.keep else EnsembleRecords
+
+
+def _stopped(part: Path, records: Records, threads: int | None, quiet: bool) -> bool:
     """Run all bodies into a file; return whether Ctrl-C stopped the run after some bodies."""
     with contextlib.ExitStack() as opened:
         # HDF5 may swallow an interrupt while it creates a file.
@@ -77,20 +85,18 @@ def _nominal(scene: Scene) -> Trajectory:
         raise ValueError(f"the nominal body failed: {error}") from error
 
 
-def _run_bodies(
-    records: EnsembleRecords, file: EnsembleFile | None, threads: int | None, quiet: bool
-) -> None:
+def _run_bodies(records: Records, file: EnsembleFile | None, threads: int | None, quiet: bool) -> None:
     with _progress(records, quiet) as report:
-        for rows, trajectory in records.scene.run_blocks(progress=report, threads=threads):
+        for rows, motions in records.blocks(report, threads):
             # A block is recorded as a whole.
             with _uninterrupted():
                 if file is not None:
-                    file.add(rows, trajectory)
-                records.add(rows, trajectory)
+                    file.add(rows, motions)
+                records.add(rows, motions)  # type: ignore[arg-type]  # of its own blocks
 
 
 def _write(
-    targets: list[Path], part: Path, records: EnsembleRecords, stopped: bool, pages: Mapping[Path, bytes]
+    targets: list[Path], part: Path, records: Records, stopped: bool, pages: Mapping[Path, bytes]
 ) -> None:
     """Write the files; of an interrupted run the data alone."""
     assert records.scene.ensemble is not None
@@ -105,7 +111,9 @@ def _write(
         from polhode._figures.ensemble import directions_figure, fan_figure
         from polhode._figures.style import as_png
 
-        figures = (as_png(fan_figure(records)), as_png(directions_figure(records)))
+        figures = [as_png(fan_figure(records))]
+        if isinstance(records, EnsembleRecords):
+            figures.append(as_png(directions_figure(records)))
         contents |= zip(targets[1:], figures, strict=True)
     write_atomically(contents)
 
@@ -115,7 +123,7 @@ def require_room(scene: Scene, targets: list[Path]) -> None:
     assert scene.ensemble is not None
     what = f"the {scene.ensemble.number} bodies of this scene at {len(scene.times)} times"
     remedy = "take fewer bodies or fewer times"
-    _memory.require(EnsembleRecords.bytes_wanted(scene), what, remedy)
+    _memory.require(_kind(scene).bytes_wanted(scene), what, remedy)
     if targets:
         wanted, free = bytes_of_file(scene), shutil.disk_usage(targets[0].parent).free
         if wanted > free:
@@ -141,7 +149,7 @@ def _uninterrupted() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _progress(records: EnsembleRecords, quiet: bool) -> Iterator[Callable[[int, float], Any] | None]:
+def _progress(records: Records, quiet: bool) -> Iterator[Callable[[int, float], Any] | None]:
     """Show a progress bar with the rate on standard error, if that is a terminal."""
     shown = progress_bar("{task.completed:.0f} of {task.total:.0f} bodies, {task.fields[rate]}")
     if shown is None or quiet:
@@ -155,7 +163,7 @@ def _progress(records: EnsembleRecords, quiet: bool) -> Iterator[Callable[[int, 
         def report(_: int, fraction: float) -> None:
             seconds = max(time.monotonic() - begin, 1e-3)
             rate = f"{fraction * number / seconds:.3g} bodies/s"
-            if steps := int(records.steps[: records.complete].sum()):
+            if steps := records.total_steps:
                 rate += f", {steps / seconds:.3g} body-steps/s"
             bar.update(task, completed=fraction * number, rate=rate)
 

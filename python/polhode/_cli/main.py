@@ -323,7 +323,7 @@ def _checked_targets(options: argparse.Namespace, scene: Scene) -> list[Path]:
         optional("matplotlib", "plot", "a figure")
         figures = ("motion", "polhode" if scene.kind in ON_ELLIPSOID else "axis")
         if scene.ensemble is not None:
-            figures = ("ensemble", "directions")
+            figures = ("ensemble",) if scene.ensemble.keep else ("ensemble", "directions")
     targets = [output, *(output.with_name(f"{output.stem}-{figure}.png") for figure in figures)]
     for path in targets:
         check_target(path)

@@ -9,7 +9,8 @@ import numpy as np
 from polhode._algebra.constructors import vector
 from polhode._figures.palette import BLACK, BLUE, ORANGE
 from polhode._figures.style import Axes, Figure, halo, new_figure, plotting, time_unit
-from polhode._report.ensemble.collect import EnsembleRecords, first_above, quantiles
+from polhode._report.ensemble.collect import EnsembleRecords, first_above
+from polhode._report.ensemble.reduced import ReducedRecords
 from polhode._report.summary import time as time_text
 from polhode._support.arrays import Array
 
@@ -28,7 +29,7 @@ _HIGH = np.radians(70)
 _FAINTEST, _DENSEST = 0.03, 100.0
 
 
-def fan_figure(gathered: EnsembleRecords) -> Figure:
+def fan_figure(gathered: EnsembleRecords | ReducedRecords) -> Figure:
     """Draw bands of quantiles over time.
 
     From the top: the angle of the attitude from that of the nominal body, the tilt of an axis, and the rate.
@@ -43,7 +44,7 @@ def fan_figure(gathered: EnsembleRecords) -> Figure:
         "rate": "angular velocity |Ω|,\nrad/s",
     }
     for axes, (name, label) in zip(panels, labels.items(), strict=True):
-        bands = quantiles(gathered.series[name][:, -len(times) :])
+        bands = gathered.quantiles(name)[:, -len(times) :]
         _fan(axes, times / seconds, bands if name == "rate" else 180 / np.pi * bands)
         axes.set(xscale=scale, ylabel=label)
         axes.grid(alpha=0.25, lw=0.6)
@@ -72,9 +73,9 @@ def _fan(axes: Axes, t: Array, bands: Array) -> None:
     axes.plot(t, median, color=BLUE, lw=1.4, label="median")
 
 
-def _horizons(axes: Axes, gathered: EnsembleRecords, seconds: float) -> None:
+def _horizons(axes: Axes, gathered: EnsembleRecords | ReducedRecords, seconds: float) -> None:
     """Mark where the 95 % quantile of the angle exceeds 10° and 90°."""
-    highest = quantiles(gathered.series["from_nominal"])[-1]
+    highest = gathered.quantiles("from_nominal")[-1]
     axes.set_ylim(0, 185)
     axes.set_yticks(range(0, 181, 45))
     for angle in (10, 90):
@@ -97,7 +98,7 @@ def _horizons(axes: Axes, gathered: EnsembleRecords, seconds: float) -> None:
         )
 
 
-def _counted(gathered: EnsembleRecords) -> str:
+def _counted(gathered: EnsembleRecords | ReducedRecords) -> str:
     finished = gathered.complete - len(gathered.failures)
     without = f" ({len(gathered.failures)} failed on the way)" if gathered.failures else ""
     counted = f"{finished:,}".replace(",", "\u2009")

@@ -29,12 +29,15 @@ class EnsembleSpec:
         Random seed.
     varied
         Distribution of each varied quantity, in words and SI units, by its name in `[ensemble]`.
+    keep
+        What is kept of each motion instead of the motion, see `Scene.reduce`; empty if the motions are kept.
     """
 
     number: int
     seed: int
     varied: Mapping[str, str]
     _core: _native.Scene = field(repr=False)
+    keep: tuple[str, ...] = ()
 
     @staticmethod
     def _of(core: _native.Scene) -> EnsembleSpec | None:
@@ -43,7 +46,7 @@ class EnsembleSpec:
             return None
         number, seed, varied = found
         words = {name: _words(form, widths, unit) for name, form, widths, unit in varied}
-        return EnsembleSpec(number, seed, MappingProxyType(words), core)
+        return EnsembleSpec(number, seed, MappingProxyType(words), core, tuple(core.ensemble_keep()))
 
     def draw(self, first: int = 0, count: int | None = None) -> Drawn:
         """Return `count` bodies from number `first` on; all remaining ones if `count` is None.

@@ -33,6 +33,8 @@ DRIFT_BOUND = 1e-8
 # Bytes of results in a block of bodies; number of blocks, so that an interrupted run keeps most of its
 # bodies; and least number of bodies in a block, so that lanes and threads are busy.
 _BLOCK, _BLOCKS, _FEW = 32 << 20, 64, 512
+# Most bodies in a block of reduced outputs, which have no states at the output times.
+_REDUCED = 1 << 17
 
 
 class SceneNotFoundError(_native.SceneError, FileNotFoundError):
@@ -240,7 +242,7 @@ class Scene:
         ------
         ValueError
             As for `polhode.simulate`; for a store without an ensemble, with bodies out of range, or with
-            another scene, seed or version of polhode.
+            another scene, seed or version of polhode; without one for an ensemble with `keep`, see `reduce`.
         OSError
             If the store exists and `resume` is false, if another process computes the same bodies, or if a
             block cannot be written, such as to a full disk, or the cluster is lost; complete blocks are kept.
@@ -252,6 +254,11 @@ class Scene:
             return self._run_into(store, resume, bodies, cluster, progress, threads)
         if resume or bodies is not None or cluster is not None:
             raise ValueError("resume, bodies and cluster need a store")
+        if self.ensemble is not None and self.ensemble.keep:
+            raise ValueError(
+                f"the scene keeps {', '.join(self.ensemble.keep)} of its motions: use reduce() or "
+                "run(store=…), or run_blocks() for the motions"
+            )
         if self.ensemble is not None:
             return self._drawn(slice(0, self.ensemble.number), progress, threads)
         check_progress(progress)
@@ -267,6 +274,7 @@ class Scene:
 
     if TYPE_CHECKING:
         view = _outputs.view_of
+        reduce = _outputs.reduce
         _run_into = _outputs.run_into
 
     def run_blocks(
@@ -295,7 +303,7 @@ class Scene:
             raise ValueError("this scene has no table [ensemble]; use run")
         if block is not None and block < 1:
             raise ValueError(f"block must be at least 1, got {block}")
-        number, size = self.ensemble.number, block or self.block
+        number, size = self.ensemble.number, block or self.block_of_motions
         for start in range(0, number, size):
             rows = slice(start, min(start + size, number))
 
@@ -310,6 +318,14 @@ class Scene:
     @property
     def block(self) -> int:
         """Default number of bodies in a block of an ensemble."""
+        number = 1 if self.ensemble is None else self.ensemble.number
+        if self.ensemble is not None and self.ensemble.keep:
+            return min(_REDUCED, max(_FEW, -(-number // _BLOCKS)))
+        return self.block_of_motions
+
+    @property
+    def block_of_motions(self) -> int:
+        """Default number of bodies whose motions are in memory at a time."""
         number = 1 if self.ensemble is None else self.ensemble.number
         fits = max(1, _BLOCK * number // self.result_bytes)
         return min(fits, max(_FEW, -(-number // _BLOCKS)))

@@ -6,6 +6,7 @@ from typing import Any
 
 from polhode._mechanics.registry import FORCES, TORQUES, Argument, Entry
 from polhode._mechanics.simulate import METHODS
+from polhode._native import kept_words
 
 Schema = dict[str, Any]
 
@@ -63,6 +64,12 @@ def scene_schema() -> Schema:
                     "properties": {
                         "number": {"type": "integer", "minimum": 1, "description": "number of bodies"},
                         "seed": {"type": "integer", "minimum": 0, "description": "random seed, default 0"},
+                        "keep": {
+                            "type": "array",
+                            "items": {"enum": kept_words()},
+                            "minItems": 1,
+                            "description": "what is kept of the motions, instead of them",
+                        },
                     },
                 },
                 **dict.fromkeys(_TORQUE_FORMULAS, _FORMULA),

@@ -1,6 +1,7 @@
 //! Scene files.
 
 mod draws;
+mod reduced;
 
 use crate::algebra::value;
 use crate::mechanics::bodies::{Body, Inertia};
@@ -24,6 +25,8 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+pub(crate) use reduced::{BinCounts, kept_words, regimes};
+use reduced::{Watched, reduced};
 use std::path::PathBuf;
 
 create_exception!(polhode, SceneError, PyValueError, "Errors in a scene file, with their places.");
@@ -129,6 +132,11 @@ impl Scene {
         Some((ensemble.number, ensemble.seed, ensemble.varied().into_iter().map(varied).collect()))
     }
 
+    /// What is kept of the motions of the ensemble, instead of the motions.
+    fn ensemble_keep(&self) -> Vec<&'static str> {
+        self.scene.ensemble.as_ref().map(|ensemble| ensemble.keep.clone()).unwrap_or_default()
+    }
+
     /// `count` bodies of the ensemble from number `first` on.
     fn draw<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Bodies<'py>> {
         bodies(py, &self.bodies(py, first, count)?, self.laws.len())
@@ -154,6 +162,29 @@ impl Scene {
         let options = self.scene.options();
         let results = run_many(py, &bodies, &[count], numbers(&times)?, &options, threads, &[], progress)?;
         Ok((results, inertias(&bodies), centers))
+    }
+
+    /// The motions of bodies of the ensemble from the first on at times, reduced: the last states, rows of
+    /// `polhode_rigid::ensemble::reduce`, and the summary of the bodies. `watched` is what motions are compared with; `counts`
+    /// gets the bins of the bodies.
+    #[allow(clippy::too_many_arguments)]
+    fn reduce_many<'py>(
+        &self,
+        py: Python<'py>,
+        first: usize,
+        count: usize,
+        times: Rows<'py>,
+        watched: Option<Watched<'py>>,
+        free: bool,
+        counts: Option<&Bound<'py, BinCounts>>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let bodies = self.bodies(py, first, count)?;
+        let times = numbers(&times)?;
+        let run =
+            |threads| run_many(py, &bodies, &[count], times, &self.scene.options(), threads, &[], progress);
+        reduced(py, &bodies, times, run, watched, free, counts, threads)
     }
 }
 

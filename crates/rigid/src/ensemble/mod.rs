@@ -6,12 +6,14 @@
 //! at the output times. Bodies that lanes do not support are solved one by one. A body that fails does not stop the others.
 
 mod adaptive;
+pub mod bins;
 mod body_run;
 mod exact;
 mod fixed;
 pub(crate) mod laws;
 mod member;
 mod output;
+pub mod reduce;
 mod scheduler;
 mod steppers;
 mod workers;

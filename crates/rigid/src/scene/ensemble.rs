@@ -43,7 +43,13 @@ pub struct Ensemble {
     pub velocity: Option<Spread>,
     /// The distributions of parameters of laws.
     pub parameters: Vec<(&'static Parameter, Spread)>,
+    /// What is kept of each motion, some of [`KEPT`]; the motions themselves if this is empty.
+    pub keep: Vec<&'static str>,
 }
+
+/// What may be kept of the motions: the last state, extrema over the output times, regime and periods of free bodies,
+/// quantiles over the bodies at each time, and how often and when bodies turn over and leave the nominal attitude.
+pub const KEPT: [&str; 6] = ["last", "extrema", "regime", "periods", "quantiles", "events"];
 
 /// A random parameter of an ensemble.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,10 +124,10 @@ struct Absent;
 pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Ensemble> {
     let table = &reader.table(value, "[ensemble]")?;
     let varied = ["attitude", "spin", "moments", "position", "velocity", "gravity", "torque"];
-    reader.only(table, &[&["number", "seed"], &varied[..]].concat());
+    reader.only(table, &[&["number", "seed", "keep"], &varied[..]].concat());
     let number = reader.field(table, "number", |reader, value| whole(reader, value, 1, MOST_BODIES));
     let seed = reader.optional(table, "seed", |reader, value| whole(reader, value, 0, LARGEST_SEED));
-    if table.fields.keys().all(|key| matches!(key.get_ref().as_ref(), "number" | "seed")) {
+    if table.fields.keys().all(|key| matches!(key.get_ref().as_ref(), "number" | "seed" | "keep")) {
         let message =
             "all bodies are the same; give at least one of `attitude`, `spin`, `moments`, `torque`, …";
         reader.report(table.span.clone(), message);
@@ -138,6 +144,7 @@ pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Ens
         place(reader, value, Quantity::Speed, numbers)
     });
     let parameters = parameters(reader, table, nominal);
+    let keep = reader.optional(table, "keep", |reader, value| keep(reader, value, nominal));
     let (directions, spin) = spin?.unwrap_or_default();
     Some(Ensemble {
         number: number? as usize,
@@ -149,7 +156,29 @@ pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Ens
         position: position?,
         velocity: velocity?,
         parameters: parameters?,
+        keep: keep?.unwrap_or_default(),
     })
+}
+
+/// What is kept, in the order of [`KEPT`].
+fn keep(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Vec<&'static str>> {
+    let words = reader.list(value, "words such as `[\"last\", \"regime\"]`", |reader, value| {
+        let word = reader.word(value, "output", &KEPT)?;
+        let torques =
+            matches!(nominal.gravity, Some(Some(_))) || nominal.laws.is_some_and(|laws| !laws.is_empty());
+        if torques && matches!(word, "regime" | "periods") {
+            let message = format!("`{word}` needs a body without torques; remove it from `keep`");
+            reader.report(value.span(), message);
+            return None;
+        }
+        Some(word)
+    })?;
+    if words.is_empty() {
+        let message = format!("nothing is kept; give some of {}, or remove `keep`", KEPT.join(", "));
+        reader.report(value.span(), message);
+        return None;
+    }
+    Some(KEPT.into_iter().filter(|word| words.contains(word)).collect())
 }
 
 /// An integer in a range.

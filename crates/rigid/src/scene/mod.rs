@@ -55,6 +55,7 @@
 //! gravity.acceleration = { normal = "1e-3 m/s^2" }
 //! torque.damping = { relative = 0.1 }     # times exp(0.1 n); or normal, uniform: any parameter of a law
 //! torque.magnetic.dipole = { normal = ["1 mA m^2", 0, 0] }
+//! keep = ["last", "extrema"] # optional, instead of the motions; also regime, periods, quantiles, events
 //! ```
 //!
 //! A bare number is in SI units, a string has a unit. All errors in a file are reported at once, each with its line and
@@ -85,7 +86,7 @@ use crate::units::Quantity;
 pub use body::BodySpec;
 pub use build::MeshSource;
 pub use draws::DrawError;
-pub use ensemble::{Attitudes, Ensemble, Varied};
+pub use ensemble::{Attitudes, Ensemble, KEPT, Varied};
 pub use initial::SpinFrame;
 pub use laws::Law;
 pub use parameters::Parameter;

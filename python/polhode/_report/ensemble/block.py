@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from polhode._report.ensemble.reduced import reduction_of
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._scene.scene import Scene
 
@@ -14,4 +15,9 @@ def compute_block(
     store: EnsembleStore, scene: Scene, index: int, progress: Report | None, threads: int | None
 ) -> None:
     """Compute a block and write it."""
-    store.write(index, scene, scene._drawn(store.rows(index), progress, threads))
+    assert scene.ensemble is not None
+    rows = store.rows(index)
+    if scene.ensemble.keep:
+        store.write(index, scene, reduction_of(scene).block(rows, progress, threads))
+    else:
+        store.write(index, scene, scene._drawn(rows, progress, threads))

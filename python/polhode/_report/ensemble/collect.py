@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,8 @@ SERIES = ("from_nominal", "tilt", "rate")
 # Per body.
 ENDS = ("energy", "angular_momentum")
 PERIODS = ("period", "precession_period")
+# Name of the deviation of |R| from 1 among drifts.
+NORM = "rotor_norm"
 
 # Copies of a block in memory at a time (results, derived arrays, file buffers), and bytes of the figures.
 _PASSING, _FIGURES = 4, 100 << 20
@@ -39,7 +42,7 @@ class EnsembleRecords:
         self.scene, self.nominal = scene, nominal
         # A direction fixed in the body (3,), and the direction from which its tilt is measured.
         self.axis, self.axis_name = watched_axis(scene, nominal)
-        self._reference, self.tilt_name = _reference(scene, nominal)
+        self._reference, self.tilt_name = tilt_reference(scene, nominal)
         # Number of bodies recorded so far, the first rows of arrays.
         self.complete = 0
         # (number, n): the angle in rad between the attitude and that of `nominal`; the tilt of the axis in
@@ -68,6 +71,32 @@ class EnsembleRecords:
         number, n = scene.ensemble.number, len(scene.times)
         kept = 4 * (len(SERIES) * n + 9) + 8 * (2 * len(ENDS) + len(PERIODS) + 3 + 4)
         return _FIGURES + number * kept + _PASSING * scene.block * (scene.result_bytes // number + 1000)
+
+    def blocks(self, progress: Any, threads: int | None) -> Iterator[tuple[slice, Trajectory]]:
+        """Yield the motions of the bodies in blocks, for `add`."""
+        return self.scene.run_blocks(progress=progress, threads=threads)
+
+    def quantiles(self, name: str, k: int | None = None) -> Array:
+        """Return the quantiles (5, ...) at `LEVELS` of a series, at one or all times, or of a number."""
+        if name in self.series:
+            values = self.series[name]
+            return quantiles(values if k is None else values[:, k])
+        return quantiles(self.bodies[name])
+
+    def worst(self) -> dict[str, dict[str, Any]]:
+        """Return the largest drift of each quantity, and of the norm of the rotor, with its body."""
+        return {name: worst_of(drift) for name, drift in (*self.drifts.items(), (NORM, self.norm_drifts))}
+
+    @property
+    def error_estimate(self) -> float | None:
+        """The largest of all error estimates; None if no body has one."""
+        known = self.error_estimates[~np.isnan(self.error_estimates)]
+        return float(known.max()) if known.size else None
+
+    @property
+    def total_steps(self) -> int:
+        """Number of steps of the bodies recorded so far."""
+        return int(self.steps[: self.complete].sum())
 
     def add(self, rows: slice, trajectory: Trajectory) -> None:
         """Record the motions of the next bodies."""
@@ -130,7 +159,7 @@ def watched_axis(scene: Scene, nominal: Trajectory) -> tuple[Array, str]:
     return axis, f"the long axis (principal axis {number})" if long else f"principal axis {number}"
 
 
-def _reference(scene: Scene, nominal: Trajectory) -> tuple[Array | None, str]:
+def tilt_reference(scene: Scene, nominal: Trajectory) -> tuple[Array | None, str]:
     """Return the directions (n, 3) from which tilt is measured, None for each body's L, and their name."""
     if scene.held:
         return np.array([[0.0, 0.0, 1.0]]), "the vertical"
@@ -155,6 +184,15 @@ def quantiles(values: Any) -> Array:
     none = np.full(len(LEVELS), np.nan)
     found = [np.quantile(known, LEVELS) if known.size else none for known in columns]
     return np.stack(found, axis=-1).reshape(len(LEVELS), *values.shape[1:])
+
+
+def worst_of(drift: Array) -> dict[str, Any]:
+    """Return the largest drift and the number of its body; None if no body has one."""
+    known = np.flatnonzero(~np.isnan(drift))
+    if not known.size:
+        return {"bodies": 0, "worst": None, "body": None}
+    body = int(known[np.argmax(drift[known])])
+    return {"bodies": int(known.size), "worst": float(drift[body]), "body": body}
 
 
 def first_above(times: Array, values: Array, bound: float) -> float | None:

@@ -5,11 +5,15 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
+from polhode import _native
 from polhode._report.ensemble.block import Report, compute_block
 from polhode._report.ensemble.cluster import ClusterError, check_address, compute_on, connected
+from polhode._report.ensemble.layout import Variable
 from polhode._report.ensemble.netcdf import bytes_of_file
+from polhode._report.ensemble.reduced import ReducedBlock, over_bodies
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._scene.scene import Scene
 from polhode._support import memory
@@ -48,7 +52,7 @@ def fill(
             else:
                 with connected(cluster) as client:
                     compute_on(client, store, scene, blocks, progress, threads)
-            store.finish()
+            store.finish(lambda: over_all(store, scene))
     except KeyboardInterrupt:
         raise InterruptedRunError(f"interrupted; {_kept(store)}") from None
     except LockedError:
@@ -59,6 +63,16 @@ def fill(
         why = error.strerror or error
         raise OSError(f"cannot write {store.path}: {why}; {_kept(store)}") from error
     return store
+
+
+def over_all(store: EnsembleStore, scene: Scene) -> Iterator[Variable]:
+    """Yield the variables that follow from the counts of all blocks."""
+    assert scene.ensemble is not None
+    if "quantiles" in scene.ensemble.keep:
+        counts = _native.BinCounts(len(scene.times))
+        for index in range(store.blocks):
+            ReducedBlock.add_counts(store.counts_of(index), counts)
+        yield from over_bodies(scene, counts)
 
 
 def _opened(

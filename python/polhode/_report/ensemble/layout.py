@@ -86,8 +86,8 @@ class EnsembleLayout:
             dims, units, text = MOTION["inertia"]
             yield Variable("inertia", dims, inertia.matrix, units, text)
 
-    def of_bodies(self, rows: slice, trajectory: Trajectory) -> Iterator[Variable]:
-        """Yield the variables of some bodies, without the method and the number of the body."""
+    def of_bodies(self, rows: slice, trajectory: Any) -> Iterator[Variable]:
+        """Yield the variables of a trajectory of some bodies, without method and number of the body."""
         for name, note in self._notes.items():
             dims, units, text = MOTION[name]
             values = components(trajectory, name)

@@ -9,7 +9,9 @@ import numpy as np
 
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.ensemble.collect import EnsembleRecords
-from polhode._report.ensemble.layout import LABELS, EnsembleLayout, Variable, failures, flags
+from polhode._report.ensemble.layout import LABELS, Variable, failures, flags
+from polhode._report.ensemble.reduced import ReducedBlock, ReducedRecords
+from polhode._report.ensemble.reduced_layout import bytes_of_body, layout_of
 from polhode._scene.scene import Scene
 from polhode._support.extras import optional
 
@@ -20,6 +22,8 @@ _CHUNK = 1 << 20
 def bytes_of_file(scene: Scene) -> int:
     """Return the approximate size in bytes of the file of a scene's ensemble."""
     assert scene.ensemble is not None
+    if scene.ensemble.keep:
+        return scene.ensemble.number * bytes_of_body(scene) + 8 * 20 * len(scene.times)
     numbers = 4 + 3 + (scene.kind != "free") + 6 * (scene.force is not None)
     return scene.ensemble.number * 8 * (numbers * len(scene.times) + 30)
 
@@ -29,7 +33,7 @@ class EnsembleFile:
 
     def __init__(self, path: Path, scene: Scene) -> None:
         assert scene.ensemble is not None
-        self._layout, self._number = EnsembleLayout(scene), scene.ensemble.number
+        self._layout, self._number = layout_of(scene), scene.ensemble.number
         self._file = optional("h5netcdf", "io", "a netCDF file").File(path, "w")
         self._text = optional("h5py", "io", "a netCDF file").string_dtype()
         self._methods: list[str] = []
@@ -52,11 +56,14 @@ class EnsembleFile:
 
     def _write(self, given: Variable) -> None:
         """Write a variable of fixed size."""
+        for dim, size in zip(given.dims, np.shape(given.values), strict=True):
+            if dim not in self._file.dimensions:
+                self._file.dimensions[dim] = size
         variable = self._file.create_variable(given.name, given.dims, np.asarray(given.values).dtype)
         variable[...] = given.values
         variable.attrs.update(given.labels)
 
-    def add(self, rows: slice, trajectory: Trajectory) -> None:
+    def add(self, rows: slice, trajectory: Trajectory | ReducedBlock) -> None:
         """Write the next bodies."""
         self._file.resize_dimension("body", rows.stop)
         numbers = np.arange(rows.start, rows.stop)
@@ -65,7 +72,7 @@ class EnsembleFile:
         for variable in self._layout.of_bodies(rows, trajectory):
             self._grow(rows, variable)
 
-    def _codes(self, trajectory: Trajectory) -> Any:
+    def _codes(self, trajectory: Trajectory | ReducedBlock) -> Any:
         """Return the number of each body's method in the list of all so far."""
         names = np.broadcast_to(trajectory.certificate.method, len(trajectory)).tolist()
         self._methods += sorted({*names} - {*self._methods})
@@ -86,8 +93,11 @@ class EnsembleFile:
             variable.attrs.update(given.labels)
         variable[rows] = given.values
 
-    def end(self, records: EnsembleRecords) -> None:
+    def end(self, records: EnsembleRecords | ReducedRecords) -> None:
         """Write failures and the names of methods, after the last body or an interrupt."""
+        if isinstance(records, ReducedRecords):
+            for quantiles in records.variables():
+                self._write(quantiles)
         self._file.variables["method"].attrs.update(flags(self._methods))
         self._file.variables["failed"].attrs.update(flags(["complete", "failed"]))
         if records.failures:

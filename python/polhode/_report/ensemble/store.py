@@ -8,7 +8,7 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,9 @@ import numpy as np
 from polhode import _native
 from polhode._mechanics.simulate import METHODS
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.ensemble.layout import LABELS, EnsembleLayout, Variable, failures, flags
+from polhode._report.ensemble.layout import LABELS, Variable, failures, flags
+from polhode._report.ensemble.reduced import ReducedBlock
+from polhode._report.ensemble.reduced_layout import layout_of
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 from polhode._support.checksums import digests, seal, sealed
@@ -39,6 +41,7 @@ _IDENTITY = {
     "times": "output times",
     "body": "body, such as its mesh",
     "block": "size of a block",
+    "keep": "list of what to keep",
 }
 
 
@@ -163,16 +166,18 @@ class EnsembleStore:
             with contextlib.suppress(OSError, ValueError):
                 yield sealed(self._mark(index))
 
-    def write(self, index: int, scene: Scene, trajectory: Trajectory) -> None:
+    def write(self, index: int, scene: Scene, trajectory: Trajectory | ReducedBlock) -> None:
         """Write a block and mark it done."""
         rows = self.rows(index)
         with self._part() as part:
             codes = [_METHODS.index(name) - 1 for name in _methods(trajectory)]
             method = Variable("method", (), np.array(codes, np.int8), "1", "method", flags(_METHODS, -1))
-            for variable in (method, *EnsembleLayout(scene).of_bodies(rows, trajectory)):
+            for variable in (method, *layout_of(scene).of_bodies(rows, trajectory)):
                 (part / variable.name).mkdir()
                 (part / variable.name / _META).write_bytes(self._metadata_of(variable))
                 _write_chunk(part / variable.name, index, self.block, variable.values)
+            if isinstance(trajectory, ReducedBlock):
+                trajectory.write_counts(part / self.counts_of(index).relative_to(self.path))
             files = _files(part)
             found = digests(part, files)
             self._publish(part, files)
@@ -193,8 +198,15 @@ class EnsembleStore:
                 self._metadata[variable.name] = (part / variable.name / _META).read_bytes()
         return self._metadata[variable.name]
 
-    def finish(self) -> bool:
-        """Write the failures and the number of complete bodies if all blocks are done; return whether so."""
+    def counts_of(self, index: int) -> Path:
+        """Return the file of the counts of a block, from which the quantiles over all bodies follow."""
+        return self.path / OWN / "counts" / self._mark(index).stem
+
+    def finish(self, shared: Callable[[], Iterable[Variable]] = tuple) -> bool:
+        """Write the failures and the number of complete bodies if all blocks are done; return whether so.
+
+        `shared` yields variables that follow from all blocks.
+        """
         marks = list(self.marks())
         if len(marks) < self.blocks:
             return False
@@ -206,6 +218,8 @@ class EnsembleStore:
                 shape = numbers.values.shape
                 _array(group, numbers, shape, shape, ("failure",))[:] = numbers.values
                 _labels(group, name, texts, "failure", {"long_name": description})
+            for over in shared():
+                _array(group, over, over.values.shape, over.values.shape, over.dims)[...] = over.values
             self._publish(part, _files(part))
         self.consolidate({"bodies_complete": self.number})
         return True
@@ -275,7 +289,7 @@ def identity_of(scene: Scene) -> dict[str, Any]:
     assert ensemble is not None
     body = hashlib.sha256(np.ascontiguousarray(scene.body.inertia.matrix).tobytes())
     body.update(np.array([scene.body.mass, *scene.shift]).tobytes())
-    attributes = EnsembleLayout(scene).attributes()
+    attributes = layout_of(scene).attributes()
     return {
         "version": _native.__version__,
         "scene": scene.text,
@@ -284,6 +298,7 @@ def identity_of(scene: Scene) -> dict[str, Any]:
         "times": hashlib.sha256(np.ascontiguousarray(scene.times).tobytes()).hexdigest(),
         "body": body.hexdigest(),
         "block": scene.block,
+        "keep": list(ensemble.keep),
         "drift_bound": scene.drift_bound,
         "attributes": attributes | {"seed": ensemble.seed},
     }
@@ -297,7 +312,7 @@ def _write_shared(part: Path, scene: Scene) -> None:
     assert scene.ensemble is not None
     numbers = np.arange(scene.ensemble.number)
     body = Variable("body", ("body",), numbers, "1", "number of the body")
-    for shared in (body, *EnsembleLayout(scene).shared()):
+    for shared in (body, *layout_of(scene).shared()):
         values = np.asarray(shared.values)
         _array(group, shared, values.shape, values.shape, shared.dims)[...] = values
 
@@ -354,13 +369,13 @@ def _labels(group: Any, name: str, texts: list[str], dim: str, attributes: dict[
     array[:] = np.array(texts, dtype=object)
 
 
-def _methods(trajectory: Trajectory) -> list[str]:
+def _methods(trajectory: Trajectory | ReducedBlock) -> list[str]:
     """Return the name of each body's method; ``none`` for failed ones."""
     names = np.broadcast_to(np.asarray(trajectory.certificate.method, object), len(trajectory))
     return np.where(trajectory.ok, names, "none").tolist()  # type: ignore[no-any-return]
 
 
-def _outcome(rows: slice, trajectory: Trajectory) -> dict[str, Any]:
+def _outcome(rows: slice, trajectory: Trajectory | ReducedBlock) -> dict[str, Any]:
     """Return the outcome of a block: failures, number of bodies by method, and largest drifts."""
     proof, names = trajectory.certificate, _methods(trajectory)
     drifts = {"rotor_norm": proof.norm_drift}

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from polhode._report.ensemble.collect import ENDS, LEVELS, PERIODS, EnsembleRecords, first_above, quantiles
+from polhode._report.ensemble.collect import ENDS, LEVELS, NORM, PERIODS, SERIES, EnsembleRecords, first_above
+from polhode._report.ensemble.reduced import ReducedRecords
 from polhode._report.summary import (
     QUANTITIES,
     Row,
@@ -20,7 +21,6 @@ from polhode._report.summary import (
     time,
     torques_of,
 )
-from polhode._support.arrays import Array
 from polhode._support.memory import size
 
 # Angles in rad from the nominal attitude up to which it predicts the others.
@@ -31,7 +31,10 @@ _TOLD, _TIMES = 5, 6
 _NAMES, _CELLS = 21, 11
 
 
-def summary(records: EnsembleRecords) -> dict[str, Any]:
+Records = EnsembleRecords | ReducedRecords
+
+
+def summary(records: Records) -> dict[str, Any]:
     """Return the summary in SI units, of values that JSON can hold.
 
     Quantiles are lists of five, at `LEVELS`, over the bodies that have the number.
@@ -47,6 +50,7 @@ def summary(records: EnsembleRecords) -> dict[str, Any]:
             "seed": scene.ensemble.seed,
             "varied": dict(scene.ensemble.varied),
             "levels": list(LEVELS),
+            "keep": list(scene.ensemble.keep),
         },
         "body": body_of(scene, nominal.inertia),
         "torques": torques_of(scene),
@@ -60,10 +64,10 @@ def summary(records: EnsembleRecords) -> dict[str, Any]:
             "tilt_from": records.tilt_name,
             "tilt": _ends(records, "tilt"),
             "rate": _ends(records, "rate"),
-            **{name: _of_bodies(records.bodies[name]) for name in PERIODS if kind == "free"},
+            **{name: _of_bodies(records, name) for name in PERIODS if kind == "free"},
             **{name: _ends(records, name) for name in ENDS},
         },
-        "conserved": {name: _worst(drift) for name, drift in records.drifts.items()},
+        "conserved": {name: found for name, found in records.worst().items() if name != NORM},
         "run": _run(records),
         "failures": {
             "count": len(records.failures),
@@ -75,61 +79,49 @@ def summary(records: EnsembleRecords) -> dict[str, Any]:
     }
 
 
-def _of_bodies(values: Any) -> list[float] | None:
-    """Return the quantiles over bodies; None if no body has a number."""
-    found = quantiles(values)
+def _of_bodies(records: Records, name: str, k: int | None = None) -> list[float] | None:
+    """Return the quantiles over bodies, of a series at the time k; None if no body has a number."""
+    found = records.quantiles(name, k)
     return found.tolist() if np.isfinite(found).all() else None
 
 
-def _over_time(records: EnsembleRecords, name: str) -> list[dict[str, Any]]:
+def _over_time(records: Records, name: str) -> list[dict[str, Any]]:
     """Return the quantiles at a few times, including the first and the last."""
     times = records.scene.times
     picked = np.unique(np.linspace(0, len(times) - 1, _TIMES).round().astype(int))
-    series = records.series[name]
-    return [{"time": float(times[k]), "quantiles": _of_bodies(series[:, k])} for k in picked]
+    return [{"time": float(times[k]), "quantiles": _of_bodies(records, name, int(k))} for k in picked]
 
 
-def _ends(records: EnsembleRecords, name: str) -> dict[str, list[float] | None]:
+def _ends(records: Records, name: str) -> dict[str, list[float] | None]:
     """Return the quantiles at the start and at the end."""
-    if name in records.series:
-        return {end: _of_bodies(records.series[name][:, k]) for end, k in (("start", 0), ("end", -1))}
-    return {end: _of_bodies(records.bodies[f"{name}_{end}"]) for end in ("start", "end")}
+    if name in SERIES:
+        return {end: _of_bodies(records, name, k) for end, k in (("start", 0), ("end", -1))}
+    return {end: _of_bodies(records, f"{name}_{end}") for end in ("start", "end")}
 
 
-def _horizons(records: EnsembleRecords) -> list[dict[str, Any]]:
+def _horizons(records: Records) -> list[dict[str, Any]]:
     """Return when fewer than 95 % of the bodies are within an angle of the nominal one; None if never."""
-    highest = quantiles(records.series["from_nominal"])[-1]
+    highest = records.quantiles("from_nominal")[-1]
     return [
         {"angle": float(angle), "time": first_above(records.scene.elapsed, highest, angle)}
         for angle in _HORIZONS
     ]
 
 
-def _worst(drift: Array) -> dict[str, Any]:
-    """Return the largest drift and the number of its body; None if no body has one."""
-    known = np.flatnonzero(~np.isnan(drift))
-    if not known.size:
-        return {"bodies": 0, "worst": None, "body": None}
-    body = int(known[np.argmax(drift[known])])
-    return {"bodies": int(known.size), "worst": float(drift[body]), "body": body}
-
-
-def _run(records: EnsembleRecords) -> dict[str, Any]:
-    scene = records.scene
-    columns = [records.norm_drifts, *records.drifts.values()]
-    worst = [entry["worst"] for entry in map(_worst, columns) if entry["worst"] is not None]
-    estimates = records.error_estimates[~np.isnan(records.error_estimates)]
+def _run(records: Records) -> dict[str, Any]:
+    scene, drifts = records.scene, records.worst()
+    worst = [entry["worst"] for entry in drifts.values() if entry["worst"] is not None]
     return {
         "methods": dict(Counter(records.methods).most_common()),
-        "steps": int(records.steps.sum()),
-        "error_estimate": float(estimates.max()) if estimates.size else None,
-        "rotor_norm_drift": _worst(records.norm_drifts)["worst"],
+        "steps": records.total_steps,
+        "error_estimate": records.error_estimate,
+        "rotor_norm_drift": drifts[NORM]["worst"],
         "duration": float(scene.elapsed[-1]),
         "samples": len(scene.times),
         "drift_bound": scene.drift_bound,
         # None if all bodies failed.
         "drift_within_bound": all(drift <= scene.drift_bound for drift in worst) if worst else None,
-        "memory": EnsembleRecords.bytes_wanted(scene),
+        "memory": records.bytes_wanted(scene),
     }
 
 
@@ -159,6 +151,9 @@ def _drawn(ensemble: dict[str, Any]) -> Iterator[Row]:
     yield from ensemble["varied"].items()
     if not ensemble["varied"]:
         yield "", "identical: [ensemble] varies nothing"
+    if ensemble["keep"]:
+        yield "kept", f"{', '.join(ensemble['keep'])}"
+        yield "", f"quantiles below have a relative error of up to {ReducedRecords.resolution:.1g}"
 
 
 def _motion(motion: dict[str, Any], bodies: int, who: str) -> Iterator[Row]:

@@ -476,3 +476,28 @@ fn overflow_is_reported_with_the_body_number() {
     let error = scene.bodies(ensemble(&scene), (&body, &laws), 2..9).unwrap_err();
     assert!(error.body >= 2 && error.to_string().starts_with(&format!("body {}: ", error.body)), "{error}");
 }
+
+#[test]
+fn what_is_kept_is_read_in_a_fixed_order() {
+    let found = scene(&with("number = 2\nattitude = \"uniform\"\nkeep = [\"regime\", \"last\", \"last\"]"));
+    assert_eq!(ensemble(&found).keep, ["last", "regime"]);
+    let found = scene(&with("number = 2\nattitude = \"uniform\""));
+    assert!(ensemble(&found).keep.is_empty());
+}
+
+#[test]
+fn errors_in_what_is_kept_have_a_place_and_a_remedy() {
+    let words = "`last`, `extrema`, `regime`, `periods`, `quantiles`, `events`";
+    for (keep, expected) in [
+        ("[\"first\"]", words),
+        ("[]", "nothing is kept; give some of last, extrema"),
+        ("\"last\"", "expected an array of words such as"),
+    ] {
+        let text = with(&format!("number = 2\nattitude = \"uniform\"\nkeep = {keep}"));
+        let problems = Scene::parse(&text, Path::new("a.toml")).unwrap_err();
+        assert!(problems[0].to_string().contains(expected), "{}", problems[0]);
+    }
+    let damped = format!("{LEAST}[torque]\ndamping = 0.1\n[ensemble]\nnumber = 2\nattitude = \"uniform\"\n");
+    let problems = Scene::parse(&format!("{damped}keep = [\"periods\"]"), Path::new("a.toml")).unwrap_err();
+    assert!(problems[0].to_string().contains("`periods` needs a body without torques"), "{}", problems[0]);
+}

@@ -60,7 +60,7 @@ mod _native {
     use crate::support::pool::{Buffer, buffer};
 
     #[pymodule_export]
-    use crate::scene::{Scene, SceneError, scene_mesh};
+    use crate::scene::{Scene, SceneError};
     #[pymodule_export]
     use crate::support::text::diagnostic;
 

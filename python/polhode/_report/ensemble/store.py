@@ -38,6 +38,7 @@ _IDENTITY = {
     "number": "number of bodies",
     "times": "output times",
     "body": "body, such as its mesh",
+    "table": "table of bodies",
     "block": "size of a block",
 }
 
@@ -276,7 +277,9 @@ def identity_of(scene: Scene) -> dict[str, Any]:
     body = hashlib.sha256(np.ascontiguousarray(scene.body.inertia.matrix).tobytes())
     body.update(np.array([scene.body.mass, *scene.shift]).tobytes())
     attributes = EnsembleLayout(scene).attributes()
+    table = {} if ensemble.table_sha256 is None else {"table": ensemble.table_sha256}
     return {
+        **table,
         "version": _native.__version__,
         "scene": scene.text,
         "seed": ensemble.seed,

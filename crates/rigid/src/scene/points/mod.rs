@@ -27,6 +27,7 @@ pub use cursor::{Cursor, Point};
 use path::{Path, Step};
 use polhode_ga::diagnostic::alternatives;
 use std::ops::Range;
+use std::sync::OnceLock;
 use toml::de::{DeTable, DeValue};
 use values::{MOST_POINTS, Values};
 
@@ -61,9 +62,21 @@ struct Column {
     span: Range<usize>,
     /// Number of successive points that share a value.
     stride: usize,
+    /// Number of numbers of a value and their unit, if all values are numbers.
+    kind: OnceLock<Option<(usize, &'static str)>>,
 }
 
 impl Column {
+    fn new(path: Path, values: Values, span: Range<usize>) -> Column {
+        Column { path, values, span, stride: 1, kind: OnceLock::new() }
+    }
+
+    /// Number of numbers of a value and their unit, if all values are numbers; in a scene with this text.
+    fn kind(&self, scene: &str) -> Option<(usize, &'static str)> {
+        let texts = (0..self.values.len()).map(|index| self.values.text(index, scene));
+        *self.kind.get_or_init(|| numbers(texts).map(|(_, size, unit)| (size, unit)))
+    }
+
     /// The index of the value at a point.
     fn at(&self, point: usize) -> usize {
         point / self.stride % self.values.len()
@@ -104,7 +117,12 @@ impl Points {
     pub fn given(&self, scene: &str, points: impl Iterator<Item = usize> + Clone) -> Vec<(String, Given)> {
         let given = |column: &Column| {
             let texts = points.clone().map(|point| column.values.text(column.at(point), scene));
-            (column.path.to_string(), numbers(texts.clone()).unwrap_or_else(|| Given::Texts(texts.map(str::to_owned).collect())))
+            let all = column.kind(scene).and_then(|kind| Some((numbers(texts.clone())?.0, kind)));
+            let values = match all {
+                Some((numbers, (size, unit))) => Given::Numbers(numbers, size, unit),
+                None => Given::Texts(texts.map(str::to_owned).collect()),
+            };
+            (column.path.to_string(), values)
         };
         self.columns.iter().map(given).collect()
     }
@@ -124,7 +142,7 @@ impl Points {
 }
 
 /// Numbers with one unit, or arrays of them, in SI units.
-fn numbers<'t>(texts: impl Iterator<Item = &'t str>) -> Option<Given> {
+fn numbers<'t>(texts: impl Iterator<Item = &'t str>) -> Option<(Vec<f64>, usize, &'static str)> {
     let (mut all, mut size, mut unit) = (Vec::new(), 0, "");
     for text in texts {
         let before = all.len();
@@ -153,7 +171,7 @@ fn numbers<'t>(texts: impl Iterator<Item = &'t str>) -> Option<Given> {
         }
         size = own;
     }
-    Some(Given::Numbers(all, size, unit))
+    Some((all, size, unit))
 }
 
 /// Reads the points of the table `[ensemble]` of a scene, if it has any.
@@ -225,7 +243,7 @@ fn length(reader: &mut Reader, columns: &[Column]) -> Option<usize> {
 /// The columns of a table by the paths in its header.
 fn named(reader: &mut Reader, value: &Value, columns: Vec<(String, Values)>) -> Option<Vec<Column>> {
     let column = |(name, values): (String, Values)| match Path::default().join(&name) {
-        Some(path) => Some(Column { path, values, span: value.span(), stride: 1 }),
+        Some(path) => Some(Column::new(path, values, value.span())),
         None => {
             reader.report(value.span(), unreadable(&name));
             None
@@ -272,7 +290,7 @@ fn walk(reader: &mut Reader, table: &Table, above: &Path, columns: &mut Vec<Colu
             }
         };
         match values {
-            Some(values) => columns.push(Column { path, values, span: key.span(), stride: 1 }),
+            Some(values) => columns.push(Column::new(path, values, key.span())),
             None => complete = None,
         }
     }

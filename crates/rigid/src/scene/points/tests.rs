@@ -33,7 +33,7 @@ fn parse(text: &str) -> Result<Scene, Vec<String>> {
         Some((line, column)) => format!("{line}:{column}: {}", error.message),
         None => error.message.clone(),
     };
-    let briefs = |errors: Vec<crate::Diagnostic>| errors.iter().map(brief).collect();
+    let briefs = |errors: Vec<crate::Diagnostic>| errors.iter().map(brief).collect::<Vec<_>>();
     let scene = Scene::parse_with(text, Path::new("folder/x.toml"), &table).map_err(briefs)?;
     scene.build().map_err(briefs)?;
     Ok(scene)
@@ -68,8 +68,8 @@ fn alone(replaced: &[(&str, &str)]) -> String {
         text = text.replace(old, new);
     }
     // A variation of width 0 is none.
-    let scene = scene(&format!("{text}[ensemble]\nnumber = 1\nspin = {{ uniform = 0 }}\n"));
-    of(&bodies(&scene, 0..1), 0)
+    let crowd = scene(&format!("{text}[ensemble]\nnumber = 1\nspin = {{ uniform = 0 }}\n"));
+    of(&bodies(&crowd, 0..1), 0)
 }
 
 fn all(scene: &Scene) -> Vec<String> {
@@ -121,7 +121,7 @@ fn lists_are_side_by_side() {
 
 #[test]
 fn a_table_has_a_row_for_each_body() {
-    let scene = scene(&with("table = 'good.csv'"));
+    let crowd = scene(&with("table = 'good.csv'"));
     let point = |spin: &str, damping: &str, moments: &str| {
         alone(&[
             ("moments = [3, 2, 1]", &format!("moments = {moments}")),
@@ -129,7 +129,7 @@ fn a_table_has_a_row_for_each_body() {
             ("viscous_damping = 0.1", &format!("viscous_damping = {damping}")),
         ])
     };
-    assert_eq!(all(&scene), [point("1", "0.2", "[3, 2, 2]"), point("2.5", "0.3", "[4, 3, 2]")]);
+    assert_eq!(all(&crowd), [point("1", "0.2", "[3, 2, 2]"), point("2.5", "0.3", "[4, 3, 2]")]);
 }
 
 #[test]
@@ -143,10 +143,10 @@ fn ranges_have_equal_steps_or_ratios() {
         "list.torque.viscous_damping = { from = 1e-3, to = 10, number = 5, spacing = 'log' }\n\
          list.'initial.spin.vector[0]' = { from = '1 deg/s', to = '3 deg/s', number = 5 }",
     );
-    let scene = scene(&text);
-    let points = scene.ensemble.as_ref().unwrap().points.as_ref().unwrap();
+    let crowd = scene(&text);
+    let points = crowd.ensemble.as_ref().unwrap().points.as_ref().unwrap();
     let [(_, Given::Numbers(spins, 1, "rad/s")), (_, Given::Numbers(damping, 1, ""))] =
-        &points.given(&scene.text, 0..5)[..]
+        &points.given(&crowd.text, 0..5)[..]
     else {
         panic!("{points:?}")
     };
@@ -162,13 +162,13 @@ fn ranges_have_equal_steps_or_ratios() {
 
 #[test]
 fn defined_values_vary_in_formulas() {
-    let scene = scene(&with("grid.define.k = [1, '3']"));
-    let drawn = bodies(&scene, 0..2);
+    let crowd = scene(&with("grid.define.k = [1, '3']"));
+    let drawn = bodies(&crowd, 0..2);
     for (body, k) in [(0, "1"), (1, "3")] {
         let own = alone(&[("k = 2", &format!("k = {k}"))]);
         assert_eq!(of(&drawn, body), own);
         let text = BASE.replace("k = 2", &format!("k = {k}"));
-        let one = super::tests::scene(&text);
+        let one = scene(&text);
         let (built, laws) = one.build().unwrap();
         let times = [0.0, 1.0, 2.0];
         let peer = one.problem(&built, &laws).simulate(&times, one.options(), &mut |_| true).unwrap();
@@ -183,24 +183,24 @@ fn blocks_have_the_bodies_of_the_whole() {
         "number = 12\nseed = 3\ngrid.torque.viscous_damping = [1, 2]\ngrid.body.moments = [[3, 2, 2], [4, 3, 2]]\n\
          moments = { relative = 0.01 }\nspin = { normal = 0.1 }\ntorque.viscous_damping = { relative = 0.1 }",
     );
-    let scene = scene(&text);
-    let whole = all(&scene);
+    let crowd = scene(&text);
+    let whole = all(&crowd);
     let blocks = [0..1, 1..5, 5..12].into_iter().flat_map(|range| {
-        let drawn = bodies(&scene, range.clone());
+        let drawn = bodies(&crowd, range.clone());
         (0..range.len()).map(move |body| of(&drawn, body)).collect::<Vec<_>>()
     });
     assert_eq!(whole, blocks.collect::<Vec<_>>());
-    let more = super::tests::scene(&text.replace("number = 12", "number = 16"));
+    let more = scene(&text.replace("number = 12", "number = 16"));
     assert_eq!(whole, all(&more)[..12]);
 }
 
 #[test]
 fn random_parameters_vary_about_the_own_point() {
     let random = "seed = 5\nspin = { normal = 0.1 }\ntorque.viscous_damping = { relative = 0.1 }";
-    let scene = scene(&with(&format!("number = 4\n{random}\ngrid.torque.viscous_damping = [1, 2]")));
-    for (body, found) in all(&scene).into_iter().enumerate() {
+    let crowd = scene(&with(&format!("number = 4\n{random}\ngrid.torque.viscous_damping = [1, 2]")));
+    for (body, found) in all(&crowd).into_iter().enumerate() {
         let text = BASE.replace("viscous_damping = 0.1", &format!("viscous_damping = {}", 1 + body % 2));
-        let peer = super::tests::scene(&format!("{text}[ensemble]\nnumber = 4\n{random}\n"));
+        let peer = scene(&format!("{text}[ensemble]\nnumber = 4\n{random}\n"));
         assert_eq!(found, all(&peer)[body]);
     }
 }
@@ -210,13 +210,13 @@ fn the_pivot_and_gravity_vary() {
     let held = BASE
         .replace("mass = 2\n", "mass = 2\ncenter_of_mass = [0, 0, 1]\n")
         .replace("[force]\ndrag = 0.5\nconstant = [0, 0, 1]\n", "[gravity]\nacceleration = 9.81\npivot = [0, 0, 0]\n");
-    let scene = scene(&format!(
+    let crowd = scene(&format!(
         "{held}[ensemble]\nlist.gravity.acceleration = [1, 2]\nlist.gravity.pivot = [[0, 0, -1], [1, 0, 0]]\n"
     ));
-    let found = all(&scene);
+    let found = all(&crowd);
     for (body, (acceleration, pivot)) in [("1", "[0, 0, -1]"), ("2", "[1, 0, 0]")].into_iter().enumerate() {
         let text = held.replace("9.81", acceleration).replace("pivot = [0, 0, 0]", &format!("pivot = {pivot}"));
-        let peer = super::tests::scene(&format!("{text}[ensemble]\nnumber = 1\nspin = {{ uniform = 0 }}\n"));
+        let peer = scene(&format!("{text}[ensemble]\nnumber = 1\nspin = {{ uniform = 0 }}\n"));
         assert_eq!(found[body], all(&peer)[0]);
     }
 }

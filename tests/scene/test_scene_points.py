@@ -108,7 +108,7 @@ def test_csv_and_parquet_tables_agree(read, tmp_path):
 
     spins = np.random.default_rng(3).normal(size=5)
     texts = ["0.1 N m s/rad", "1", "2", "3e-1", "0.2"]
-    attitudes = ["exp(-0.1 e12)", "1", "1", "1", "exp(0.2 e23)"]
+    attitudes = ["exp(-0.1 e12)", "exp(0 e12)", "1 + 0 e12", "exp(k e12)", "exp(0.2 e23)"]
     rows = [f'{float(spin)!r},{text},"{at}"' for spin, text, at in zip(spins, texts, attitudes, strict=True)]
     (tmp_path / "b.csv").write_text(HEADER + "\n".join(rows))
     columns = dict(zip(HEADER.strip().split(","), (spins, texts, attitudes), strict=True))
@@ -193,7 +193,8 @@ def test_a_store_refuses_another_table(read, tmp_path):
 def test_correlated_variations_have_their_covariance(read):
     matrix = np.array([[4e-4, 1e-4, 0, 2e-4], [1e-4, 1e-4, 0, 0], [0, 0, 0, 0], [2e-4, 0, 0, 4e-4]])
     joint = f"covariance = {{ of = ['spin', 'torque.viscous_damping'], matrix = {matrix.tolist()} }}\n"
-    spec = read(BASE + "[ensemble]\nnumber = 20000\nseed = 2\n" + joint).ensemble
+    text = BASE.replace("viscous_damping = 0.1", "viscous_damping = 10")
+    spec = read(text + "[ensemble]\nnumber = 20000\nseed = 2\n" + joint).ensemble
     assert spec.varied["spin"] == "correlated normal, (0.02, 0.01, 0) rad/s"
     state, _, laws = spec.draw()
     _, (damping, *_) = next(law for law in laws if isinstance(law, tuple))

@@ -142,7 +142,11 @@ impl Scene {
             return Ok(Vec::new());
         };
         let bodies = (first..first.saturating_add(count)).map(|body| body % points.number);
-        points.given(&self.scene.text, bodies).into_iter().map(|(path, values)| given(py, path, values)).collect()
+        points
+            .given(&self.scene.text, bodies)
+            .into_iter()
+            .map(|(path, values)| given(py, path, values))
+            .collect()
     }
 
     /// The mesh in body axes, in metres, as of a scene file at this path: vertices (n, 3) and triangles (m, 3); None
@@ -154,7 +158,8 @@ impl Scene {
             Ok(mesh.map(|mesh| mesh.moved(scene.shift())))
         });
         let read: Option<TriangleMesh> = read.map_err(|error: MeshError| bad(error))?;
-        read.map(|mesh| Ok((table(py, mesh.vertices().iter().map(|v| v.0))?, mesh.faces().to_vec()))).transpose()
+        read.map(|mesh| Ok((table(py, mesh.vertices().iter().map(|v| v.0))?, mesh.faces().to_vec())))
+            .transpose()
     }
 
     /// `count` bodies of the ensemble from number `first` on.

@@ -31,7 +31,8 @@ fn one(reader: &mut Reader, value: &Value, nominal: &Nominal, ensemble: &mut Ens
                 };
                 let Ok(known) = nominal.numbers(parameter) else {
                     let place = parameter.place();
-                    let message = format!("a random parameter needs a value in the scene, which has no {place}");
+                    let message =
+                        format!("a random parameter needs a value in the scene, which has no {place}");
                     reader.report(item.span(), message);
                     return None;
                 };

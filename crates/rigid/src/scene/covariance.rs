@@ -86,7 +86,8 @@ pub fn read(
         })
     });
     let matrix = reader.field(table, "matrix", |reader, value| {
-        let row = |reader: &mut Reader, row: &Value| reader.list(row, "numbers", |reader, x| reader.number(x));
+        let row =
+            |reader: &mut Reader, row: &Value| reader.list(row, "numbers", |reader, x| reader.number(x));
         Some((value.span(), reader.list(value, "rows", row)?))
     });
     let (parameters, (span, matrix)) = (parameters?, matrix?);
@@ -101,7 +102,10 @@ pub fn read(
     if n == 0 || matrix.len() != n || matrix.iter().any(|row| row.len() != n) {
         let found = matrix.first().map_or(0, Vec::len);
         let (rows, of) = (matrix.len(), names.join(", "));
-        reader.report(span, format!("expected {n} rows of {n} numbers, for {of}; found {rows} rows, the first of {found}"));
+        reader.report(
+            span,
+            format!("expected {n} rows of {n} numbers, for {of}; found {rows} rows, the first of {found}"),
+        );
         return None;
     }
     match factor(&matrix, &names) {
@@ -134,14 +138,17 @@ fn factor(matrix: &[Vec<f64>], names: &[String]) -> Result<Vec<Vec<f64>>, String
             let (x, y) = (matrix[i][j], matrix[j][i]);
             if (x - y).abs() > ROUNDING * scale(i, j) {
                 let (a, b) = (&names[i], &names[j]);
-                return Err(format!("the matrix is not symmetric: {x} for {a} and {b}, but {y} for {b} and {a}"));
+                return Err(format!(
+                    "the matrix is not symmetric: {x} for {a} and {b}, but {y} for {b} and {a}"
+                ));
             }
             let rest = x - row.iter().zip(&rows[j]).map(|(a, b)| a * b).sum::<f64>();
             let pivot = rows[j][j];
             if pivot == 0.0 && rest.abs() > ROUNDING.sqrt() * scale(i, j) {
                 let (a, b) = (&names[i], &names[j]);
                 return Err(format!(
-                    "the matrix is not positive semidefinite: {b} follows from the numbers before it, so its covariance with {a} must be {}, found {x}", x - rest
+                    "the matrix is not positive semidefinite: {b} follows from the numbers before it, so its covariance with {a} must be {}, found {x}",
+                    x - rest
                 ));
             }
             row.push(if pivot == 0.0 { 0.0 } else { rest / pivot });
@@ -150,7 +157,8 @@ fn factor(matrix: &[Vec<f64>], names: &[String]) -> Result<Vec<Vec<f64>>, String
         if rest < -ROUNDING * variance {
             let least = variance - rest;
             return Err(format!(
-                "the matrix is not positive semidefinite: its covariances with the numbers before it need a variance of {} of at least {least}, found {variance}", names[i]
+                "the matrix is not positive semidefinite: its covariances with the numbers before it need a variance of {} of at least {least}, found {variance}",
+                names[i]
             ));
         }
         row.push(if rest <= ROUNDING * variance { 0.0 } else { rest.sqrt() });

@@ -70,7 +70,11 @@ impl<'e> Draw<'e> {
             Some(joint) => {
                 let mut streams: Vec<_> = joint.names().map(|name| self.words(name)).collect();
                 let words = move || streams.iter_mut().filter_map(Iterator::next).collect::<Vec<_>>();
-                Box::new(std::iter::repeat_with(words).take(self.bodies.len()).map(move |words| joint.noise(&words)))
+                Box::new(
+                    std::iter::repeat_with(words)
+                        .take(self.bodies.len())
+                        .map(move |words| joint.noise(&words)),
+                )
             }
         }
     }

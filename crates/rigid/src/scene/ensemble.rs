@@ -112,7 +112,9 @@ impl Attitudes {
     /// Turned by rotation vectors of at most half a turn.
     pub fn turned(spread: Spread) -> Result<Attitudes, &'static str> {
         if spread.widths.iter().any(|width| *width > PI) {
-            return Err("turns by more than half a turn; for every attitude alike write `attitude = \"uniform\"`");
+            return Err(
+                "turns by more than half a turn; for every attitude alike write `attitude = \"uniform\"`",
+            );
         }
         Ok(Attitudes::Turned(spread))
     }
@@ -154,8 +156,7 @@ pub fn read(
     let number = number(reader, table, points, varied.iter().any(|name| table.get(name).is_some()));
     let seed = reader.optional(table, "seed", |reader, value| whole(reader, value, 0, LARGEST_SEED));
     if table.fields.keys().all(|key| matches!(key.get_ref().as_ref(), "number" | "seed")) {
-        let message =
-            "all bodies are the same; give at least one of `attitude`, `spin`, `moments`, `torque`, `grid`, …";
+        let message = "all bodies are the same; give at least one of `attitude`, `spin`, `moments`, `torque`, `grid`, …";
         reader.report(table.span.clone(), message);
     }
     let attitude = reader.optional(table, "attitude", attitude);

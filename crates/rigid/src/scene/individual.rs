@@ -1,11 +1,11 @@
 //! Reads `[ensemble]` with the points of bodies, about which they vary at random.
 
+use super::correlated;
 use super::ensemble::{self, Ensemble, Nominal};
 use super::initial::Initial;
 use super::laws::Law;
 use super::points::{self, Cursor, Point, Points};
 use super::reader::{Reader, Table, Value};
-use super::correlated;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -38,12 +38,7 @@ pub fn read(
 }
 
 /// The number of bodies and the random parameters.
-fn random(
-    reader: &mut Reader,
-    value: &Value,
-    nominal: &Nominal,
-    number: Option<usize>,
-) -> Option<Ensemble> {
+fn random(reader: &mut Reader, value: &Value, nominal: &Nominal, number: Option<usize>) -> Option<Ensemble> {
     let mut ensemble = ensemble::read(reader, value, nominal, number)?;
     if let Some(covariance) = value.get_ref().as_table().and_then(|table| table.get("covariance")) {
         correlated::read(reader, covariance, nominal, &mut ensemble)?;
@@ -63,7 +58,9 @@ fn check(reader: &mut Reader, value: &Value, nominal: &Nominal, points: &Points,
         let found = match cursor.read(point) {
             Err(problems) => problems,
             Ok(_) if !random => continue,
-            Ok(own) => problems(value, nominal, points.number, (&initial, laws), own, || points.describe(text, point)),
+            Ok(own) => problems(value, nominal, points.number, (&initial, laws), own, || {
+                points.describe(text, point)
+            }),
         };
         for problem in found {
             // A value of a grid has the same error at many points.

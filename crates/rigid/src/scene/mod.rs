@@ -263,8 +263,9 @@ fn read_scene(
         laws: found.laws.as_deref(),
     };
     let table = |name: &str| tables(&path.parent().unwrap_or(Path::new("")).join(name));
-    let ensemble = reader
-        .optional(root, "ensemble", |reader, value| individual::read(reader, value, &nominal, root, text, &table));
+    let ensemble = reader.optional(root, "ensemble", |reader, value| {
+        individual::read(reader, value, &nominal, root, text, &table)
+    });
     let initial = found.initial??;
     Some(Scene {
         title: title?,

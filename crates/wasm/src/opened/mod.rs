@@ -98,8 +98,12 @@ fn surface_of(scene: &Scene, source: &dyn Fn(&Path) -> Result<TriangleMesh, Mesh
 /// The text of a table of bodies in one of the files.
 fn table_among(files: &Files, path: &Path) -> Result<String, String> {
     let name = path.display().to_string();
-    let Some(bytes) = files.get(&name).filter(|_| path.extension().is_some_and(|extension| extension == "csv")) else {
-        return Err(format!("{name}: the page does not read this table; write its values in `list`, or use `polhode run`"));
+    let Some(bytes) =
+        files.get(&name).filter(|_| path.extension().is_some_and(|extension| extension == "csv"))
+    else {
+        return Err(format!(
+            "{name}: the page does not read this table; write its values in `list`, or use `polhode run`"
+        ));
     };
     String::from_utf8(bytes.clone()).map_err(|_| format!("{name}: not UTF-8 text, save the file as UTF-8"))
 }

@@ -90,7 +90,10 @@ fn the_factor_of_a_matrix_is_lower_triangular() {
 #[test]
 fn errors_in_covariances() {
     let table = [
-        ("{ of = ['torque.damping'], matrix = [[-1]] }", "the variance of torque.damping must not be negative, found -1"),
+        (
+            "{ of = ['torque.damping'], matrix = [[-1]] }",
+            "the variance of torque.damping must not be negative, found -1",
+        ),
         (
             "{ of = ['torque.damping', 'spin'], matrix = [[1, 2, 0, 0], [2, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]] }",
             "its covariances with the numbers before it need a variance of spin[0] of at least 4, found 1",
@@ -99,17 +102,31 @@ fn errors_in_covariances() {
             "{ of = ['spin'], matrix = [[0, 1, 0], [1, 1, 0], [0, 0, 1]] }",
             "spin[0] follows from the numbers before it, so its covariance with spin[1] must be 0, found 1",
         ),
-        ("{ of = ['spin'], matrix = [[1, 1, 0], [0, 1, 0], [0, 0, 1]] }", "the matrix is not symmetric: 0 for spin[1] and spin[0], but 1"),
-        ("{ of = ['spin'], matrix = [[1, 0], [0, 1]] }", "expected 3 rows of 3 numbers, for spin[0], spin[1], spin[2]; found 2 rows"),
+        (
+            "{ of = ['spin'], matrix = [[1, 1, 0], [0, 1, 0], [0, 0, 1]] }",
+            "the matrix is not symmetric: 0 for spin[1] and spin[0], but 1",
+        ),
+        (
+            "{ of = ['spin'], matrix = [[1, 0], [0, 1]] }",
+            "expected 3 rows of 3 numbers, for spin[0], spin[1], spin[2]; found 2 rows",
+        ),
         ("{ of = ['spin', 'spin'], matrix = [[1]] }", "`spin` is named twice"),
         ("{ of = ['spins'], matrix = [[1]] }", "unknown parameter `spins`"),
         ("{ of = ['torque.larmor'], matrix = [[1]] }", "which has no `larmor` in [torque]"),
         ("{ of = ['spin'] }", "missing field `matrix`"),
-        ("{ of = ['attitude'], matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 20]] }", "turns by more than half a turn"),
-        ("{ of = ['moments'], matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 2000]] }", "the deviation of a logarithm must be from 0 to 10"),
+        (
+            "{ of = ['attitude'], matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 20]] }",
+            "turns by more than half a turn",
+        ),
+        (
+            "{ of = ['moments'], matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 2000]] }",
+            "the deviation of a logarithm must be from 0 to 10",
+        ),
     ];
     for (covariance, message) in table {
-        let found = parse(&format!("number = 2\ncovariance = {covariance}")).map(|_| panic!("{covariance}")).unwrap_err();
+        let found = parse(&format!("number = 2\ncovariance = {covariance}"))
+            .map(|_| panic!("{covariance}"))
+            .unwrap_err();
         assert!(found.contains(message), "{covariance}\n{found}");
     }
     let both = "number = 2\nspin = { normal = 1 }\ncovariance = { of = ['spin'], matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }";

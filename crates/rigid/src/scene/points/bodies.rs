@@ -1,14 +1,14 @@
 //! The bodies of an ensemble, each with the scene of its point.
 
-use super::cursor::{Cursor, Point};
 use super::Points;
+use super::cursor::{Cursor, Point};
 use crate::body::Body;
+use crate::body::inertia::Inertia;
+use crate::body::mesh::{MeshError, MeshProblem};
 use crate::ensemble::{self, Rows, Start};
 use crate::laws::force::{Force, Push};
 use crate::laws::torque::Torque;
-use crate::body::inertia::Inertia;
 use crate::scene::{DrawError, Ensemble, Law, Scene};
-use crate::body::mesh::{MeshError, MeshProblem};
 use polhode_ga::diagnostic::Diagnostic;
 use std::mem::discriminant;
 use std::ops::Range;
@@ -39,7 +39,9 @@ impl Scene {
 
     /// Checks the bodies and the laws of all points.
     pub(in crate::scene) fn check_points(&self, built: (&Body, &[Law])) -> Result<(), Vec<Diagnostic>> {
-        let Some(points) = self.ensemble.as_ref().and_then(|ensemble| ensemble.points.as_ref()) else { return Ok(()) };
+        let Some(points) = self.ensemble.as_ref().and_then(|ensemble| ensemble.points.as_ref()) else {
+            return Ok(());
+        };
         if !points.vary(&["body", "gravity", "torque", "force", "define"]) {
             return Ok(());
         }
@@ -56,11 +58,7 @@ impl Scene {
     }
 
     /// The scene of a point, its body and its laws.
-    fn at_point(
-        &self,
-        point: Point,
-        (body, _): (&Body, &[Law]),
-    ) -> Result<(Scene, Body, Vec<Law>), String> {
+    fn at_point(&self, point: Point, (body, _): (&Body, &[Law])) -> Result<(Scene, Body, Vec<Law>), String> {
         let mut scene = Scene {
             title: None,
             body: point.body.unwrap_or_else(|| self.body.clone()),
@@ -78,26 +76,37 @@ impl Scene {
             text: String::new(),
         };
         if let Some(initial) = point.initial {
-            (scene.attitude, scene.spin, scene.spin_frame) = (initial.attitude, initial.spin, initial.spin_frame);
+            (scene.attitude, scene.spin, scene.spin_frame) =
+                (initial.attitude, initial.spin, initial.spin_frame);
             scene.center = initial.center;
         }
         for law in point.laws {
-            replace(&mut scene.torques, law, |law| law.name, |a, b| discriminant(&a.torque) == discriminant(&b.torque))?;
+            replace(
+                &mut scene.torques,
+                law,
+                |law| law.name,
+                |a, b| discriminant(&a.torque) == discriminant(&b.torque),
+            )?;
         }
         for push in point.forces {
-            replace(&mut scene.forces, push, force_name, |a, b| discriminant(&a.force) == discriminant(&b.force))?;
+            replace(&mut scene.forces, push, force_name, |a, b| {
+                discriminant(&a.force) == discriminant(&b.force)
+            })?;
         }
         let pivot = |scene: &Scene| scene.gravity.map(|gravity| gravity.pivot);
         let built = if scene.body != self.body || pivot(&scene) != pivot(self) {
             let unread = |path: &std::path::Path| {
-                let problem = MeshProblem::Mesh("a mesh and its pivot are the same for all bodies".to_owned());
+                let problem =
+                    MeshProblem::Mesh("a mesh and its pivot are the same for all bodies".to_owned());
                 Err(MeshError { name: path.display().to_string(), problem })
             };
             scene.build_with(&unread)
         } else {
             scene.with_laws(*body)
         };
-        let (body, laws) = built.map_err(|problems| problems.into_iter().map(|problem| problem.message).collect::<Vec<_>>().join("; "))?;
+        let (body, laws) = built.map_err(|problems| {
+            problems.into_iter().map(|problem| problem.message).collect::<Vec<_>>().join("; ")
+        })?;
         Ok((scene, body, laws))
     }
 

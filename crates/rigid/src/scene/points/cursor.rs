@@ -42,12 +42,15 @@ impl<'s> Cursor<'s> {
         let defines = points.vary(&["define"]);
         if !defines {
             // Only the tables, and the laws and forces, that points change.
-            let kept = root.into_iter().filter(|(key, _)| key.get_ref() == "define" || points.vary(&[key.get_ref()]));
+            let kept = root
+                .into_iter()
+                .filter(|(key, _)| key.get_ref() == "define" || points.vary(&[key.get_ref()]));
             root = kept.collect();
             for table in ["torque", "force"] {
                 if let Some(DeValue::Table(laws)) = root.get_mut(table).map(Spanned::get_mut) {
                     let varies = |law: &str| points.vary(&[&format!("{table}.{law}")]);
-                    *laws = std::mem::take(laws).into_iter().filter(|(law, _)| varies(law.get_ref())).collect();
+                    *laws =
+                        std::mem::take(laws).into_iter().filter(|(law, _)| varies(law.get_ref())).collect();
                 }
             }
         }
@@ -67,13 +70,17 @@ impl<'s> Cursor<'s> {
             if self.at[index] == Some(value) {
                 continue;
             }
-            let span = if points.file.is_some() { beyond + index..beyond + index } else { column.span.clone() };
+            let span =
+                if points.file.is_some() { beyond + index..beyond + index } else { column.span.clone() };
             let is_set = column
                 .values
                 .get(value, self.scene, &span)
                 .is_some_and(|value| column.path.set(&mut self.root, value));
             if !is_set {
-                return Err(vec![(column.span.clone(), format!("the scene has no place for `{}`", column.path))]);
+                return Err(vec![(
+                    column.span.clone(),
+                    format!("the scene has no place for `{}`", column.path),
+                )]);
             }
             self.at[index] = Some(value);
         }
@@ -97,7 +104,7 @@ impl<'s> Cursor<'s> {
                 (points.span.clone(), format!("{place}, column `{path}`: {message}"))
             }
             // A value in the list or grid is its own place.
-            None if points.span.start <= span.start && span.end <= points.span.end => (span, message),
+            None if points.columns.iter().any(|column| column.values.hold(&span)) => (span, message),
             None => (span, format!("{message} ({})", points.describe(self.scene, point))),
         };
         Err(problems.into_iter().map(placed).collect())

@@ -108,7 +108,9 @@ impl Points {
     /// Whether a value at one of these dotted places is replaced, or one in it.
     pub fn vary(&self, places: &[&str]) -> bool {
         let is_within = |column: &Column, place: &&str| {
-            Path::default().join(place).is_some_and(|place| column.path.is_within(&place) || place.is_within(&column.path))
+            Path::default()
+                .join(place)
+                .is_some_and(|place| column.path.is_within(&place) || place.is_within(&column.path))
         };
         self.columns.iter().any(|column| places.iter().any(|place| is_within(column, place)))
     }
@@ -260,7 +262,10 @@ fn unreadable(name: &str) -> String {
 /// The columns of a table of the scene: arrays and ranges, at the paths of its fields.
 fn walk(reader: &mut Reader, table: &Table, above: &Path, columns: &mut Vec<Column>) -> Option<()> {
     if table.fields.is_empty() {
-        reader.report(table.span.clone(), "no values; write lists at the paths of scene values, such as `initial.spin.rate = [1, 2]`");
+        reader.report(
+            table.span.clone(),
+            "no values; write lists at the paths of scene values, such as `initial.spin.rate = [1, 2]`",
+        );
         return None;
     }
     let mut complete = Some(());
@@ -303,22 +308,33 @@ const TABLES: [&str; 6] = ["body", "initial", "gravity", "torque", "force", "def
 /// Whether the scene has a place for a value that may differ between bodies.
 fn replaceable(root: &DeTable, path: &Path) -> Result<(), String> {
     let (table, field) = (path.field(0), path.field(1));
-    let mesh = root.get("body").and_then(|body| body.get_ref().as_table()).is_some_and(|body| body.contains_key("mesh"));
+    let mesh = root
+        .get("body")
+        .and_then(|body| body.get_ref().as_table())
+        .is_some_and(|body| body.contains_key("mesh"));
     match table {
         _ if !TABLES.contains(&table) => {
             let tables = alternatives(&TABLES);
             return Err(format!("`{table}` is the same for all bodies; values of {tables} may vary"));
         }
-        _ if path.0.len() < 2 => return Err(format!("expected a value in [{table}], such as `{table}.name`")),
+        _ if path.0.len() < 2 => {
+            return Err(format!("expected a value in [{table}], such as `{table}.name`"));
+        }
         "initial" if field == "time" => {
             return Err("the initial time is the same for all bodies, as the output times are".to_owned());
         }
-        "body" if mesh => return Err("a mesh is the same for all bodies; give the moments of the body".to_owned()),
+        "body" if mesh => {
+            return Err("a mesh is the same for all bodies; give the moments of the body".to_owned());
+        }
         "gravity" if field == "pivot" && mesh => {
-            return Err("the pivot of a mesh is the same for all bodies; give the moments of the body".to_owned());
+            return Err(
+                "the pivot of a mesh is the same for all bodies; give the moments of the body".to_owned()
+            );
         }
         "torque" if !TORQUES.iter().any(|law| law.name == field && field != TABLE) => {
-            return Err(format!("`{field}` is the same for all bodies; values of [define] may vary in formulas"));
+            return Err(format!(
+                "`{field}` is the same for all bodies; values of [define] may vary in formulas"
+            ));
         }
         _ => {}
     }

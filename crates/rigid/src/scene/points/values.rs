@@ -44,6 +44,12 @@ impl Values {
         self.places.len()
     }
 
+    /// Whether a place in the scene is in one of the values.
+    pub fn hold(&self, span: &Range<usize>) -> bool {
+        let holds = |[start, end]: &[u32; 2]| *start as usize <= span.start && span.end <= *end as usize;
+        self.own.is_none() && self.places.iter().any(holds)
+    }
+
     /// The text of a value in a scene with this text.
     pub fn text<'t>(&'t self, index: usize, scene: &'t str) -> &'t str {
         let [start, end] = self.places[index].map(|at| at as usize);
@@ -116,15 +122,15 @@ pub fn range(reader: &mut Reader, value: &Value) -> Option<Values> {
             }
         }
     });
-    let spacing = reader
-        .optional(table, "spacing", |reader, value| reader.word(value, "spacing", &["linear", "log"]));
+    let spacing =
+        reader.optional(table, "spacing", |reader, value| reader.word(value, "spacing", &["linear", "log"]));
     let ((a, unit), (b, last), count, log) = (from?, to?, count?, spacing? == Some("log"));
     if unit != last {
         let message = format!("`from` and `to` must have the same unit, found `{unit}` and `{last}`");
         reader.report(value.span(), message);
         return None;
     }
-    if log && !(a * b > 0.0) {
+    if log && a * b <= 0.0 {
         let message = format!("equal ratios need two numbers of one sign and not 0, found {a} and {b}");
         reader.report(value.span(), message);
         return None;
@@ -147,7 +153,8 @@ pub fn range(reader: &mut Reader, value: &Value) -> Option<Values> {
 fn end(reader: &mut Reader, value: &Value) -> Option<(f64, String)> {
     let DeValue::String(text) = value.get_ref() else { return Some((reader.number(value)?, String::new())) };
     let text = text.trim();
-    let unit = text.find(|c: char| c.is_whitespace() || (c.is_alphabetic() && c != 'e' && c != 'E') || c == '°');
+    let unit =
+        text.find(|c: char| c.is_whitespace() || (c.is_alphabetic() && c != 'e' && c != 'E') || c == '°');
     let (number, unit) = text.split_at(unit.unwrap_or(text.len()));
     match number.parse::<f64>() {
         Ok(number) if number.is_finite() => Some((number, unit.trim().to_owned())),

@@ -9,6 +9,7 @@ import pytest
 
 import polhode as ph
 from command_line import polhode
+from polhode._viewer.document import of_scene, scene_of
 
 BASE = """
 [define]
@@ -121,8 +122,12 @@ def test_csv_and_parquet_tables_agree(read, tmp_path):
 
 def test_errors_of_tables_name_the_file_and_the_row(read, tmp_path, monkeypatch):
     for name, content, message in (
-        ("b.csv", b"torque.viscous_damping\n1\n1 m\n", r"b\.csv, line 3, column `torque.viscous_damping`: expected"),
-        ("b.csv", b"body.moments\n\"[9, 1, 1]\"\n", r"b\.csv, line 2: .*moments"),
+        (
+            "b.csv",
+            b"torque.viscous_damping\n1\n1 m\n",
+            r"b\.csv, line 3, column `torque.viscous_damping`: expected",
+        ),
+        ("b.csv", b'body.moments\n"[9, 1, 1]"\n', r"b\.csv, line 2: .*moments"),
         ("b.csv", b"torque.damping\n1\n", r"the scene has no `torque\.damping`"),
         ("b.csv", b"\xff\n1\n", r"b\.csv: not UTF-8"),
         ("b.parquet", b"no", r"b\.parquet: not a table of numbers and strings"),
@@ -137,6 +142,14 @@ def test_errors_of_tables_name_the_file_and_the_row(read, tmp_path, monkeypatch)
         monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(ph.SceneError, match=r"pip install 'polhode\[parquet\]'"):
         read(BASE + "[ensemble]\ntable = 'b.parquet'\n")
+
+
+def test_a_document_of_the_viewer_has_the_table(read, tmp_path):
+    (tmp_path / "b.csv").write_text("force.drag\n1\n2\n")
+    scene = read(BASE + "[ensemble]\ntable = 'b.csv'\n")
+    shown = scene_of(of_scene(scene))
+    np.testing.assert_array_equal(shown.ensemble.given()["force.drag"], [1, 2])
+    assert shown.ensemble.table_sha256 == scene.ensemble.table_sha256
 
 
 def test_the_command_reports_points(tmp_path):

@@ -144,13 +144,11 @@ fn ranges_have_equal_steps_or_ratios() {
     );
     let crowd = scene(&text);
     let points = crowd.ensemble.as_ref().unwrap().points.as_ref().unwrap();
-    let [(_, Given::Numbers(spins, 1, "rad/s")), (_, Given::Numbers(damping, 1, ""))] =
+    let [(_, Given::Numbers(damping, 1, "")), (_, Given::Numbers(spins, 1, "rad/s"))] =
         &points.given(&crowd.text, 0..5)[..]
     else {
         panic!("{points:?}")
     };
-    // In the order of the file.
-    let (damping, spins) = if damping[0] == 1e-3 { (damping, spins) } else { (spins, damping) };
     for k in 0..5 {
         // Some roundings each.
         assert!((damping[k] / (1e-3 * 10f64.powi(k as i32)) - 1.0).abs() < 1e-14);

@@ -54,6 +54,8 @@
 //! gravity.acceleration = { normal = "1e-3 m/s^2" }
 //! torque.damping = { relative = 0.1 }     # times exp(0.1 n); or normal, uniform: any parameter of a law
 //! torque.magnetic.dipole = { normal = ["1 mA m^2", 0, 0] }
+//! covariance = { of = ["velocity"], matrix = [[…], …] }          # normal, correlated
+//! grid.torque.damping = [0.1, 0.2]        # given values, each with each; or list, side by side; or table = "bodies.csv"
 //! ```
 //!
 //! A bare number is in SI units, a string has a unit. All errors in a file are reported at once, each with its line and

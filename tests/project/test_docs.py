@@ -121,7 +121,7 @@ def blocks_of(page):
 
 
 def test_there_are_scenes():
-    assert len(SCENES) == 9
+    assert len(SCENES) == 11
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ mod _native {
     use crate::support::pool::{Buffer, buffer};
 
     #[pymodule_export]
-    use crate::scene::{BinCounts, Scene, SceneError, kept_words, regimes, scene_surface};
+    use crate::scene::{BinCounts, Scene, SceneError, kept_words, regimes};
     #[pymodule_export]
     use crate::support::text::diagnostic;
 

@@ -1,4 +1,4 @@
-"""Ensembles of scenes: bodies drawn at random."""
+"""Ensembles of scenes: bodies drawn at random, about given points."""
 
 from __future__ import annotations
 
@@ -28,30 +28,83 @@ class EnsembleSpec:
     seed
         Random seed.
     varied
-        Distribution of each varied quantity, in words and SI units, by its name in `[ensemble]`.
+        What varies, in words and SI units: the distribution of each random quantity by its name in
+        `[ensemble]`, and the number of values of a grid, list or table by their path in the scene.
     keep
         What is kept of each motion instead of the motion, see `Scene.reduce`; empty if the motions are kept.
+    points
+        Number of points of the grid, list or table; None without. Body i is at point ``i % points``.
+    table_sha256
+        SHA-256 of the content of the table (of a Parquet file's numbers as CSV); None without.
     """
 
     number: int
     seed: int
     varied: Mapping[str, str]
+    points: int | None
+    table_sha256: str | None
     _core: _native.Scene = field(repr=False)
     keep: tuple[str, ...] = ()
 
     @staticmethod
-    def _of(core: _native.Scene) -> EnsembleSpec | None:
+    def _of(core: _native.Scene, table_sha256: str | None = None) -> EnsembleSpec | None:
         """Return the ensemble of a scene; None without one."""
         if (found := core.ensemble()) is None:
             return None
-        number, seed, varied = found
-        words = {name: _words(form, widths, unit) for name, form, widths, unit in varied}
-        return EnsembleSpec(number, seed, MappingProxyType(words), core, tuple(core.ensemble_keep()))
+        number, seed, varied, points = found
+        words = {}
+        if points is not None:
+            form, _, paths = points
+            words = {path: f"{form}, {count} value{'s' * (count > 1)}" for path, count in paths}
+        for name, form, widths, unit in varied:
+            own = _words(form, widths, unit)
+            words[name] = f"{words[name]}; {own}" if name in words else own
+        count = None if points is None else points[1]
+        kept = tuple(core.ensemble_keep())
+        return EnsembleSpec(number, seed, MappingProxyType(words), count, table_sha256, core, kept)
+
+    def _varies(self, *places: str) -> bool:
+        """Whether one of these quantities or tables of the scene varies, or a value in it."""
+        return any(
+            name == place or name.startswith((f"{place}.", f"{place}["))
+            for name in self.varied
+            for place in places
+        )
+
+    def given(self, first: int = 0, count: int | None = None) -> dict[str, Array | list[str]]:
+        """Return the values that the grid, list or table gives to `count` bodies from number `first` on.
+
+        Returns
+        -------
+        dict
+            For each path in the scene an array (count,) or (count, m): quantities with units in SI units,
+            other numbers as in the file. If a value is not a number or an array of them, the text of each.
+
+        Raises
+        ------
+        ValueError
+            If the range is out of bounds or empty.
+        """
+        return {path: values for path, values, _ in self._given(first, self._count(first, count))}
+
+    def _given(self, first: int, count: int) -> list[tuple[str, Array | list[str], str]]:
+        """Return the paths, values and units of `given`."""
+        return self._core.given(first, count)
+
+    def _count(self, first: int, count: int | None) -> int:
+        """Return the number of bodies in a range, if it is within bounds."""
+        count = self.number - first if count is None else count
+        if first < 0 or count < 0:
+            raise ValueError(f"first and count must not be negative, got first = {first}, count = {count}")
+        if count == 0 or first + count > self.number:
+            raise ValueError(f"range {first}..{first + count} is out of bounds for {self.number} bodies")
+        return count
 
     def draw(self, first: int = 0, count: int | None = None) -> Drawn:
         """Return `count` bodies from number `first` on; all remaining ones if `count` is None.
 
-        A body depends on the seed and its number only, not on `first`, `count` or other varied quantities.
+        A body depends on its point, the seed and its number only, not on `first`, `count` or other varied
+        quantities.
 
         Returns
         -------
@@ -61,16 +114,14 @@ class EnsembleSpec:
             The inertia of each body, or one for all; about the fixed point if there is one.
         laws
             The torque laws, as in `Scene.torque`: a law if it is the same for all bodies; else its name and
-            its arguments, arrays (count,) or (count, m).
+            its arguments, arrays (count,) or (count, m), none for a formula.
 
         Raises
         ------
         ValueError
             If the range is out of bounds or empty.
         """
-        count = self.number - first if count is None else count
-        if first < 0 or count < 0:
-            raise ValueError(f"first and count must not be negative, got first = {first}, count = {count}")
+        count = self._count(first, count)
         rotors, omegas, positions, velocities, inertias, laws = self._core.draw(first, count)
         center = vector(positions), vector(velocities)
         time = self._core.fields()["time"]

@@ -19,6 +19,7 @@ from polhode._mechanics.simulate import check_progress, checked_threads
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.ensemble import EnsembleSpec
+from polhode._scene.table import TableReader
 from polhode._support.arrays import Array, frozen, hands_out_copies
 from polhode.force import Force
 from polhode.torque import Torque
@@ -103,7 +104,7 @@ class Scene:
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Scene:
-        """Read a scene file, and the mesh that it names.
+        """Read a scene file, and the mesh and the table of bodies that it names.
 
         Raises
         ------
@@ -112,13 +113,14 @@ class Scene:
         FileNotFoundError
             If there is no such file; it is a SceneError too.
         """
+        table = TableReader()
         try:
-            core = _native.Scene.read(os.fspath(path))
+            core = _native.Scene.read(os.fspath(path), table.read)
         except _native.SceneError as error:
             if os.path.lexists(path):
                 raise
             raise SceneNotFoundError(str(error)) from None
-        return Scene(Path(path), core.fields()["times"], EnsembleSpec._of(core), core)
+        return Scene(Path(path), core.fields()["times"], EnsembleSpec._of(core, table.sha256), core)
 
     def __post_init__(self) -> None:
         given = self._core.fields()
@@ -144,7 +146,7 @@ class Scene:
         solid has 64 faces about its axis, with vertices on the solid; a rod and a disc are given a thickness.
         None for a body known by its moments.
         """
-        surface = _native.scene_surface(os.fspath(self.path))
+        surface = self._core.surface(os.fspath(self.path))
         return None if surface is None else (surface[0], np.array(surface[1], int))
 
     @property

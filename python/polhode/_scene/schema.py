@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from typing import Any
 
 from polhode._mechanics.registry import FORCES, TORQUES, Argument, Entry
@@ -36,6 +37,7 @@ def scene_schema() -> Schema:
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "Polhode scene",
+        "definitions": _DEFINITIONS,
         **_table(
             {
                 "title": {"type": "string", "description": "name of the scene"},
@@ -58,20 +60,7 @@ def scene_schema() -> Schema:
                 "force": _laws(FORCES, "forces on the centre of mass, which add up", {}),
                 "run": _run(),
                 "method": _table({"name": {"enum": list(METHODS)}, **_steps()}, "integration method"),
-                "ensemble": {
-                    "type": "object",
-                    "description": "random variations of the body",
-                    "properties": {
-                        "number": {"type": "integer", "minimum": 1, "description": "number of bodies"},
-                        "seed": {"type": "integer", "minimum": 0, "description": "random seed, default 0"},
-                        "keep": {
-                            "type": "array",
-                            "items": {"enum": kept_words()},
-                            "minItems": 1,
-                            "description": "what is kept of the motions, instead of them",
-                        },
-                    },
-                },
+                "ensemble": _ensemble(),
                 **dict.fromkeys(_TORQUE_FORMULAS, _FORMULA),
             },
             required=("body", "initial", "run"),
@@ -174,6 +163,75 @@ def _steps() -> dict[str, Schema]:
         "max_step": _quantity("s", "longest step"),
         "max_steps": {"type": "number", "description": "maximum number of steps, default 1e8"},
     }
+
+
+def _ensemble() -> Schema:
+    covariance = _table(
+        {
+            "of": {"type": "array", "items": {"type": "string"}, "minItems": 1},
+            "matrix": {"type": "array", "items": {"type": "array", "items": {"type": "number"}}},
+        },
+        "normal variations with a covariance matrix, in SI units",
+        required=("of", "matrix"),
+    )
+    return {
+        "type": "object",
+        "description": "bodies that differ from the body of the scene",
+        "properties": {
+            "number": {"type": "integer", "minimum": 1, "description": "number of bodies"},
+            "seed": {"type": "integer", "minimum": 0, "description": "random seed, default 0"},
+            "keep": {
+                "type": "array",
+                "items": {"enum": kept_words()},
+                "minItems": 1,
+                "description": "what is kept of the motions, instead of them",
+            },
+            "covariance": {"anyOf": [covariance, {"type": "array", "items": covariance}]},
+            "grid": _points("values of the scene, each combined with each; the last varies fastest"),
+            "list": _points("values of the scene, one for each body"),
+            "table": {"type": "string", "description": "path of a table of bodies: CSV or Parquet"},
+        },
+        "allOf": [{"not": {"required": list(pair)}} for pair in combinations(("grid", "list", "table"), 2)],
+    }
+
+
+def _points(text: str) -> Schema:
+    """Return the schema of lists and ranges at the paths of scene values."""
+    tables = ("body", "initial", "define", "gravity", "torque", "force")
+    return {
+        "type": "object",
+        "description": text,
+        "minProperties": 1,
+        "propertyNames": {"pattern": f"^({'|'.join(tables)})([.].+)?$"},
+        "additionalProperties": {"$ref": "#/definitions/points"},
+    }
+
+
+# Lists at the fields of a table of the scene, or in tables in it.
+_DEFINITIONS: Schema = {
+    "points": {
+        "anyOf": [
+            {"type": "array", "minItems": 1},
+            {
+                "type": "object",
+                "properties": {
+                    "from": {"type": ["number", "string"]},
+                    "to": {"type": ["number", "string"]},
+                    "number": {"type": "integer", "minimum": 2},
+                    "spacing": {"enum": ["linear", "log"]},
+                },
+                "required": ["from", "to", "number"],
+                "additionalProperties": False,
+            },
+            {
+                "type": "object",
+                "minProperties": 1,
+                "not": {"anyOf": [{"required": ["from"]}, {"required": ["to"]}]},
+                "additionalProperties": {"$ref": "#/definitions/points"},
+            },
+        ]
+    }
+}
 
 
 # --- laws

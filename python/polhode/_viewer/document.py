@@ -100,18 +100,20 @@ def of_scene(scene: Scene) -> Document:
 
 
 def of_text(text: str, path: Path) -> Document:
-    """Return the document of a scene's text, with its mesh file if that can be read.
+    """Return the document of a scene's text, with its mesh and its table of bodies if they can be read.
 
     The page reports what is wrong with the scene.
     """
     shown: Document = {"format": 1, "scene": text, "name": path.name}
-    body = _parsed(text).get("body")
-    name = body.get("mesh") if isinstance(body, dict) else None
-    if isinstance(name, str) and name:
-        # A ValueError: the name is not a valid file name.
-        with contextlib.suppress(OSError, ValueError):
-            shown["files"] = {name: packed((path.parent / name).read_bytes())}
-    return shown
+    tables, files = _parsed(text), {}
+    for table, field in (("body", "mesh"), ("ensemble", "table")):
+        fields = tables.get(table)
+        name = fields.get(field) if isinstance(fields, dict) else None
+        if isinstance(name, str) and name:
+            # A ValueError: the name is not a valid file name.
+            with contextlib.suppress(OSError, ValueError):
+                files[name] = packed((path.parent / name).read_bytes())
+    return {**shown, "files": files} if files else shown
 
 
 def _parsed(text: str) -> dict[str, Any]:

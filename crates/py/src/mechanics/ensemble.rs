@@ -85,7 +85,7 @@ pub(crate) fn ensemble_of(
         starts: starts(shape, begins, rotors, omegas, centers)?,
         laws: laws.iter().map(each_law).collect(),
         masses: ensemble::Rows::new(spread(numbers(masses)?.to_vec(), masses.shape(), shape)),
-        forces: forces.iter().map(|force| force.get().force.clone()).collect(),
+        forces: forces.iter().map(|force| ensemble::Rows::new(vec![force.get().force.clone()])).collect(),
     })
 }
 

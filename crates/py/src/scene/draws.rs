@@ -18,10 +18,35 @@ pub(crate) type Varied = (String, &'static str, Vec<f64>, &'static str);
 pub(crate) type Bodies<'py> =
     (Array<'py>, Array<'py>, Array<'py>, Array<'py>, Vec<Inertia>, Vec<Bound<'py, PyAny>>);
 
+/// Form and number of points, and the paths of their values with the number of each.
+pub(crate) type Points = (&'static str, usize, Vec<(String, usize)>);
+
+/// A path, and its values as an array or as texts, with their unit.
+pub(crate) type PointValues<'py> = (String, Bound<'py, PyAny>, &'static str);
+
 pub(crate) fn varied(varied: scene::Varied) -> Varied {
     match varied.spread {
         None => (varied.name, "alike", Vec::new(), ""),
-        Some(spread) => (varied.name, spread.form.name(), spread.widths.to_vec(), varied.unit),
+        Some(spread) => {
+            let form = match (spread.form, varied.correlated) {
+                (scene::Form::Relative, true) => "correlated relative",
+                (_, true) => "correlated normal",
+                (form, false) => form.name(),
+            };
+            (varied.name, form, spread.widths.to_vec(), varied.unit)
+        }
+    }
+}
+
+/// The values of a path at some points.
+pub(crate) fn given<'py>(py: Python<'py>, path: String, values: scene::Given) -> PyResult<PointValues<'py>> {
+    match values {
+        scene::Given::Texts(texts) => Ok((path, texts.into_pyobject(py)?.into_any(), "")),
+        scene::Given::Numbers(numbers, 1, unit) => Ok((path, line(py, numbers).into_any(), unit)),
+        scene::Given::Numbers(numbers, size, unit) => {
+            let shape = [numbers.len() / size, size];
+            Ok((path, PyArray1::from_vec(py, numbers).reshape(shape)?.into_any(), unit))
+        }
     }
 }
 
@@ -47,6 +72,10 @@ pub(crate) fn inertias(drawn: &Ensemble) -> Vec<Inertia> {
 fn one_or_columns<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> {
     if let [torque] = torques {
         return Ok(named(py, torque.clone())?.into_bound(py).into_any());
+    }
+    if let Some(Torque::Formula(_)) = torques.first() {
+        // Formulas whose names have other values.
+        return Ok(("formula", PyTuple::empty(py)).into_pyobject(py)?.into_any());
     }
     let own: Vec<_> = torques.iter().filter_map(Torque::registered).collect();
     let Some(&(entry, _)) = own.first() else { return Err(bad("a law without numbers cannot vary")) };

@@ -11,7 +11,7 @@ use crate::mechanics::surfaces::{Triangles, triangles};
 use crate::mechanics::torque::Law;
 use crate::support::arrays::{Array, Rows, bad, line, numbers, table};
 use crate::support::facts::dict;
-use draws::{Bodies, Varied, bodies, inertias, varied};
+use draws::{Bodies, PointValues, Points, Varied, bodies, given, inertias, varied};
 use polhode_ga::formula::Given;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Vector};
@@ -27,7 +27,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 pub(crate) use reduced::{BinCounts, kept_words, regimes};
 use reduced::{Watched, reduced};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 create_exception!(polhode, SceneError, PyValueError, "Errors in a scene file, with their places.");
 
@@ -46,11 +46,15 @@ pub(crate) struct Scene {
 
 #[pymethods]
 impl Scene {
-    /// Reads a scene file and the mesh that it names.
+    /// Reads a scene file and the mesh that it names; `table` returns the text of a table of bodies from its path.
     #[staticmethod]
-    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Scene> {
+    fn read(py: Python<'_>, path: PathBuf, table: Py<PyAny>) -> PyResult<Scene> {
+        let text = |path: &Path| {
+            let read = |py: Python<'_>| table.call1(py, (path,))?.extract(py);
+            Python::attach(|py| read(py).map_err(|error: PyErr| error.value(py).to_string()))
+        };
         let built = py.detach(|| {
-            let scene = scene::Scene::read(&path)?;
+            let scene = scene::Scene::read_with(&path, &text)?;
             scene.build().map(|(body, laws)| Scene { scene, body, laws })
         });
         built.map_err(|diagnostics| report(&diagnostics))
@@ -126,10 +130,35 @@ impl Scene {
         })
     }
 
-    /// Number of bodies, seed and varied quantities of the ensemble; None without one.
-    fn ensemble(&self) -> Option<(usize, u64, Vec<Varied>)> {
+    /// Number of bodies, seed, varied quantities and points of the ensemble; None without one.
+    fn ensemble(&self) -> Option<(usize, u64, Vec<Varied>, Option<Points>)> {
         let ensemble = self.scene.ensemble.as_ref()?;
-        Some((ensemble.number, ensemble.seed, ensemble.varied().into_iter().map(varied).collect()))
+        let varied = ensemble.varied().into_iter().map(varied).collect();
+        let points = ensemble.points.as_ref();
+        let points = points.map(|points| (points.form, points.number, points.paths().collect()));
+        Some((ensemble.number, ensemble.seed, varied, points))
+    }
+
+    /// The values that the points give to `count` bodies from number `first` on: for each path an array (count,) or
+    /// (count, m) and its unit, empty if unknown, or texts.
+    fn given<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Vec<PointValues<'py>>> {
+        let Some(points) = self.scene.ensemble.as_ref().and_then(|ensemble| ensemble.points.as_ref()) else {
+            return Ok(Vec::new());
+        };
+        let bodies = (first..first.saturating_add(count)).map(|body| body % points.number);
+        points
+            .given(&self.scene.text, bodies)
+            .into_iter()
+            .map(|(path, values)| given(py, path, values))
+            .collect()
+    }
+
+    /// The surface of the mesh or the solid in body axes, in metres, as of a scene file at this path: vertices (n, 3) and
+    /// triangles (m, 3); None if the scene has neither.
+    fn surface<'py>(&self, py: Python<'py>, path: PathBuf) -> PyResult<Option<Triangles<'py>>> {
+        let scene = scene::Scene { path, ..self.scene.clone() };
+        let read = py.detach(|| scene.surface_with(&TriangleMesh::read).transpose()).map_err(bad)?;
+        read.map(|surface| triangles(py, &surface.vertices, surface.faces)).transpose()
     }
 
     /// What is kept of the motions of the ensemble, instead of the motions.
@@ -205,16 +234,6 @@ impl Scene {
         let built = (&self.body, &self.laws[..]);
         py.detach(|| self.scene.bodies(ensemble, built, first..last)).map_err(bad)
     }
-}
-
-/// The surface of the mesh or the solid of a scene in body axes, in metres; None if it has neither.
-#[pyfunction]
-pub(crate) fn scene_surface(py: Python<'_>, path: PathBuf) -> PyResult<Option<Triangles<'_>>> {
-    let read = py.detach(|| {
-        let scene = scene::Scene::read(&path).map_err(|problems| report(&problems))?;
-        scene.surface_with(&TriangleMesh::read).transpose().map_err(bad)
-    })?;
-    read.map(|surface| triangles(py, &surface.vertices, surface.faces)).transpose()
 }
 
 /// A law with its name in `polhode.torque` and its arguments.

@@ -86,7 +86,7 @@ pub struct Ensemble {
     /// In kg; NaN where unknown.
     pub masses: Rows<f64>,
     /// Forces on the centres of mass.
-    pub forces: Vec<Force>,
+    pub forces: Vec<Rows<Force>>,
 }
 
 /// A body whose motion could not be computed to the end.
@@ -105,9 +105,15 @@ impl Ensemble {
     pub fn problem(&self, body: usize) -> Problem {
         let start = &self.starts[body];
         let laws: Vec<Torque> = self.laws.iter().map(|law| law.of(body).clone()).collect();
+        let forces: Vec<Force> = self.forces_on(body).cloned().collect();
         Problem::new(self.inertias.of(body), start.rotor, start.omega, &laws)
-            .with_center(start.center, *self.masses.of(body), &self.forces)
+            .with_center(start.center, *self.masses.of(body), &forces)
             .starting_at(start.time)
+    }
+
+    /// The forces on one body.
+    pub(crate) fn forces_on(&self, body: usize) -> impl Iterator<Item = &Force> {
+        self.forces.iter().map(move |force| force.of(body))
     }
 
     /// Computes the motions of all bodies at the times (s, not decreasing; those before a body's start are reached
@@ -127,6 +133,7 @@ impl Ensemble {
         self.check(times, options)?;
         let rows = [self.inertias.0.len(), self.masses.0.len()];
         let rows = rows.into_iter().chain(self.laws.iter().map(|law| law.0.len()));
+        let rows = rows.chain(self.forces.iter().map(|force| force.0.len()));
         assert!(rows.into_iter().all(|n| n == 1 || n == self.starts.len()), "one for all, or one for each");
         Scheduler::new(self, times, options, outputs).work(threads, progress)
     }
@@ -165,7 +172,7 @@ impl Ensemble {
         let apart = |law: &Rows<Torque>| equal && !law.is_one() && !law.of(0).breaks().is_empty();
         // A function is called for one body at a time.
         let called = |law: &Rows<Torque>| !equal && matches!(law.of(0), Torque::Function(_));
-        let moved = self.forces.iter().any(|force| !matches!(force, Force::Constant(_)));
+        let moved = self.forces.iter().any(|force| !matches!(force.of(0), Force::Constant(_)));
         // Only steps of single bodies carry the momentum of wheels with motors.
         let driven = |law: &Rows<Torque>| matches!(law.of(0), Torque::Wheels(_));
         !moved && !self.laws.iter().any(|law| apart(law) || called(law) || driven(law))

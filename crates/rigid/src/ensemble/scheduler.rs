@@ -221,7 +221,7 @@ impl<'a> Scheduler<'a> {
     /// The centre of mass at a time, under constant forces.
     pub fn center(&self, body: usize, time: f64) -> Center {
         let (start, mass) = (&self.ensemble.starts[body], *self.ensemble.masses.of(body));
-        let force = self.ensemble.forces.iter().fold(Vector::default(), |sum, force| match force {
+        let force = self.ensemble.forces_on(body).fold(Vector::default(), |sum, force| match force {
             Force::Constant(force) => sum + *force,
             _ => sum,
         });

@@ -34,16 +34,22 @@ impl Scene {
     /// The same with another source of meshes, as in a browser, which has no files.
     pub fn build_with(&self, mesh: MeshSource<'_>) -> Result<(Body, Vec<Law>), Vec<Diagnostic>> {
         let body = self.body_with(mesh)?;
-        let mut laws = self.torques.clone();
         let body = match self.gravity {
             None => body,
-            Some(gravity) => {
+            Some(_) => {
                 let body = body.moved(Rotor::IDENTITY, self.shift());
-                let body = body.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?;
-                laws.insert(0, gravity.law(&body));
-                body
+                body.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?
             }
         };
+        let (body, laws) = self.with_laws(body)?;
+        self.check_points((&body, &laws))?;
+        Ok((body, laws))
+    }
+
+    /// The body, whose origin is the fixed point if there is one, with its laws.
+    pub(super) fn with_laws(&self, body: Body) -> Result<(Body, Vec<Law>), Vec<Diagnostic>> {
+        let weight = self.gravity.map(|gravity| gravity.law(&body));
+        let laws = weight.into_iter().chain(self.torques.iter().cloned()).collect();
         let held = self.is_held();
         if held && !self.forces.is_empty() {
             let message = "the body is held at a fixed point, where no force moves it; remove [force]";

@@ -3,23 +3,24 @@
 //! The random numbers of a body depend on the seed and its index alone ([`crate::random`]): runs in blocks or threads,
 //! longer runs, and runs with one more varied parameter have the same bodies.
 
+use super::spread::Noise;
 use super::{Attitudes, Ensemble, Gravity, Law, Parameter, Scene, SpinFrame, Spread};
 use crate::body::Body;
 use crate::body::inertia::Inertia;
 use crate::ensemble::{self, Rows, Start};
 use crate::laws::torque::Torque;
-use crate::random::{Words, normal};
+use crate::random::Words;
 use crate::state::center::Center;
 use polhode_ga::{Bivector, Rotor, Vector};
-use std::array::from_fn;
 use std::fmt::Display;
+use std::iter::Take;
 use std::ops::Range;
 use thiserror::Error;
 
 impl Scene {
-    /// A range of the bodies of an ensemble, from the body and the laws of [`Scene::build`]; the torques of thrusts follow
-    /// these laws. An error only for numbers beyond the range of floats.
-    pub fn bodies(
+    /// A range of the bodies of an ensemble about the body and the laws of a scene; the torques of thrusts follow these
+    /// laws. An error only for numbers beyond the range of floats.
+    pub(super) fn drawn(
         &self,
         ensemble: &Ensemble,
         (body, laws): (&Body, &[Law]),
@@ -44,7 +45,7 @@ impl Scene {
             starts: starts.map(start).collect(),
             laws: laws.map(|law| law.map(Rows::new)).collect::<Result<_, _>>()?,
             masses: Rows::new(vec![body.mass]),
-            forces: self.pushes(),
+            forces: self.pushes().into_iter().map(|force| Rows::new(vec![force])).collect(),
         })
     }
 }
@@ -55,33 +56,50 @@ struct Draw<'e> {
     bodies: Range<usize>,
 }
 
-impl Draw<'_> {
+impl<'e> Draw<'e> {
     /// The random words of this name for each body.
-    fn words(&self, name: &str) -> impl Iterator<Item = [u64; 8]> {
+    fn words(&self, name: &str) -> Take<Words> {
         Words::new(self.ensemble.seed, name, self.bodies.start as u64).take(self.bodies.len())
     }
 
-    /// A draw for each body from the random words of this name; without `draw` the nominal value.
-    fn each<T: Clone>(&self, name: &str, nominal: T, draw: Option<impl Fn([u64; 8]) -> T>) -> Vec<T> {
+    /// The random numbers of this name for each body: of its own words, or correlated with others.
+    fn noise(&self, name: &str) -> Box<dyn Iterator<Item = Noise> + 'e> {
+        let ensemble: &'e Ensemble = self.ensemble;
+        match ensemble.covariances.iter().find_map(|covariance| covariance.find(name)) {
+            None => Box::new(self.words(name).map(Noise::Words)),
+            Some(joint) => {
+                let mut streams: Vec<_> = joint.names().map(|name| self.words(name)).collect();
+                let words = move || streams.iter_mut().filter_map(Iterator::next).collect::<Vec<_>>();
+                Box::new(
+                    std::iter::repeat_with(words)
+                        .take(self.bodies.len())
+                        .map(move |words| joint.noise(&words)),
+                )
+            }
+        }
+    }
+
+    /// A draw for each body from the random numbers of this name; without `draw` the nominal value.
+    fn each<T: Clone>(&self, name: &str, nominal: T, draw: Option<impl Fn(Noise) -> T>) -> Vec<T> {
         match draw {
-            Some(draw) => self.words(name).map(draw).collect(),
+            Some(draw) => self.noise(name).map(draw).collect(),
             None => vec![nominal; self.bodies.len()],
         }
     }
 
     /// Vectors distributed about one.
     fn spread(&self, name: &str, spread: Option<Spread>, vector: Vector) -> Vec<Vector> {
-        self.each(name, vector, spread.map(|spread| move |words| Vector(spread.draw(vector.0, &words))))
+        self.each(name, vector, spread.map(|spread| move |noise| Vector(spread.draw(vector.0, &noise))))
     }
 
     /// The direction of four normal numbers is uniform on the 3-sphere, so that its rotor is a uniform attitude.
     fn rotors(&self, nominal: Rotor) -> Vec<Rotor> {
         let draw = |attitudes| {
-            move |words: [u64; 8]| match attitudes {
+            move |noise: Noise| match attitudes {
                 Attitudes::Turned(spread) => {
-                    nominal * Rotor::exp(Bivector(spread.draw([0.0; 3], &words)) * -0.5)
+                    nominal * Rotor::exp(Bivector(spread.draw([0.0; 3], &noise)) * -0.5)
                 }
-                Attitudes::Uniform => Rotor::from_unit_components(unit(from_fn(|k| normal(words[k])))),
+                Attitudes::Uniform => Rotor::from_unit_components(unit(noise.normals())),
             }
         };
         self.each("attitude", nominal, self.ensemble.attitude.map(draw))
@@ -90,12 +108,12 @@ impl Draw<'_> {
     /// Angular velocities in body axes.
     fn omegas(&self, scene: &Scene, rotors: &[Rotor]) -> Vec<Bivector> {
         let size = scene.spin.norm();
-        let direction = |words: [u64; 8]| unit(from_fn(|k| normal(words[k]))).map(|x| size * x);
+        let direction = |noise: Noise| unit(noise.normals()).map(|x| size * x);
         let directions = self.ensemble.directions.then_some(direction);
         let mut spins = self.each("spin.direction", scene.spin.0, directions);
         if let Some(spread) = self.ensemble.spin {
-            let draw = |(spin, words): (&mut [f64; 3], _)| *spin = spread.draw(*spin, &words);
-            spins.iter_mut().zip(self.words("spin")).for_each(draw);
+            let draw = |(spin, noise): (&mut [f64; 3], _)| *spin = spread.draw(*spin, &noise);
+            spins.iter_mut().zip(self.noise("spin")).for_each(draw);
         }
         let omega = |(spin, rotor): ([f64; 3], &Rotor)| match scene.spin_frame {
             SpinFrame::Body => Bivector(spin),
@@ -118,13 +136,13 @@ impl Draw<'_> {
         let [a, b, c] = body.inertia.principal_moments();
         // For a flat body one is 0, or negative by rounding.
         let integrals = [b + c - a, c + a - b, a + b - c].map(|twice| (0.5 * twice).max(0.0));
-        let inertia = |words| {
-            let [x, y, z] = spread.draw(integrals, &words);
+        let inertia = |noise| {
+            let [x, y, z] = spread.draw(integrals, &noise);
             let inertia = Inertia::from_principal_moments([y + z, z + x, x + y])?;
             about_the_point(if frame == Rotor::IDENTITY { inertia } else { inertia.rotated(frame) })
         };
-        let words = self.words("moments").enumerate();
-        words.map(|(row, words)| inertia(words).map_err(self.failed(row))).collect()
+        let noise = self.noise("moments").enumerate();
+        noise.map(|(row, noise)| inertia(noise).map_err(self.failed(row))).collect()
     }
 
     /// The law of each body, or one law for all.
@@ -141,11 +159,11 @@ impl Draw<'_> {
 
     /// The laws of gravity with random accelerations.
     fn weights(&self, parameter: &Parameter, spread: Spread, body: &Body, gravity: Gravity) -> Vec<Torque> {
-        let weight = |words| {
-            let [acceleration, ..] = spread.draw([gravity.acceleration, 0.0, 0.0], &words);
+        let weight = |noise| {
+            let [acceleration, ..] = spread.draw([gravity.acceleration, 0.0, 0.0], &noise);
             Gravity { acceleration, ..gravity }.law(body).torque
         };
-        self.words(&parameter.name()).map(weight).collect()
+        self.noise(&parameter.name()).map(weight).collect()
     }
 
     /// Laws, one for all or one for each body, with a random parameter.
@@ -156,12 +174,12 @@ impl Draw<'_> {
         torques: Vec<Torque>,
     ) -> Result<Vec<Torque>, DrawError> {
         let torque = |row: usize| torques.get(row).unwrap_or(&torques[0]);
-        let draw = |(row, words): (usize, [u64; 8])| {
+        let draw = |(row, noise): (usize, Noise)| {
             let torque = torque(row);
             let Some((numbers, _)) = parameter.of(torque) else { return Ok(torque.clone()) };
-            parameter.set(torque, spread.draw(numbers, &words)).map_err(self.failed(row))
+            parameter.set(torque, spread.draw(numbers, &noise)).map_err(self.failed(row))
         };
-        self.words(&parameter.name()).enumerate().map(draw).collect()
+        self.noise(&parameter.name()).enumerate().map(draw).collect()
     }
 
     /// The error of the body in this row.

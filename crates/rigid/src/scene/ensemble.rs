@@ -1,4 +1,4 @@
-//! The table `[ensemble]`: the number of bodies and their random parameters.
+//! The table `[ensemble]`: the number of bodies, their random parameters and their points.
 //!
 //! ```toml
 //! [ensemble]
@@ -9,20 +9,24 @@
 //! torque.damping = { relative = 0.1 }
 //! ```
 
+use super::covariance::Covariance;
 use super::initial::Initial;
 use super::parameters::{PARAMETERS, Parameter};
+use super::points::{self, Points};
 use super::reader::{Reader, Table, Value};
 use super::spread::{self, FORMS, Shape, Spread};
 use super::{Gravity, Law};
 use crate::laws::registry::Limit;
 use crate::units::Quantity;
 use std::f64::consts::PI;
+use std::sync::Arc;
+use toml::Spanned;
 use toml::de::DeValue;
 
 const MOST_BODIES: i128 = 100_000_000;
 const LARGEST_SEED: i128 = 1 << 53;
 
-/// Bodies that differ at random from the body of the scene.
+/// Bodies that differ from the body of the scene, by given values and at random.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ensemble {
     /// The number of bodies.
@@ -45,6 +49,10 @@ pub struct Ensemble {
     pub parameters: Vec<(&'static Parameter, Spread)>,
     /// What is kept of each motion, some of [`KEPT`]; the motions themselves if this is empty.
     pub keep: Vec<&'static str>,
+    /// The covariances of parameters that vary together.
+    pub covariances: Vec<Covariance>,
+    /// Values of the scene that are given for each body.
+    pub points: Option<Arc<Points>>,
 }
 
 /// What may be kept of the motions: the last state, extrema over the output times, regime and periods of free bodies,
@@ -60,6 +68,8 @@ pub struct Varied {
     pub spread: Option<Spread>,
     /// The unit of the widths, except for factors.
     pub unit: &'static str,
+    /// Whether it is correlated with others.
+    pub correlated: bool,
 }
 
 impl Ensemble {
@@ -78,11 +88,18 @@ impl Ensemble {
             ("velocity", self.velocity.is_some(), self.velocity, Quantity::Speed.si_unit()),
         ];
         let own = own.into_iter().filter(|(_, differs, ..)| *differs);
-        let own = own.map(|(name, _, spread, unit)| Varied { name: name.to_owned(), spread, unit });
+        let correlated = |name: &str| self.covariances.iter().any(|all| all.find(name).is_some());
+        let own = own.map(|(name, _, spread, unit)| Varied {
+            name: name.to_owned(),
+            spread,
+            unit,
+            correlated: correlated(name),
+        });
         let parameters = self.parameters.iter().map(|(parameter, spread)| Varied {
             name: parameter.name(),
             spread: Some(*spread),
             unit: parameter.quantity.map_or("", Quantity::si_unit),
+            correlated: correlated(&parameter.name()),
         });
         own.chain(parameters).collect()
     }
@@ -97,6 +114,18 @@ pub enum Attitudes {
     Turned(Spread),
 }
 
+impl Attitudes {
+    /// Turned by rotation vectors of at most half a turn.
+    pub fn turned(spread: Spread) -> Result<Attitudes, &'static str> {
+        if spread.widths.iter().any(|width| *width > PI) {
+            return Err(
+                "turns by more than half a turn; for every attitude alike write `attitude = \"uniform\"`",
+            );
+        }
+        Ok(Attitudes::Turned(spread))
+    }
+}
+
 /// The nominal values of the scene, as far as they could be read.
 pub struct Nominal<'s> {
     pub initial: Option<Initial>,
@@ -106,7 +135,7 @@ pub struct Nominal<'s> {
 
 impl Nominal<'_> {
     /// The numbers of a parameter and whether they are equal; `None` if they could not be read.
-    fn numbers(&self, parameter: &Parameter) -> Result<Option<([f64; 3], bool)>, Absent> {
+    pub fn numbers(&self, parameter: &Parameter) -> Result<Option<([f64; 3], bool)>, Absent> {
         if parameter.law == "gravity" {
             let Some(gravity) = self.gravity else { return Ok(None) };
             return gravity.map(|gravity| Some(([gravity.acceleration, 0.0, 0.0], true))).ok_or(Absent);
@@ -118,18 +147,22 @@ impl Nominal<'_> {
 }
 
 /// The scene has no such law.
-struct Absent;
+pub struct Absent;
 
-/// Reads the table.
-pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Ensemble> {
+/// Reads the table but for its points, of which there is this number, and its covariances.
+pub fn read(
+    reader: &mut Reader,
+    value: &Value,
+    nominal: &Nominal,
+    points: Option<usize>,
+) -> Option<Ensemble> {
     let table = &reader.table(value, "[ensemble]")?;
-    let varied = ["attitude", "spin", "moments", "position", "velocity", "gravity", "torque"];
-    reader.only(table, &[&["number", "seed", "keep"], &varied[..]].concat());
-    let number = reader.field(table, "number", |reader, value| whole(reader, value, 1, MOST_BODIES));
+    let varied = ["attitude", "spin", "moments", "position", "velocity", "gravity", "torque", "covariance"];
+    reader.only(table, &[&["number", "seed", "keep"], &varied[..], &points::FIELDS].concat());
+    let number = number(reader, table, points, varied.iter().any(|name| table.get(name).is_some()));
     let seed = reader.optional(table, "seed", |reader, value| whole(reader, value, 0, LARGEST_SEED));
     if table.fields.keys().all(|key| matches!(key.get_ref().as_ref(), "number" | "seed" | "keep")) {
-        let message =
-            "all bodies are the same; give at least one of `attitude`, `spin`, `moments`, `torque`, …";
+        let message = "all bodies are the same; give at least one of `attitude`, `spin`, `moments`, `torque`, `grid`, …";
         reader.report(table.span.clone(), message);
     }
     let attitude = reader.optional(table, "attitude", attitude);
@@ -147,7 +180,7 @@ pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Ens
     let keep = reader.optional(table, "keep", |reader, value| keep(reader, value, nominal));
     let (directions, spin) = spin?.unwrap_or_default();
     Some(Ensemble {
-        number: number? as usize,
+        number: number?,
         seed: seed?.unwrap_or(0),
         attitude: attitude?,
         directions,
@@ -157,6 +190,8 @@ pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Ens
         velocity: velocity?,
         parameters: parameters?,
         keep: keep?.unwrap_or_default(),
+        covariances: Vec::new(),
+        points: None,
     })
 }
 
@@ -181,6 +216,26 @@ fn keep(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Vec<&'s
     Some(KEPT.into_iter().filter(|word| words.contains(word)).collect())
 }
 
+/// The number of bodies: that of the points if there are any, or a multiple of it for random parameters.
+fn number(reader: &mut Reader, table: &Table, points: Option<usize>, random: bool) -> Option<usize> {
+    let given = |reader: &mut Reader, value: &Value| whole(reader, value, 1, MOST_BODIES);
+    let has_points = points::FIELDS.iter().any(|name| table.get(name).is_some());
+    let number = match has_points {
+        true => reader.optional(table, "number", given)?,
+        false => reader.field(table, "number", given).map(Some)?,
+    };
+    let number = number.map(|number| number as usize);
+    let Some(count) = points else { return number };
+    let Some(number) = number else { return Some(count) };
+    if number != count && !(random && number % count == 0) {
+        let span = table.get("number").map_or(table.span.clone(), Spanned::span);
+        let multiple = if random { ", or a multiple of it" } else { "" };
+        reader.report(span, format!("must be the number of points, {count}{multiple}, found {number}"));
+        return None;
+    }
+    Some(number)
+}
+
 /// An integer in a range.
 fn whole(reader: &mut Reader, value: &Value, least: i128, most: i128) -> Option<u64> {
     let number = reader.integer(value)?;
@@ -199,13 +254,7 @@ fn attitude(reader: &mut Reader, value: &Value) -> Option<Attitudes> {
     }
     let shape = Shape { quantity: Some(Quantity::Angle), size: 3, alike: false };
     let turned = spread::read(reader, value, &["normal"], shape)?;
-    if turned.widths.iter().any(|width| *width > PI) {
-        let message =
-            "turns by more than half a turn; for every attitude alike write `attitude = \"uniform\"`";
-        reader.report(value.span(), message);
-        return None;
-    }
-    Some(Attitudes::Turned(turned))
+    Attitudes::turned(turned).map_err(|message| reader.report(value.span(), message)).ok()
 }
 
 /// Whether the direction is random, and the distribution of the spin.

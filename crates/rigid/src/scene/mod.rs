@@ -56,6 +56,8 @@
 //! torque.damping = { relative = 0.1 }     # times exp(0.1 n); or normal, uniform: any parameter of a law
 //! torque.magnetic.dipole = { normal = ["1 mA m^2", 0, 0] }
 //! keep = ["last", "extrema"] # optional, instead of the motions; also regime, periods, quantiles, events
+//! covariance = { of = ["velocity"], matrix = [[…], …] }          # normal, correlated
+//! grid.torque.damping = [0.1, 0.2]        # given values, each with each; or list, side by side; or table = "bodies.csv"
 //! ```
 //!
 //! A bare number is in SI units, a string has a unit. All errors in a file are reported at once, each with its line and
@@ -63,15 +65,20 @@
 
 mod body;
 mod build;
+mod correlated;
+mod covariance;
 mod definitions;
 mod draws;
 mod ensemble;
 #[cfg(test)]
 mod file_tests;
 mod formulas;
+mod individual;
 mod initial;
 mod laws;
 mod parameters;
+mod parts;
+mod points;
 mod reader;
 mod run;
 mod solve;
@@ -82,7 +89,6 @@ mod tests;
 pub use crate::laws::force::Push;
 pub use crate::laws::registry::Limit;
 use crate::state::center::Center;
-use crate::units::Quantity;
 pub use body::BodySpec;
 pub use build::MeshSource;
 pub use draws::DrawError;
@@ -90,9 +96,10 @@ pub use ensemble::{Attitudes, Ensemble, KEPT, Varied};
 pub use initial::SpinFrame;
 pub use laws::Law;
 pub use parameters::Parameter;
+pub use points::{Given, Points, TableSource};
 use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Bivector, Rotor, Vector};
-use reader::{Reader, Table, Value};
+use reader::{Reader, Table};
 pub use run::{Choice, Run};
 pub use spread::{Form, Spread};
 use std::fs::File;
@@ -151,11 +158,16 @@ pub struct Gravity {
 }
 
 impl Scene {
-    /// Reads a file; the errors are all that the file has, in its order.
+    /// Reads a file, and the table of points that it names; the errors are all that the file has, in its order.
     pub fn read(path: &Path) -> Result<Scene, Vec<Diagnostic>> {
+        Scene::read_with(path, &read_table)
+    }
+
+    /// The same with another source of tables, such as of other formats.
+    pub fn read_with(path: &Path, tables: TableSource<'_>) -> Result<Scene, Vec<Diagnostic>> {
         let bytes = read_file(path).map_err(|problem| vec![Diagnostic::of_file(path, problem)])?;
         match std::str::from_utf8(&bytes) {
-            Ok(text) => Scene::parse(text, path),
+            Ok(text) => Scene::parse_with(text, path, tables),
             Err(error) => {
                 // Up to the error the lossy text is the text.
                 let (text, start) = (String::from_utf8_lossy(&bytes), error.valid_up_to());
@@ -167,6 +179,11 @@ impl Scene {
 
     /// Reads the text of the file at `path`, which need not exist.
     pub fn parse(text: &str, path: &Path) -> Result<Scene, Vec<Diagnostic>> {
+        Scene::parse_with(text, path, &read_table)
+    }
+
+    /// The same with another source of tables, as in a browser, which has no files.
+    pub fn parse_with(text: &str, path: &Path, tables: TableSource<'_>) -> Result<Scene, Vec<Diagnostic>> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let diagnose = |span: Range<usize>, message: &str| Diagnostic::at(path, text, span, message);
         if text.trim().is_empty() {
@@ -181,7 +198,7 @@ impl Scene {
         let end = text.trim_end().len();
         let root = Table { title: "the file".into(), span: end..end, fields: root.get_ref() };
         let mut reader = Reader::default();
-        let scene = read_scene(&mut reader, &root, path, text);
+        let scene = read_scene(&mut reader, &root, path, text, tables);
         let mut problems = reader.problems;
         match scene {
             Some(scene) if problems.is_empty() => Ok(scene),
@@ -225,46 +242,54 @@ impl Scene {
     }
 }
 
-fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Option<Scene> {
+fn read_scene(
+    reader: &mut Reader,
+    root: &Table,
+    path: &Path,
+    text: &str,
+    tables: TableSource<'_>,
+) -> Option<Scene> {
     let names = [
         "title", "caption", "define", "body", "initial", "gravity", "torque", "force", "run", "method",
         "ensemble",
     ];
     reader.only(root, &[&names[..], &laws::FORMULAS.map(|(name, _)| name)].concat());
-    reader.optional(root, "define", |reader, value| {
-        let table = reader.table(value, "[define]")?;
-        formulas::read(reader, &table);
-        Some(())
-    });
+    parts::define(reader, root);
     let title = reader.optional(root, "title", |reader, value| reader.string(value).map(str::to_owned));
     let caption = reader.optional(root, "caption", |reader, value| {
         reader.string(value).map(|text| text.split_whitespace().collect::<Vec<_>>().join(" "))
     });
-    let body = section(reader, root, "body", "[body]").and_then(|table| body::read(reader, &table));
-    let initial =
-        section(reader, root, "initial", "[initial]").and_then(|table| initial::read(reader, &table));
-    let gravity = reader.optional(root, "gravity", gravity);
-    let torque = reader.optional(root, "torque", |reader, value| reader.table(value, "[torque]"));
-    let torques = laws::read(reader, root, torque.as_ref().and_then(Option::as_ref));
-    let forces = reader.optional(root, "force", laws::forces);
+    for (name, title) in [("body", "[body]"), ("initial", "[initial]")] {
+        if root.get(name).is_none() {
+            reader.report(root.span.clone(), format!("missing table {title}"));
+        }
+    }
+    let found = parts::read(reader, root);
     let method = reader.optional(root, "method", |reader, value| reader.table(value, "[method]"));
-    let run = section(reader, root, "run", "[run]")
+    let run = required(reader, root, "run", "[run]")
         .and_then(|table| run::read(reader, &table, method.as_ref().and_then(Option::as_ref)));
-    let nominal = ensemble::Nominal { initial, gravity, laws: torques.as_deref() };
-    let ensemble = reader.optional(root, "ensemble", |reader, value| ensemble::read(reader, value, &nominal));
-    let initial = initial?;
+    let nominal = ensemble::Nominal {
+        initial: found.initial.flatten(),
+        gravity: found.gravity,
+        laws: found.laws.as_deref(),
+    };
+    let table = |name: &str| tables(&path.parent().unwrap_or(Path::new("")).join(name));
+    let ensemble = reader.optional(root, "ensemble", |reader, value| {
+        individual::read(reader, value, &nominal, root, text, &table)
+    });
+    let initial = found.initial??;
     Some(Scene {
         title: title?,
         caption: caption?,
-        body: body?,
+        body: found.body??,
         attitude: initial.attitude,
         spin: initial.spin,
         spin_frame: initial.spin_frame,
         center: initial.center,
         time: initial.time,
-        gravity: gravity?,
-        torques: torques?,
-        forces: forces?.unwrap_or_default(),
+        gravity: found.gravity?,
+        torques: found.laws?,
+        forces: found.forces?.unwrap_or_default(),
         run: run?,
         ensemble: ensemble?,
         path: path.to_owned(),
@@ -273,7 +298,7 @@ fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Opt
 }
 
 /// A required table.
-fn section<'t>(reader: &mut Reader, root: &Table<'t>, name: &str, title: &'static str) -> Option<Table<'t>> {
+fn required<'t>(reader: &mut Reader, root: &Table<'t>, name: &str, title: &'static str) -> Option<Table<'t>> {
     let Some(value) = root.get(name) else {
         reader.report(root.span.clone(), format!("missing table {title}"));
         return None;
@@ -281,14 +306,16 @@ fn section<'t>(reader: &mut Reader, root: &Table<'t>, name: &str, title: &'stati
     reader.table(value, title)
 }
 
-fn gravity(reader: &mut Reader, value: &Value) -> Option<Gravity> {
-    let table = reader.table(value, "[gravity]")?;
-    reader.only(&table, &["acceleration", "pivot"]);
-    let acceleration =
-        reader.field(&table, "acceleration", |reader, value| reader.quantity(value, Quantity::Acceleration));
-    let pivot =
-        reader.optional(&table, "pivot", |reader, value| formulas::vector(reader, value, Quantity::Length));
-    Some(Gravity { acceleration: acceleration?, pivot: pivot?.unwrap_or_default() })
+/// The text of a table of points.
+fn read_table(path: &Path) -> Result<String, String> {
+    let name = path.display();
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("csv") => std::fs::read_to_string(path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => format!("{name}: no such file"),
+            _ => format!("{name}: cannot be read: {error}"),
+        }),
+        _ => Err(format!("{name}: expected a table in a file .csv")),
+    }
 }
 
 /// The bytes of a file, at most [`LARGEST_FILE`].

@@ -9,7 +9,7 @@ use std::ops::Range;
 use toml::de::DeValue;
 
 /// Maximum deviation of the logarithm of a factor: e¹⁰ is 22026.
-const WIDEST_FACTOR: f64 = 10.0;
+pub const WIDEST_FACTOR: f64 = 10.0;
 
 /// The distribution of one or three numbers about those of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,24 @@ pub enum Form {
     Uniform,
     /// `x exp(w n)`, n standard normal: x keeps its sign.
     Relative,
+}
+
+/// Random numbers of a body.
+pub enum Noise {
+    /// Random words.
+    Words([u64; 8]),
+    /// Correlated normal numbers with their standard deviations.
+    Normals([f64; 3]),
+}
+
+impl Noise {
+    /// Standard normal numbers.
+    pub fn normals<const N: usize>(&self) -> [f64; N] {
+        match self {
+            Noise::Words(words) => from_fn(|k| normal(words[k])),
+            Noise::Normals(normals) => from_fn(|k| normals[k]),
+        }
+    }
 }
 
 /// The names of the distributions.
@@ -56,15 +74,17 @@ impl Form {
 }
 
 impl Spread {
-    /// The numbers drawn from random words.
-    pub fn draw(&self, numbers: [f64; 3], words: &[u64; 8]) -> [f64; 3] {
+    /// The numbers drawn from random ones.
+    pub(super) fn draw(&self, numbers: [f64; 3], noise: &Noise) -> [f64; 3] {
         from_fn(|k| {
-            let word = words[if self.alike { 0 } else { k }];
             let (x, w) = (numbers[k], self.widths[k]);
-            match self.form {
-                Form::Normal => x + w * normal(word),
-                Form::Uniform => x + w * uniform(word),
-                Form::Relative => x * exp(w * normal(word)),
+            let at = if self.alike { 0 } else { k };
+            match (self.form, noise) {
+                (Form::Normal, Noise::Words(words)) => x + w * normal(words[at]),
+                (Form::Uniform, Noise::Words(words)) => x + w * uniform(words[at]),
+                (Form::Relative, Noise::Words(words)) => x * exp(w * normal(words[at])),
+                (Form::Relative, Noise::Normals(normals)) => x * exp(normals[at]),
+                (_, Noise::Normals(normals)) => x + normals[at],
             }
         })
     }

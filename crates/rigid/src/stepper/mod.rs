@@ -297,13 +297,13 @@ impl Member {
         let frame = inertia.principal_frame();
         let torques: Vec<Torque> = laws.into_iter().map(|law| law.in_axes(frame)).collect();
         let mass = *ensemble.masses.of(body);
-        let steady = ensemble.forces.iter().try_fold(Vector::default(), |sum, force| match force {
+        let steady = ensemble.forces_on(body).try_fold(Vector::default(), |sum, force| match force {
             Force::Constant(f) => Some(sum + *f),
             _ => None,
         });
         let changing = || Translation {
             mass,
-            forces: ensemble.forces.iter().map(|force| force.clone().in_axes(frame)).collect(),
+            forces: ensemble.forces_on(body).map(|force| force.clone().in_axes(frame)).collect(),
         };
         let acceleration = match steady {
             Some(sum) if !ensemble.forces.is_empty() => sum / mass,

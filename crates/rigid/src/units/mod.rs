@@ -127,6 +127,17 @@ pub fn parse(text: &str, expected: Quantity) -> Result<f64, String> {
     }
 }
 
+/// The value of a quantity of any kind, in SI units, and its SI unit; None for other text.
+pub fn si(text: &str) -> Option<(f64, &'static str)> {
+    let (number, unit) = split_number(text.trim())?;
+    let factor = match unit.trim_start() {
+        "" => return Some((value(text, &number, Factor::default()).ok()?, "")),
+        unit => Factor::parse(unit).ok()?,
+    };
+    let quantity = Quantity::ALL.iter().find(|quantity| quantity.measures(factor.dimension))?;
+    Some((value(text, &number, factor).ok()?, quantity.si_unit()))
+}
+
 /// The SI value of one unit, `mm` or `kg m^2`.
 pub fn parse_unit(unit: &str, expected: Quantity) -> Result<f64, String> {
     value(unit, &Number { mantissa: "1".to_owned(), exponent: 0 }, factor(unit, unit.trim(), expected)?)

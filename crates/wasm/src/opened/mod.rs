@@ -45,7 +45,8 @@ impl Opened {
     /// Reads a scene and computes its motion at its output times, with the same bits as Python. Errors have places in
     /// the scene, or report that the time limit was exceeded.
     pub fn new(text: &str, name: &str, files: &Files, go_on: GoOn) -> Result<Opened, String> {
-        let scene = Scene::parse(text, Path::new(name)).map_err(|problems| texts(&problems))?;
+        let table = |path: &Path| table_among(files, path);
+        let scene = Scene::parse_with(text, Path::new(name), &table).map_err(|problems| texts(&problems))?;
         // A scene has at most one mesh; the body and its surface both need it.
         let read = OnceCell::new();
         let source = |path: &Path| read.get_or_init(|| mesh_among(files, path)).clone();
@@ -82,8 +83,21 @@ impl Opened {
 
 /// The surface of the mesh or the solid of a scene, in body axes; None if it has neither or cannot be read.
 pub fn surface(text: &str, name: &str, files: &Files) -> Option<Surface> {
-    let scene = Scene::parse(text, Path::new(name)).ok()?;
+    let scene = Scene::parse_with(text, Path::new(name), &|path: &Path| table_among(files, path)).ok()?;
     scene.surface_with(&|path: &Path| mesh_among(files, path))?.ok()
+}
+
+/// The text of a table of bodies in one of the files.
+fn table_among(files: &Files, path: &Path) -> Result<String, String> {
+    let name = path.display().to_string();
+    let Some(bytes) =
+        files.get(&name).filter(|_| path.extension().is_some_and(|extension| extension == "csv"))
+    else {
+        return Err(format!(
+            "{name}: the page does not read this table; write its values in `list`, or use `polhode run`"
+        ));
+    };
+    String::from_utf8(bytes.clone()).map_err(|_| format!("{name}: not UTF-8 text, save the file as UTF-8"))
 }
 
 /// The mesh in one of the files.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -18,6 +19,9 @@ from polhode._support.arrays import Array
 # Coordinates that are names of components.
 LABELS = {"quaternion": "wxyz", "axis": "xyz", "inertia_column": "xyz"}
 
+# What the inertia depends on.
+_INERTIAS = ("moments", "body", "gravity.pivot", "define")
+
 
 @dataclass(frozen=True)
 class Variable:
@@ -33,7 +37,8 @@ class Variable:
     @property
     def labels(self) -> dict[str, Any]:
         """The attributes in the file."""
-        return {"units": self.units, "long_name": self.text, **self.attributes}
+        units = {"units": self.units} if self.units else {}
+        return {**units, "long_name": self.text, **self.attributes}
 
 
 class EnsembleLayout:
@@ -60,7 +65,7 @@ class EnsembleLayout:
         if self._scene.force is not None:
             return notes | dict.fromkeys(sorted(given))
         moves = np.any(state.position._data) or np.any(state.velocity._data)
-        if moves or not given.isdisjoint(self._ensemble.varied):
+        if moves or self._ensemble._varies(*given, *(f"initial.{name}" for name in given), "define"):
             notes |= dict.fromkeys(sorted(given), " at the start")
         return notes
 
@@ -75,12 +80,13 @@ class EnsembleLayout:
             "seed": np.uint64(self._ensemble.seed),
             "number": self._ensemble.number,
             "varied": "; ".join(f"{name}: {how}" for name, how in self._ensemble.varied.items()),
+            **({} if self._ensemble.table_sha256 is None else {"table_sha256": self._ensemble.table_sha256}),
         }
 
     def shared(self) -> Iterator[Variable]:
         """Yield the variables that all bodies share, without the labels."""
         yield Variable("time", ("time",), self._scene.times, "s", "time", {"axis": "T"})
-        if "moments" not in self._ensemble.varied:
+        if not self._ensemble._varies(*_INERTIAS):
             body = self._scene.body
             inertia = body.inertia_about(0) if self._scene.held else body.inertia
             dims, units, text = MOTION["inertia"]
@@ -95,13 +101,15 @@ class EnsembleLayout:
                 yield Variable(name, ("time", *dims), values, units, text)
             else:
                 yield Variable(name, dims, values[:, 0], units, text + note)
-        if "moments" in self._ensemble.varied:
+        if self._ensemble._varies(*_INERTIAS):
             inertias = np.broadcast_to(trajectory.inertia, len(trajectory))
             dims, units, text = MOTION["inertia"]
             yield Variable("inertia", dims, np.array([x.matrix for x in inertias]), units, text)
         yield from _proofs(trajectory)
-        if any(name.startswith(("torque.", "gravity.")) for name in self._ensemble.varied):
+        if self._ensemble._varies("torque", "gravity", "body", "define"):
             yield from self._laws(rows)
+        if self._ensemble.points is not None:
+            yield from self._points(rows, self._ensemble.points)
 
     def _laws(self, rows: slice) -> Iterator[Variable]:
         """Yield the drawn parameters of torque laws."""
@@ -109,11 +117,27 @@ class EnsembleLayout:
             if isinstance(law, _native.Law):
                 continue
             name, arguments = law
+            if not arguments:  # a formula
+                continue
             for argument, values in zip(TORQUES[name].arguments, arguments, strict=True):
                 dims = () if values.ndim == 1 else ("axis" if values.shape[1] == 3 else "quaternion",)
                 text = f"parameter of the torque law {name}, as drawn"
                 label = "_".join(filter(None, (name, argument.field)))
                 yield Variable(label, dims, _wxyz(values), argument.unit, text)
+
+    def _points(self, rows: slice, number: int) -> Iterator[Variable]:
+        """Yield the points of bodies, and the numbers in the scene that they replace."""
+        points = np.arange(rows.start, rows.stop) % number
+        yield Variable("point", (), points, "1", "number of the point of the grid, list or table")
+        for path, values, unit in self._ensemble._given(rows.start, rows.stop - rows.start):
+            if isinstance(values, list):
+                continue
+            name, text = re.sub(r"\W+", "_", path).strip("_"), f"{path}, as given"
+            if values.ndim == 1 or values.shape[1] == 3:
+                yield Variable(name, ("axis",) * (values.ndim - 1), values, unit, text)
+                continue
+            for index, column in enumerate(values.T):
+                yield Variable(f"{name}_{index}", (), column.copy(), unit, f"{path}[{index}], as given")
 
 
 def failures(found: list[tuple[int, str]]) -> tuple[Variable, tuple[str, list[str], str]]:

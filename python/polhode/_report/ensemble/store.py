@@ -40,6 +40,7 @@ _IDENTITY = {
     "number": "number of bodies",
     "times": "output times",
     "body": "body, such as its mesh",
+    "table": "table of bodies",
     "block": "size of a block",
     "keep": "list of what to keep",
 }
@@ -290,7 +291,9 @@ def identity_of(scene: Scene) -> dict[str, Any]:
     body = hashlib.sha256(np.ascontiguousarray(scene.body.inertia.matrix).tobytes())
     body.update(np.array([scene.body.mass, *scene.shift]).tobytes())
     attributes = layout_of(scene).attributes()
+    table = {} if ensemble.table_sha256 is None else {"table": ensemble.table_sha256}
     return {
+        **table,
         "version": _native.__version__,
         "scene": scene.text,
         "seed": ensemble.seed,

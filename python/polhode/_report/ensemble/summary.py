@@ -49,6 +49,7 @@ def summary(records: Records) -> dict[str, Any]:
             "number": scene.ensemble.number,
             "seed": scene.ensemble.seed,
             "varied": dict(scene.ensemble.varied),
+            **({} if scene.ensemble.points is None else {"points": scene.ensemble.points}),
             "levels": list(LEVELS),
             "keep": list(scene.ensemble.keep),
         },
@@ -147,7 +148,8 @@ def as_text(summary: dict[str, Any]) -> str:
 
 
 def _drawn(ensemble: dict[str, Any]) -> Iterator[Row]:
-    yield "bodies", f"{ensemble['number']}, drawn from seed {ensemble['seed']}"
+    points = f" at {ensemble['points']} points" if "points" in ensemble else ""
+    yield "bodies", f"{ensemble['number']}{points}, drawn from seed {ensemble['seed']}"
     yield from ensemble["varied"].items()
     if not ensemble["varied"]:
         yield "", "identical: [ensemble] varies nothing"

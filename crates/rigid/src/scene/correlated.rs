@@ -1,0 +1,99 @@
+//! Reads the covariances of an ensemble, one table or a list of them.
+
+use super::covariance;
+use super::ensemble::{Attitudes, Ensemble, Nominal};
+use super::parameters::PARAMETERS;
+use super::reader::{Reader, Value};
+use super::spread::{Form, Spread, WIDEST_FACTOR};
+use crate::laws::registry::Limit;
+use toml::de::DeValue;
+
+/// Reads `covariance` and gives the parameters in it their distributions.
+pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal, ensemble: &mut Ensemble) -> Option<()> {
+    let DeValue::Array(groups) = value.get_ref() else { return one(reader, value, nominal, ensemble) };
+    let read: Vec<_> = groups.iter().map(|group| one(reader, group, nominal, ensemble)).collect();
+    read.into_iter().collect()
+}
+
+/// Reads one covariance, and gives its parameters their distributions.
+fn one(reader: &mut Reader, value: &Value, nominal: &Nominal, ensemble: &mut Ensemble) -> Option<()> {
+    let mut places = Vec::new();
+    let found = covariance::read(reader, value, |reader, item, name| {
+        let size = match name {
+            "attitude" | "spin" | "moments" | "position" | "velocity" => 3,
+            _ => {
+                let Some(parameter) = PARAMETERS.iter().find(|parameter| parameter.name() == name) else {
+                    let message = format!(
+                        "unknown parameter `{name}`, expected `attitude`, `spin`, `moments`, `position`, `velocity`, or one of a law such as `torque.damping`"
+                    );
+                    reader.report(item.span(), message);
+                    return None;
+                };
+                let Ok(known) = nominal.numbers(parameter) else {
+                    let place = parameter.place();
+                    let message =
+                        format!("a random parameter needs a value in the scene, which has no {place}");
+                    reader.report(item.span(), message);
+                    return None;
+                };
+                // Equal numbers of all axes stay equal.
+                if known.is_some_and(|(_, one)| one) { 1 } else { parameter.size }
+            }
+        };
+        if ensemble.varied().iter().any(|varied| varied.name == name) {
+            reader.report(item.span(), format!("`{name}` has a distribution already, give only one of them"));
+            return None;
+        }
+        places.push((name.to_owned(), size, item.span()));
+        Some(size)
+    })?;
+    let mut first = 0;
+    for (name, size, span) in places {
+        let [widths, reach] = found.widths(first, size);
+        first += size;
+        let form = if name == "moments" { Form::Relative } else { Form::Normal };
+        let spread = Spread { form, widths, alike: size == 1 };
+        let widest = Spread { widths: reach, ..spread };
+        let initial = nominal.initial;
+        match name.as_str() {
+            "attitude" => {
+                let turned = Attitudes::turned(spread);
+                ensemble.attitude = Some(turned.map_err(|message| reader.report(span, message)).ok()?);
+            }
+            "moments" => {
+                if let Some(width) = widths.into_iter().find(|width| *width > WIDEST_FACTOR) {
+                    let message = format!(
+                        "the deviation of a logarithm must be from 0 to {WIDEST_FACTOR}, found {width}"
+                    );
+                    reader.report(span, message);
+                    return None;
+                }
+                ensemble.moments = Some(spread);
+            }
+            "spin" => {
+                ensemble.spin = Some(spread);
+                let spin = initial.map_or([0.0; 3], |initial| initial.spin.0);
+                widest.check(reader, span, &spin, Limit::Finite);
+            }
+            "position" => {
+                ensemble.position = Some(spread);
+                let position = initial.map_or([0.0; 3], |initial| initial.center.position.0);
+                widest.check(reader, span, &position, Limit::Finite);
+            }
+            "velocity" => {
+                ensemble.velocity = Some(spread);
+                let velocity = initial.map_or([0.0; 3], |initial| initial.center.velocity.0);
+                widest.check(reader, span, &velocity, Limit::Finite);
+            }
+            _ => {
+                let parameter = PARAMETERS.iter().find(|parameter| parameter.name() == name)?;
+                if let Ok(Some((numbers, _))) = nominal.numbers(parameter) {
+                    widest.check(reader, span, &numbers[..parameter.size], parameter.limit);
+                }
+                ensemble.parameters.push((parameter, spread));
+            }
+        }
+    }
+    ensemble.covariances.push(found);
+    Some(())
+}

@@ -14,6 +14,9 @@ from polhode._fit.samples import Samples
 from polhode._fit.torqued import TorquedFlow
 from polhode._support.arrays import Array
 
+# Number of samples of an arc under a torque, which only gives a start for the next.
+_MOST = 100
+
 
 @dataclass(frozen=True, eq=False)
 class Model:
@@ -26,8 +29,9 @@ class Model:
     laws: Laws | None = None
 
     def before(self, end: float) -> Model:
-        """Return the model of the data up to a time."""
-        attitudes, rates = (x and x.before(end) for x in (self.attitudes, self.rates))
+        """Return the model of the data up to a time; of those under a torque, of some of them."""
+        most = None if self.laws is None else _MOST
+        attitudes, rates = (x and x.before(end, most) for x in (self.attitudes, self.rates))
         return replace(self, attitudes=attitudes, rates=rates)
 
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -100,7 +101,7 @@ class Layout:
     scale: bool = False
     torque: int = 0
 
-    @property
+    @cached_property
     def places(self) -> dict[str, slice]:
         """Places of the parameters in a step: first those of the motion, then those of the sensors."""
         sizes = {

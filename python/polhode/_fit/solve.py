@@ -22,10 +22,13 @@ _SHAPE, _SCALE, _BIAS, _TORQUE = 10.0, 10.0, 10.0, 100.0
 _ON_ARC = 0.01
 _FIRST, _GROWTH = 3.0, 2.5  # rad of turn in the first arc; factor from arc to arc
 _LEAST = 2  # samples per parameter in the first arc
+# Of many starts the best go on after a few evaluations.
+_MANY, _FEW = 8, 6
 _KEPT, _WORSE = 3, 4.0  # starts that go on to the next arc, if their cost is less than so many times the best
 # Relative change of the sum of squares that ends the search: parameters then move by less than a hundredth of
 # their standard deviation, up to 1e5 data.
 _ENOUGH = 1e-9
+_ENOUGH_ON_ARC = 1e-4
 
 
 def solve(model: Model, axes: Rotor, start: Parameters | None) -> list[Parameters]:
@@ -38,6 +41,9 @@ def solve(model: Model, axes: Rotor, start: Parameters | None) -> list[Parameter
         ends: list[float] = []
     else:
         candidates, ends = starts(model, axes), _arcs(model)
+        if len(candidates) > _MANY:
+            first = model.before(ends[0]) if ends else model
+            candidates = _best(first, candidates, _ON_ARC, _FEW, _MANY)
     for end in ends:
         candidates = _best(model.before(end), candidates, _ON_ARC, 60)
     return _best(model, candidates, 1.0, 100)
@@ -55,7 +61,9 @@ def _arcs(model: Model) -> list[float]:
     return ends
 
 
-def _best(model: Model, candidates: Iterable[Parameters], looseness: float, calls: int) -> list[Parameters]:
+def _best(
+    model: Model, candidates: Iterable[Parameters], looseness: float, calls: int, kept: int = 0
+) -> list[Parameters]:
     """Return the solutions from these starts, best first, without those that are much worse or equal."""
     found: list[tuple[float, Parameters]] = []
     reasons: list[ValueError] = []
@@ -70,6 +78,8 @@ def _best(model: Model, candidates: Iterable[Parameters], looseness: float, call
     if not found:
         raise ValueError(f"no start leads to a fit: {reasons[0] if reasons else 'the residuals overflow'}")
     found.sort(key=lambda pair: pair[0])
+    if kept:
+        return [solution for _, solution in found[:kept]]
     limit = _WORSE * found[0][0]
     return [solution for cost, solution in found[:_KEPT] if cost <= limit]
 
@@ -119,7 +129,7 @@ def _solved(model: Model, base: Parameters, looseness: float, calls: int) -> tup
             method="trf",
             x_scale=model.scale(base),
             xtol=1e-9,
-            ftol=_ENOUGH,
+            ftol=_ENOUGH if looseness == 1.0 else _ENOUGH_ON_ARC,
             gtol=1e-12,
             max_nfev=calls,
             **bounds,

@@ -18,8 +18,8 @@ from polhode._support.arrays import Array
 _TOLERANCE = 1e-12
 # Change of the motion, in rad, between the two points of a difference. The error of a derivative relative to
 # its largest value is about _CHANGE²/24 of truncation and _TOLERANCE/_CHANGE of the integration, less than
-# 1e-8 together. A step whose change is another by more than the factor _WITHIN is corrected once.
-_CHANGE, _WITHIN = 2e-4, 10.0
+# 1e-8 together. Steps are corrected once if a change is not within these factors: the error is up to 1e-6.
+_CHANGE, _WITHIN = 2e-4, (0.005, 20.0)
 _LARGEST = 1e6  # factor of a correction
 
 
@@ -44,11 +44,11 @@ class TorquedFlow:
         rate = float(np.linalg.norm(at.omega)) or 1.0
         times = np.concatenate([of_attitudes, of_rates])
         turn = rate * float(np.ptp(times))
-        steps = 0.5 * _CHANGE / (1 + turn) * self._sizes(at, rate, turn)
+        steps = 0.5 * _CHANGE * self._sizes(at, rate, turn)
         turns, rates = self._differences(at, steps, of_attitudes, of_rates)
         change = np.maximum(_largest(turns), _largest(rates) / rate)
         factors = np.clip(_CHANGE / np.maximum(change, _CHANGE / _LARGEST), 1 / _LARGEST, _LARGEST)
-        if (np.abs(np.log(factors)) > np.log(_WITHIN)).any():
+        if ((factors * _WITHIN[0] > 1) | (factors * _WITHIN[1] < 1)).any():
             steps = steps * factors
             turns, rates = self._differences(at, steps, of_attitudes, of_rates)
         return turns / (2 * steps), rates / (2 * steps), self._by_time(at, of_rates, rate)

@@ -45,7 +45,7 @@ def fit(
 
     Derivatives of free motion are exact, from `FreeMotion.derivatives`. Those of motion under a torque are
     central differences of `simulate` at a tolerance of 1e-12; steps follow from the change of the motion, so
-    that their errors are about 1e-8 of the largest derivative.
+    that errors are less than 1e-6 of the largest derivative.
 
     Parameters
     ----------

@@ -19,6 +19,7 @@ _EQUAL = 2.0  # standard deviations within which moments count as equal
 # Other bodies are reported up to this increase of chi-square (5 standard deviations) if a ratio differs by so
 # much. Noise alone fits a small wobble of some frequency or other, with a decrease of about 2 ln n.
 _RIVAL, _APART = 25.0, 0.02
+_AT_BOUND = 0.01  # standard deviations from a bound
 _FLAT = 1e-12  # least determinant of the derivatives of two ratios by the shape
 _AXES = ("1", "2", "3")
 
@@ -89,7 +90,11 @@ def information(
     unsure += _rivals(model, at, variance, others)
     if unsure:
         unsure.append(_arc(model, at))
-    statements += [*unsure, *_symmetries(ratios, covariance, rest), *_bounds(model, at)]
+    statements += [
+        *unsure,
+        *_symmetries(ratios, covariance, rest),
+        *_bounds(model, at, np.sqrt(np.diag(covariance))[of["torque"]]),
+    ]
     return Information(tuple(names), tuple(units), values, covariance, tuple(statements))
 
 
@@ -165,12 +170,10 @@ def _symmetries(ratios: Array, covariance: Array, others: list[int]) -> Iterator
             )
 
 
-def _bounds(model: Model, at: Parameters) -> Iterator[str]:
+def _bounds(model: Model, at: Parameters, errors: Array) -> Iterator[str]:
     """Yield a statement for each parameter at its bound, where the linearised covariance does not hold."""
     if model.laws is None:
         return
-    for name, value, least, size in zip(
-        model.laws.names, at.torque, model.laws.least, model.torque_sizes(at), strict=True
-    ):
-        if value - least <= 1e-6 * size:
+    for name, value, least, error in zip(model.laws.names, at.torque, model.laws.least, errors, strict=True):
+        if value - least <= _AT_BOUND * error:
             yield f"{name}: at its bound {least:g}, where its standard deviation does not hold"

@@ -22,6 +22,9 @@ _SHAPE, _SCALE, _BIAS, _TORQUE = 10.0, 10.0, 10.0, 100.0
 _ON_ARC = 0.01
 _FIRST, _GROWTH = 3.0, 2.5  # rad of turn in the first arc; factor from arc to arc
 _LEAST = 2  # samples per parameter in the first arc
+# Mean square of residuals up to which a start that the caller gives has led to the best fit.
+_GOOD = 2.0
+_CALLS, _CALLS_ON_ARC = 100, 60
 # Of many starts the best go on after a few evaluations.
 _MANY, _FEW = 8, 6
 _KEPT, _WORSE = 3, 4.0  # starts that go on to the next arc, if their cost is less than so many times the best
@@ -36,17 +39,28 @@ def solve(model: Model, axes: Rotor, start: Parameters | None) -> list[Parameter
 
     `axes` turns axes of the data to principal axes, or to those to start from.
     """
-    if start is not None:
-        candidates = [start]
-        ends: list[float] = []
-    else:
-        candidates, ends = starts(model, axes), _arcs(model)
-        if len(candidates) > _MANY:
-            first = model.before(ends[0]) if ends else model
-            candidates = _best(first, candidates, _ON_ARC, _FEW, _MANY)
+    if start is None:
+        return _best(model, _along_arcs(model, starts(model, axes)), 1.0, _CALLS)
+    found = _best(model, [start], 1.0, _CALLS_ON_ARC)
+    if _is_good(model, found[0]):
+        return found
+    return _best(model, [*_along_arcs(model, [start]), *found], 1.0, _CALLS)
+
+
+def _is_good(model: Model, at: Parameters) -> bool:
+    """Return whether residuals are of the size of their standard deviations, as far as these are known."""
+    return float(np.mean(model.residuals(at) ** 2)) < _GOOD
+
+
+def _along_arcs(model: Model, candidates: list[Parameters]) -> list[Parameters]:
+    """Return the best solutions of arcs that grow."""
+    ends = _arcs(model)
+    if len(candidates) > _MANY:
+        first = model.before(ends[0]) if ends else model
+        candidates = _best(first, candidates, _ON_ARC, _FEW, _MANY)
     for end in ends:
-        candidates = _best(model.before(end), candidates, _ON_ARC, 60)
-    return _best(model, candidates, 1.0, 100)
+        candidates = _best(model.before(end), candidates, _ON_ARC, _CALLS_ON_ARC)
+    return candidates
 
 
 def _arcs(model: Model) -> list[float]:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from polhode._fit.result import Fit
 
 _TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+_PERIODS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0}
 _RATES = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.pi / 30}
 
 
@@ -25,9 +26,9 @@ def add(commands: Any) -> None:
         run,
         help="fit a body to measured rates, attitudes or periods",
         description="Fit the ratios of the principal moments, the initial state, the bias of a gyroscope, "
-        "its axes and torques to rates (columns t,wx,wy,wz in body axes), attitudes (t,qw,qx,qy,qz, from body "
-        "axes to space axes) or both. The first line of the file has the names of the columns; in a file of "
-        "both kinds fields of one may be empty. Units are never guessed. With --periods instead of a file: "
+        "its axes and torques to rates (columns t,wx,wy,wz in body axes), attitudes (t,qw,qx,qy,qz, from "
+        "body axes to space axes) or both. The first line of the file has the names of the columns; in a file "
+        "of both kinds fields of one may be empty. Units are never guessed. With --periods instead of a file: "
         "the rotations of a body that a light curve with these periods leaves possible.",
     )
     fit.add_argument("data", metavar="FILE.csv", nargs="?", help="the measured data")
@@ -82,6 +83,20 @@ def add(commands: Any) -> None:
         "pd_control.kp; they start from the values of the scene",
     )
     fit.add_argument(
+        "--periods",
+        metavar=("ROTATION", "PRECESSION"),
+        nargs=2,
+        type=_period,
+        help='periods of a light curve, such as "5.41 d" "7.35 d" or "263 h" "27.38 h", instead of a file',
+    )
+    fit.add_argument(
+        "--moments",
+        metavar=("I1", "I2", "I3"),
+        nargs=3,
+        type=_positive,
+        help="principal moments for --periods in any unit; without them, the ranges of possible bodies",
+    )
+    fit.add_argument(
         "-o", "--output", metavar="FILE.json", type=file_name("a fit"), help="write the fit to this file"
     )
     fit.add_argument(
@@ -98,6 +113,10 @@ def run(options: argparse.Namespace) -> int:
     from polhode._support.extras import optional
     from polhode._support.files import check_target, write_atomically
 
+    if options.periods is not None:
+        return _run_periods(options)
+    if options.moments is not None:
+        options.parser.error("--moments needs --periods")
     written = [Path(x) for x in (options.output, options.plot) if x is not None]
     for path in written:
         check_target(path)
@@ -117,6 +136,33 @@ def run(options: argparse.Namespace) -> int:
         print(found.summary())
         if written:
             print("\n".join(["Written", *(f"  {path}" for path in written)]))
+    return 0
+
+
+def _run_periods(options: argparse.Namespace) -> int:
+    """Print and write the rotations that two periods leave possible."""
+    from polhode._fit.light_curve import as_dict, rotations, statements
+    from polhode._support.files import check_target, write_atomically
+
+    if options.data is not None or options.plot is not None:
+        options.parser.error("--periods takes neither a file of data nor --plot")
+    if options.output is not None:
+        check_target(Path(options.output))
+    found = rotations(options.moments, *options.periods)
+    unknown = statements(options.moments, found)
+    facts = {"moments": options.moments, "rotations": as_dict(found), "undetermined": unknown}
+    text = json.dumps(facts, indent=2, allow_nan=False)
+    if options.output is not None:
+        write_atomically({Path(options.output): f"{text}\n".encode()})
+    if options.json:
+        print(text)
+    elif not options.quiet:
+        for one in found:
+            periods = f"rotation {one.rotation_period:.6g} s, precession {one.precession_period:.6g} s"
+            print(f"{periods}, {one.mode}-axis mode\n  {one.text()}")
+        print("\n".join(["not determined by the data", *(f"  {x}" for x in unknown)]))
+        if options.output is not None:
+            print(f"Written\n  {options.output}")
     return 0
 
 
@@ -169,6 +215,14 @@ def _columns(text: str) -> tuple[str, ...]:
             f"such as t,wx,wy,wz, got {text!r}"
         )
     return names
+
+
+def _period(text: str) -> float:
+    """Return a period in s."""
+    value, _, unit = text.strip().partition(" ")
+    if unit.strip() not in _PERIODS:
+        raise argparse.ArgumentTypeError(f"expected a number and a unit s, min, h or d, got {text!r}")
+    return positive(value, 'expected a period such as "5.41 d"') * _PERIODS[unit.strip()]
 
 
 def _positive(text: str) -> float:

@@ -27,9 +27,9 @@ def add(commands: Any) -> None:
         help="fit a body to measured rates, attitudes or periods",
         description="Fit the ratios of the principal moments, the initial state, the bias of a gyroscope, "
         "its axes and torques to rates (columns t,wx,wy,wz in body axes), attitudes (t,qw,qx,qy,qz, from "
-        "body axes to space axes) or both. The first line of the file has the names of the columns; in a file "
-        "of both kinds fields of one may be empty. Units are never guessed. With --periods instead of a file: "
-        "the rotations of a body that a light curve with these periods leaves possible.",
+        "body axes to space axes) or both. The first line of the file has the names of the columns; in a "
+        "file of both kinds fields of one may be empty. Units are never guessed. With --periods instead of a "
+        "file: the rotations of a body that a light curve with these periods leaves possible.",
     )
     fit.add_argument("data", metavar="FILE.csv", nargs="?", help="the measured data")
     fit.add_argument("--time-unit", metavar="UNIT", choices=_TIMES, help="unit of t: s, ms, us or ns")

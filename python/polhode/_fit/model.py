@@ -103,7 +103,7 @@ class Model:
         turns, by_motion, by_time = self.flow.derivatives(at, *self._times(at))
         of, blocks = self.layout.places, []
         if self.attitudes is not None:
-            computed = self.flow.states(at, *self._times(at))[0]
+            computed = self.flow.states(at, self._times(at)[0], np.empty(0))[0]
             off = (self.attitudes.values * ~computed).to_rotation_vector()
             block = np.zeros((len(off), 3, self.size))
             block[..., : turns.shape[-1]] = -right_jacobian(off, inverse=True) @ turns

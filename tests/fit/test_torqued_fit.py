@@ -102,6 +102,9 @@ def test_damping_of_a_gyroscope_record(start):
     assert np.abs(again - exact).max() < 3 * SIGMA
     assert "viscous_damping.d_1" in fit.summary()
     assert "viscous_damping" in fit.to_dict()["torque"]
+    if start is not None:
+        pytest.importorskip("matplotlib")
+        assert len(fit.plot().axes) == 1
 
 
 def test_a_known_torque_determines_the_scale():

@@ -68,6 +68,92 @@ def test_quaternions(order, tmp_path, capsys):
     assert found["bias"] is None
 
 
+@pytest.fixture
+def both(tmp_path):
+    """Rates at 100 Hz that are 0.05 s late, and a quaternion at every third time."""
+    rng = np.random.default_rng(1)
+    t, every = TIMES * 0.01, TIMES % 3 == 0
+    omega = FREE.at(t - 0.05).omega_body.components + 0.01 * rng.normal(size=(300, 3))
+    turns = ph.Rotor.from_rotation_vector(0.002 * rng.normal(size=(300, 3)))
+    q = (turns * FREE.at(t).rotor).to_quaternion(order="wxyz")
+    lines = ["t,wx,wy,wz,qw,qx,qy,qz"]
+    for k, time in enumerate(t.tolist()):
+        cells = [time, *omega[k].tolist(), *(q[k].tolist() if every[k] else [])]
+        lines.append(",".join(map(repr, cells)) + ",,,," * (not every[k]))
+    path = tmp_path / "both.csv"
+    path.write_text("\n".join(lines) + "\n")
+    return str(path)
+
+
+SIGMAS = ["--time-unit", "s", "--rate-unit", "rad/s", "--sigma", "0.01", "--sigma-attitude", "0.002"]
+
+
+def test_rates_and_quaternions_in_one_file(both, capsys):
+    assert main.main(["fit", both, *SIGMAS, "--clock-offset", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    # Ten parameters within 4.5 standard deviations: each is left with probability 7e-6.
+    errors = dict(zip(found["names"], found["stderr"], strict=True))
+    assert (np.abs(np.array(found["moments"]) - RATIOS)[:2] < 4.5 * np.array(found["stderr"][:2])).all()
+    assert abs(found["clock_offset"] + 0.05) < 4.5 * errors["clock_offset"] < 0.005
+    # 300 rates and 100 quaternions of three components each, 12 parameters.
+    assert found["dof"] == 3 * 400 - 12
+    assert abs(found["chi2_reduced"] - 1) < 5 * np.sqrt(2 / found["dof"])
+
+
+def test_errors_of_both_kinds(both, rates, tmp_path, capsys):
+    lines = (tmp_path / "both.csv").read_text().split("\n")
+    lines[2] = lines[2].replace(",,,,", ",1,,,")
+    (tmp_path / "both.csv").write_text("\n".join(lines))
+    assert main.main(["fit", both, *SIGMAS]) == 3
+    assert f"both.csv:3:{len(lines[2].rstrip(',')) + 2}: error: '' is not a finite" in capsys.readouterr().err
+    for options, message in (
+        (SIGMAS[:-2], "need --sigma, of the rates, and --sigma-attitude"),
+        ([*SIGMAS, "--free", "damping"], "give them with --torque SCENE.toml"),
+    ):
+        lines[2] = lines[1]
+        (tmp_path / "both.csv").write_text("\n".join([lines[0], *lines[3:]]))
+        with pytest.raises(SystemExit):
+            main.main(["fit", both, *options])
+        assert message in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main.main(["fit", rates, *UNITS, "--clock-offset"])
+    assert "--clock-offset needs a file with rates and attitudes" in capsys.readouterr().err
+
+
+SCENE = """
+[body]
+moments = ["1 kg m²", "2 kg m²", "2.6 kg m²"]
+
+[initial]
+spin = { vector = ["0.3 rad/s", "4 rad/s", "0.9 rad/s"] }
+
+[torque]
+viscous_damping = ["0.05 N m s", "0.1 N m s", "0.08 N m s"]
+
+[run]
+duration = "3 s"
+"""
+
+
+def test_torques_of_a_scene(tmp_path, capsys):
+    damped = ph.simulate(
+        BODY,
+        ph.State(ph.Rotor.identity(), ph.bivector([0.3, 4.0, 0.9])),
+        TIMES * 0.01,
+        ph.torque.viscous_damping([0.3, 0.5, 0.4]),
+    )
+    noise = 0.005 * np.random.default_rng(2).normal(size=(300, 3))
+    path = table(tmp_path / "damped.csv", "t,wx,wy,wz", TIMES * 0.01, damped.omega_body.components + noise)
+    (tmp_path / "damped.toml").write_text(SCENE)
+    options = ["--torque", str(tmp_path / "damped.toml"), "--free", "viscous_damping", "--no-bias", "--json"]
+    assert main.main(["fit", path, "--time-unit", "s", "--rate-unit", "rad/s", *options]) == 0
+    found = json.loads(capsys.readouterr().out)
+    k = found["names"].index("viscous_damping.d_1")
+    values, errors = (np.array(found[x])[k : k + 3] for x in ("values", "stderr"))
+    assert (np.abs(values - np.array([0.3, 0.5, 0.4]) / 2.6) < 4.5 * errors).all()
+    assert found["units"][k] == "N m s / (kg m²)"
+
+
 def test_quaternions_by_names(tmp_path, capsys):
     q = FREE.at(TIMES * 0.01).rotor.to_quaternion(order="wxyz")
     path = table(tmp_path / "q.csv", "qx,qy,qz,qw,t", q[:, 1:], q[:, 0], TIMES * 0.01)
@@ -114,7 +200,7 @@ def test_missing_names_and_bytes(rates, tmp_path, capsys):
     [
         (["--time-unit", "s"], "rates need their unit: --rate-unit rad/s"),
         (["--rate-unit", "rpm"], "required: --time-unit"),
-        ([*UNITS, "--columns", "t,wx"], "expected 4 names (time and rates) or 5"),
+        ([*UNITS, "--columns", "t,wx"], "expected 4 names (time and rates), 5"),
         ([*UNITS, "--columns", "t,wx,wy,wz,wx"], "needs its order: --order wxyz"),
         ([*UNITS, "--sigma", "0"], "expected a positive number, got '0'"),
         ([*UNITS, "-o", "fit.csv"], "a fit is saved as FILE.json, not 'fit.csv'"),

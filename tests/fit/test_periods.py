@@ -1,9 +1,12 @@
 """Angular velocities from the rotation and precession periods of light curves."""
 
+import json
+
 import numpy as np
 import pytest
 
 import polhode as ph
+from polhode._cli import main
 
 DAY = 86400.0
 TOUTATIS = (3.09, 3.22, 1)
@@ -80,3 +83,67 @@ def test_bad_periods():
     with pytest.raises(ValueError, match="moments needs 3 components"):
         ph.omega_from_periods([1, 2], 1, 1, mode="long")
     assert ph.omega_from_periods(np.empty((0, 3)), 1, 1, mode="long").shape == (0,)
+
+
+def test_published_periods_of_apophis_give_its_published_energy():
+    """Pravec et al., Icarus 233, 48 (2014): precession 27.38 h, rotation 263 h, short-axis mode.
+
+    Its moments relative to the largest are 0.61 and 0.965, its energy relative to that of the rotation about
+    the axis of the largest moment 1.024 with an error of 0.013 (3 sigma).
+    """
+    from polhode._fit.light_curve import rotations
+
+    found = {
+        (x.mode, x.rotation_period > x.precession_period): x
+        for x in rotations([0.61, 0.965, 1], 263 * 3600.0, 27.38 * 3600.0)
+    }
+    short = found["short", True]
+    assert short.energy_ratio == pytest.approx(1.024, abs=0.0005)
+    # The same periods belong to a motion about the long axis, with a larger energy.
+    assert found["long", True].energy_ratio == pytest.approx(1.043, abs=0.0005)
+    assert not found["short", False].is_possible
+    assert not found["long", False].is_possible
+
+
+def test_the_command_reports_the_modes_of_toutatis(capsys, tmp_path):
+    out = tmp_path / "toutatis.json"
+    periods = ["fit", "--periods", "5.41 d", "7.35 d"]
+    assert main.main([*periods, "--moments", "3.09", "3.22", "1", "-o", str(out)]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("rotation 467424 s, precession 635040 s, long-axis mode\n  omega ")
+    assert "rotation 467424 s, precession 635040 s, short-axis mode\n  not possible\n" in text
+    assert "mode: 2 rotations have these periods" in text
+    found = json.loads(out.read_text())["rotations"][0]
+    omega = ph.omega_from_periods(TOUTATIS, 5.41 * DAY, 7.35 * DAY, mode="long")
+    np.testing.assert_allclose(found["omega_body"], omega.components, rtol=1e-12)
+    assert found["wobble"] == pytest.approx(np.radians([50.54, 51.21]), abs=1e-4)
+
+
+def test_the_command_reports_the_bodies_of_two_periods(capsys):
+    """A rotation period below that of the precession excludes the short-axis mode of any body."""
+    assert main.main(["fit", "--periods", "5.41 d", "7.35 d", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    long, short = found["rotations"][:2]
+    assert long["is_possible"]
+    assert not short["is_possible"]
+    (low, high), _ = long["ranges"]
+    # The shape model of Toutatis, 1/3.22, is one of them, within the step of 0.04.
+    assert low - 0.02 <= 1 / 3.22 <= high + 0.02
+    assert any(text.startswith("moments: two periods leave a family") for text in found["undetermined"])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--periods", "5.41", "7.35 d"], "expected a number and a unit s, min, h or d, got '5.41'"),
+        (["--periods", "-1 d", "7.35 d"], "expected a period such as"),
+        (["a.csv", "--periods", "1 d", "7 d"], "--periods takes neither a file of data nor --plot"),
+        (["--moments", "1", "2", "3"], "--moments needs --periods"),
+        ([], "required: FILE.csv"),
+    ],
+)
+def test_wrong_usage_of_periods(options, message, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main.main(["fit", *options])
+    assert stop.value.code == 2
+    assert message in capsys.readouterr().err

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from polhode._fit.result import Fit
 
 _TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+_PERIODS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0}
 _RATES = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.pi / 30}
 
 
@@ -23,16 +24,15 @@ def add(commands: Any) -> None:
         commands,
         "fit",
         run,
-        help="fit a free body to measured rates or attitudes",
-        description="Fit the ratios of the principal moments, the initial state and the bias of a gyroscope "
-        "to rates (columns t,wx,wy,wz in body axes) or attitudes (t,qw,qx,qy,qz, from body axes to space "
-        "axes) of a freely rotating body. The axes of the data are principal axes. The first line of the "
-        "file has the names of the columns; units are never guessed.",
+        help="fit a body to measured rates, attitudes or periods",
+        description="Fit the ratios of the principal moments, the initial state, the bias of a gyroscope, "
+        "its axes and torques to rates (columns t,wx,wy,wz in body axes), attitudes (t,qw,qx,qy,qz, from "
+        "body axes to space axes) or both. The first line of the file has the names of the columns; in a "
+        "file of both kinds fields of one may be empty. Units are never guessed. With --periods instead of a "
+        "file: the rotations of a body that a light curve with these periods leaves possible.",
     )
-    fit.add_argument("data", metavar="FILE.csv", help="the measured data")
-    fit.add_argument(
-        "--time-unit", metavar="UNIT", choices=_TIMES, required=True, help="unit of t: s, ms, us or ns"
-    )
+    fit.add_argument("data", metavar="FILE.csv", nargs="?", help="the measured data")
+    fit.add_argument("--time-unit", metavar="UNIT", choices=_TIMES, help="unit of t: s, ms, us or ns")
     fit.add_argument(
         "--rate-unit", metavar="UNIT", choices=_RATES, help="unit of the rates: rad/s, deg/s or rpm"
     )
@@ -40,8 +40,8 @@ def add(commands: Any) -> None:
         "--columns",
         metavar="NAMES",
         type=_columns,
-        help="names of the columns of time and rates (4 names) or of time and quaternion (5), separated by "
-        "commas",
+        help="names of the columns of time and rates (4 names), of time and quaternion (5), or of time, "
+        "rates and quaternion (8), separated by commas",
     )
     words = "order of the quaternion of --columns: wxyz or xyzw"
     fit.add_argument("--order", metavar="ORDER", choices=("wxyz", "xyzw"), help=words)
@@ -52,7 +52,50 @@ def add(commands: Any) -> None:
         help="standard deviation of each rate, in the unit of the rates, or of attitudes about each axis, in "
         "rad; default estimated from the residuals",
     )
+    fit.add_argument(
+        "--sigma-attitude",
+        metavar="RAD",
+        type=_positive,
+        help="standard deviation of attitudes in a file of both kinds, where --sigma is that of rates",
+    )
     fit.add_argument("--no-bias", dest="bias", action="store_false", help="rates without a constant bias")
+    fit.add_argument(
+        "--clock-offset",
+        action="store_true",
+        help="fit the time to add to the times of the rates, in a file of both kinds",
+    )
+    fit.add_argument(
+        "--sensor-axes",
+        metavar="AXES",
+        choices=("principal", "fit"),
+        default="principal",
+        help="axes of the data: principal axes of the body (default), or fit them",
+    )
+    fit.add_argument(
+        "--torque", metavar="SCENE.toml", help="scene whose torques act on the body; default free motion"
+    )
+    fit.add_argument(
+        "--free",
+        metavar="NAMES",
+        type=lambda text: tuple(name.strip() for name in text.split(",")),
+        default=(),
+        help="parameters of these torques to fit, separated by commas, such as viscous_damping or "
+        "pd_control.kp; they start from the values of the scene",
+    )
+    fit.add_argument(
+        "--periods",
+        metavar=("ROTATION", "PRECESSION"),
+        nargs=2,
+        type=_period,
+        help='periods of a light curve, such as "5.41 d" "7.35 d" or "263 h" "27.38 h", instead of a file',
+    )
+    fit.add_argument(
+        "--moments",
+        metavar=("I1", "I2", "I3"),
+        nargs=3,
+        type=_positive,
+        help="principal moments for --periods in any unit; without them, the ranges of possible bodies",
+    )
     fit.add_argument(
         "-o", "--output", metavar="FILE.json", type=file_name("a fit"), help="write the fit to this file"
     )
@@ -70,6 +113,10 @@ def run(options: argparse.Namespace) -> int:
     from polhode._support.extras import optional
     from polhode._support.files import check_target, write_atomically
 
+    if options.periods is not None:
+        return _run_periods(options)
+    if options.moments is not None:
+        options.parser.error("--moments needs --periods")
     written = [Path(x) for x in (options.output, options.plot) if x is not None]
     for path in written:
         check_target(path)
@@ -92,32 +139,90 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _fitted(options: argparse.Namespace) -> Fit:
-    from polhode import Rotor, fit
-    from polhode._fit.table import QUATERNION, read_table
+def _run_periods(options: argparse.Namespace) -> int:
+    """Print and write the rotations that two periods leave possible."""
+    from polhode._fit.light_curve import as_dict, rotations, statements
+    from polhode._support.files import check_target, write_atomically
 
-    table, names = read_table(Path(options.data), options.columns)
-    times = table.times * _TIMES[options.time_unit]
-    if len(names) == len(QUATERNION):
+    if options.data is not None or options.plot is not None:
+        options.parser.error("--periods takes neither a file of data nor --plot")
+    if options.output is not None:
+        check_target(Path(options.output))
+    found = rotations(options.moments, *options.periods)
+    unknown = statements(options.moments, found)
+    facts = {"moments": options.moments, "rotations": as_dict(found), "undetermined": unknown}
+    text = json.dumps(facts, indent=2, allow_nan=False)
+    if options.output is not None:
+        write_atomically({Path(options.output): f"{text}\n".encode()})
+    if options.json:
+        print(text)
+    elif not options.quiet:
+        for one in found:
+            periods = f"rotation {one.rotation_period:.6g} s, precession {one.precession_period:.6g} s"
+            print(f"{periods}, {one.mode}-axis mode\n  {one.text()}")
+        print("\n".join(["not determined by the data", *(f"  {x}" for x in unknown)]))
+        if options.output is not None:
+            print(f"Written\n  {options.output}")
+    return 0
+
+
+def _fitted(options: argparse.Namespace) -> Fit:
+    from polhode import Rotor, Scene, fit
+    from polhode._fit.table import read_tables
+
+    error = options.parser.error
+    if options.data is None:
+        error("the following arguments are required: FILE.csv")
+    if options.time_unit is None:
+        error("the following arguments are required: --time-unit")
+    if options.free and options.torque is None:
+        error("--free names parameters of torques; give them with --torque SCENE.toml")
+    tables = read_tables(Path(options.data), options.columns)
+    given: dict[str, Any] = {}
+    if "attitude" in tables:
         order: Any = "wxyz" if options.columns is None else options.order
         if order is None:
-            options.parser.error("a quaternion of --columns needs its order: --order wxyz or --order xyzw")
+            error("a quaternion of --columns needs its order: --order wxyz or --order xyzw")
+        table = tables["attitude"]
         rotors = Rotor.from_quaternion(table.values, order=order)
-        return fit(attitude=(times, rotors), sigma_attitude=options.sigma)
-    if options.rate_unit is None:
-        options.parser.error("rates need their unit: --rate-unit rad/s, deg/s or rpm")
-    unit = _RATES[options.rate_unit]
-    sigma = None if options.sigma is None else options.sigma * unit
-    return fit(rates=(times, table.values * unit), sigma_rates=sigma, bias=options.bias)
+        given["attitude"] = table.times * _TIMES[options.time_unit], rotors
+        given["sigma_attitude"] = options.sigma if options.sigma_attitude is None else options.sigma_attitude
+    if "rates" in tables:
+        if options.rate_unit is None:
+            error("rates need their unit: --rate-unit rad/s, deg/s or rpm")
+        unit, table = _RATES[options.rate_unit], tables["rates"]
+        given["rates"] = table.times * _TIMES[options.time_unit], table.values * unit
+        given["sigma_rates"] = None if options.sigma is None else options.sigma * unit
+        given["bias"] = options.bias
+    if len(tables) == 2 and (options.sigma is None or options.sigma_attitude is None):
+        error("rates and attitudes together need --sigma, of the rates, and --sigma-attitude, to weigh them")
+    if len(tables) == 1 and options.clock_offset:
+        error("--clock-offset needs a file with rates and attitudes")
+    return fit(
+        **given,
+        clock_offset=options.clock_offset,
+        sensor_axes=options.sensor_axes,
+        torque=None if options.torque is None else Scene.read(options.torque).torque,
+        free=options.free,
+    )
 
 
 def _columns(text: str) -> tuple[str, ...]:
     names = tuple(name.strip() for name in text.split(","))
-    if len(names) not in (4, 5) or not all(names):
+    if len(names) not in (4, 5, 8) or not all(names):
         raise argparse.ArgumentTypeError(
-            f"expected 4 names (time and rates) or 5 (time and quaternion), such as t,wx,wy,wz, got {text!r}"
+            "expected 4 names (time and rates), 5 (time and quaternion) or 8 (time, rates and quaternion), "
+            f"such as t,wx,wy,wz, got {text!r}"
         )
     return names
+
+
+def _period(text: str) -> float:
+    """Return a period in s."""
+    value, _, unit = text.strip().partition(" ")
+    if unit.strip() not in _PERIODS:
+        raise argparse.ArgumentTypeError(f"expected a number and a unit s, min, h or d, got {text!r}")
+    return positive(value, 'expected a period such as "5.41 d"') * _PERIODS[unit.strip()]
 
 
 def _positive(text: str) -> float:

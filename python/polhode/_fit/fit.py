@@ -1,20 +1,25 @@
-"""`fit`: the body, its motion and the bias of a sensor from measured attitudes and rates."""
+"""`fit`: the body, its motion, torques and sensors from measured attitudes and rates."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, Literal
 
 import numpy as np
 
 from polhode._algebra.constructors import bivector
+from polhode._algebra.rotor import Rotor
 from polhode._fit.information import information
-from polhode._fit.model import Model, Parameters, shape_of
+from polhode._fit.laws import Laws, laws_of
+from polhode._fit.model import Model
+from polhode._fit.parameters import Layout, Parameters, shape_of
 from polhode._fit.result import Fit
 from polhode._fit.samples import attitudes_of, rates_of
 from polhode._fit.solve import solve
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.state import angular_velocity
 from polhode._support.extras import optional
+from polhode.torque import Torque
 
 
 def fit(
@@ -25,21 +30,28 @@ def fit(
     sigma_rates: Any = None,
     bias: bool = True,
     clock_offset: bool = False,
+    sensor_axes: Rotor | Literal["principal", "fit"] = "principal",
+    torque: Torque | None = None,
+    free: Sequence[str] = (),
     start: Any = None,
 ) -> Fit:
-    """Fit a freely rotating body to measured attitudes, body rates, or both.
+    """Fit a rotating body to measured attitudes, body rates, or both.
 
     Least squares by Levenberg and Marquardt's method in a trust region (`scipy.optimize.least_squares`,
-    ``"trf"``) with the exact derivatives of `FreeMotion.derivatives`. Unknown are two ratios of the
-    principal moments, the initial state, the bias of the gyroscope and the offset of its clock. Second
+    ``"trf"``). Unknown are two ratios of the principal moments, the initial state, the bias of the gyroscope,
+    the offset of its clock, the directions of the principal axes and parameters of torque laws. Second
     moments of mass stay positive, so that a real body has the moments. The search starts from each order of
     the moments and from a linear fit of Euler's equations, on a short arc that grows to all of the data.
+
+    Derivatives of free motion are exact, from `FreeMotion.derivatives`. Those of motion under a torque are
+    central differences of `simulate` at a tolerance of 1e-12; steps follow from the change of the motion, so
+    that errors are less than 1e-6 of the largest derivative.
 
     Parameters
     ----------
     attitude
         A pair ``(times, rotors)``: times (n,) in s that increase, and Rotors (n,) from body axes to space
-        axes, n >= 3. The axes of the data are principal axes of the body.
+        axes, n >= 3.
     rates
         A pair ``(times, omega_body)``: angular velocities in body axes in rad/s, bivectors (m,) or an array
         (m, 3), m >= 3; as those of a gyroscope.
@@ -53,20 +65,34 @@ def fit(
         Whether the rates have an unknown constant bias.
     clock_offset
         Whether to fit the time to add to the times of the rates; needs attitudes, too.
+    sensor_axes
+        The axes of the data, which are those of the body in `attitude` and `rates`. ``"principal"``: the
+        principal axes. ``"fit"``: unknown. Or a Rotor that turns components in axes of the data to those in
+        principal axes: ``x_principal = sensor_axes(x_data)``.
+    torque
+        A law of `polhode.torque` or a sum of them, on the axes of the data; None for free motion. The time of
+        laws is that of the data.
+    free
+        Names of the parameters of the torque to be fitted, which start from their values in `torque`:
+        ``"viscous_damping"`` for all of a law, ``"pd_control.kp"`` for one, ``"formula.k"`` for a value of a
+        formula; ``"constant_body[1]"`` for the second of two equal laws. Gains that are equal along the three
+        axes are one parameter.
     start
-        A pair ``(inertia, omega_body)`` at the first time to start from, instead of the search; the inertia
-        is diagonal.
+        A pair ``(inertia, omega_body)`` at the first time to start from, instead of the search, or a triple
+        with the attitude, a Rotor. The inertia is on the axes of the data.
 
     Returns
     -------
     Fit
-        Moments relative to the largest, state, bias, covariance, residuals, and what the data do not
-        determine. Of rates alone the attitude is not determined, and `rotor` is None.
+        Moments relative to the largest (in kg m² where a torque determines them), state, bias, covariance,
+        residuals, and what the data do not determine. Of rates of a body whose torque does not depend on the
+        attitude, the attitude is not determined, and `rotor` is None.
 
     Raises
     ------
     ValueError
-        For data that are not finite, too few, or in wrong shapes, and if no start leads to a fit.
+        For data that are not finite, too few, or in wrong shapes, for names that the torque does not have,
+        and if no start leads to a fit.
     ImportError
         Without SciPy: ``pip install 'polhode[scipy]'``.
     """
@@ -84,26 +110,40 @@ def fit(
             "so that the offset of one clock cannot be found"
         )
     first = min(float(x.times[0]) for x in data.values())
-    model = Model(attitudes, measured, first, bool(bias) and measured is not None, bool(clock_offset))
+    laws = laws_of(torque, free)
+    scaling = laws.scaling(first)
+    layout = Layout(
+        attitude=attitudes is not None or laws.depends_on_attitude(first),
+        bias=bool(bias) and measured is not None,
+        offset=bool(clock_offset),
+        axes=isinstance(sensor_axes, str) and sensor_axes == "fit",
+        scale=scaling is None,
+        torque=laws.size,
+    )
+    model = Model(attitudes, measured, first, layout, laws if laws.torque.laws else None)
     dof = 3 * sum(map(len, data.values())) - model.size
     if dof <= 0:
         raise ValueError(
             f"{dof + model.size} measured components cannot determine {model.size} parameters; give more data"
         )
-    found, *others = solve(model, None if start is None else _start(start, model))
+    axes = _axes(sensor_axes)
+    found, *others = solve(model, axes, None if start is None else _start(start, model, axes, laws))
     sums = float((model.residuals(found) ** 2).sum())
     is_known = all(x.is_known for x in data.values())
     variance = 1.0 if is_known else sums / dof
-    facts = information(model, found, variance, others)
+    facts = information(model, found, variance, others, scaling)
     differences = dict(zip(data, model.differences(found), strict=True))
     return Fit(
-        inertia=Inertia.from_principal_moments(*(found.moments / found.moments.max()).tolist()),
+        inertia=found.inertia,
         omega_body=bivector(found.omega),
         rotor=found.rotor,
         time=first,
-        bias=bivector(found.bias) if model.has_bias else None,
-        clock_offset=found.offset if model.has_offset else None,
+        sensor_axes=found.axes if layout.axes else None,
+        torque=laws.with_values(found.torque) if laws.torque.laws else None,
+        bias=bivector(found.bias) if layout.bias else None,
+        clock_offset=found.offset if layout.offset else None,
         names=facts.names,
+        units=facts.units,
         values=facts.values,
         covariance=facts.covariance,
         times={name: x.times for name, x in data.items()},
@@ -115,17 +155,49 @@ def fit(
     )
 
 
-def _start(start: Any, model: Model) -> Parameters:
+def _axes(given: Any) -> Rotor:
+    """Return the rotor from axes of the data to principal axes, or to start from."""
+    if isinstance(given, str) and given in ("principal", "fit"):
+        return Rotor.identity()
+    if not isinstance(given, Rotor) or given.shape:
+        raise TypeError(f"sensor_axes must be 'principal', 'fit' or a single Rotor, got {given!r}")
+    return given.astype(float)
+
+
+def _start(start: Any, model: Model, axes: Rotor, laws: Laws) -> Parameters:
     """Return the parameters of a start that the caller gives."""
-    if not isinstance(start, tuple | list) or len(start) != 2 or not isinstance(start[0], Inertia):
-        raise TypeError("start must be a pair (Inertia, omega_body)")
-    inertia, omega = start
-    matrix, rate = inertia.matrix, angular_velocity(omega).components
-    if matrix.shape != (3, 3) or rate.shape != (3,):
+    if (
+        not isinstance(start, tuple | list)
+        or len(start) not in (2, 3)
+        or not isinstance(start[0], Inertia)
+        or not (len(start) == 2 or isinstance(start[2], Rotor))
+    ):
+        raise TypeError("start must be a pair (Inertia, omega_body) or a triple (Inertia, omega_body, Rotor)")
+    inertia, rate = start[0], angular_velocity(start[1]).components
+    if inertia.matrix.shape != (3, 3) or rate.shape != (3,):
         raise ValueError(f"start needs one body, got omega_body of shape {rate.shape}")
+    if model.layout.axes:
+        axes = ~inertia.principal_frame
+    turned = axes.to_matrix()
+    matrix = turned @ inertia.matrix @ turned.T
     moments = matrix.diagonal()
     if np.abs(matrix - np.diag(moments)).max() > 1e-12 * moments.max():
-        raise ValueError("the inertia of start must be diagonal: axes of the data are principal axes")
+        raise ValueError(
+            "the inertia of start must be diagonal: axes of the data are principal axes"
+            if axes == Rotor.identity()
+            else "the inertia of start does not have the principal axes of sensor_axes"
+        )
     fractions = np.maximum(moments.sum() / 2 - moments, 1e-9 * moments.sum())
-    rotor = None if model.attitudes is None else model.attitudes.values[0]
-    return Parameters(shape_of(fractions), rate, rotor, np.zeros(3))
+    rotor = start[2] if len(start) == 3 else None
+    if rotor is None and model.layout.attitude:
+        rotor = Rotor.identity() if model.attitudes is None else model.attitudes.values[0]
+    scale = float(np.log(moments.max())) if model.layout.scale else 0.0
+    return Parameters(
+        shape_of(fractions),
+        rate,
+        rotor if model.layout.attitude else None,
+        np.zeros(3),
+        axes=axes,
+        scale=scale,
+        torque=laws.values,
+    )

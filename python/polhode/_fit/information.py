@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from polhode._fit.model import Model, Parameters
+from polhode._fit.model import Model
+from polhode._fit.parameters import Parameters
 from polhode._support.arrays import Array
 
 # A direction counts as not determined if it is uncertain by more than half of the size of its parameters.
@@ -18,47 +19,67 @@ _EQUAL = 2.0  # standard deviations within which moments count as equal
 # Other bodies are reported up to this increase of chi-square (5 standard deviations) if a ratio differs by so
 # much. Noise alone fits a small wobble of some frequency or other, with a decrease of about 2 ln n.
 _RIVAL, _APART = 25.0, 0.02
+_AT_BOUND = 0.01  # standard deviations from a bound
+_FLAT = 1e-12  # least determinant of the derivatives of two ratios by the shape
 _AXES = ("1", "2", "3")
 
-SCALE = "overall scale of the moments: free motion depends on their ratios only"
+SCALE = "overall scale of the moments: {} on their ratios only"
+RELATIVE = "overall scale of the moments: {} are relative to the largest"
 ATTITUDE = "attitude: angular velocities in the body do not contain it"
 
 
 @dataclass(frozen=True, eq=False)
 class Information:
-    """Names, values and covariance of the parameters, and what the data do not determine."""
+    """Names, units, values and covariance of the parameters, and what the data do not determine."""
 
     names: tuple[str, ...]
+    units: tuple[str, ...]
     values: Array
     covariance: Array
     undetermined: tuple[str, ...]
 
 
-def information(model: Model, at: Parameters, variance: float, others: list[Parameters]) -> Information:
-    """Return the information of residuals of this variance at the best fit; `others` fit worse."""
+def information(
+    model: Model, at: Parameters, variance: float, others: list[Parameters], scaling: Array | None
+) -> Information:
+    """Return the information of residuals of this variance at the best fit; `others` fit worse.
+
+    `scaling` has the powers of `Laws.scaling`.
+    """
     top = int(np.argmax(at.moments))
-    ratios = at.moments / at.moments[top]
+    ratios = at.ratios
     rest = [k for k in range(3) if k != top]
-    jacobian = model.jacobian(at)
-    jacobian[:, :3] *= at.moments[top]
-    jacobian = np.delete(jacobian, top, axis=1) / np.sqrt(variance)
-    names = [f"i{k + 1}/i{top + 1}" for k in rest] + [f"omega_{k}" for k in _AXES]
-    values = [*ratios[rest], *at.omega]
-    rate = model.rate
-    sizes = [1.0] * 2 + [rate] * 3
-    if at.rotor is not None:
-        names, values, sizes = names + [f"attitude_{k}" for k in _AXES], values + [0.0] * 3, sizes + [1.0] * 3
-    if model.has_bias:
-        names, values, sizes = names + [f"bias_{k}" for k in _AXES], [*values, *at.bias], sizes + [rate] * 3
-    if model.has_offset:
-        names, values, sizes = [*names, "clock_offset"], [*values, at.offset], [*sizes, 1 / rate]
-    scale = np.array(sizes)
+    jacobian = model.jacobian(at) / np.sqrt(variance)
+    of, laws = model.layout.places, model.laws
+    jacobian[:, of["shape"]] = _by_ratios(jacobian[:, of["shape"]], at, rest, top)
+    largest = float(np.exp(at.scale))
+    jacobian[:, of["scale"]] /= largest
+    values, scale = np.zeros(model.size), np.ones(model.size)
+    sizes = model.torque_sizes(at)
+    given: dict[str, tuple[Any, Any, list[str], str]] = {
+        "shape": (ratios[rest], 1.0, [f"i{k + 1}/i{top + 1}" for k in rest], ""),
+        "omega": (at.omega, model.rate, [f"omega_{k}" for k in _AXES], "rad/s"),
+        "attitude": (0.0, 1.0, [f"attitude_{k}" for k in _AXES], "rad"),
+        "axes": (0.0, 1.0, [f"axes_{k}" for k in _AXES], "rad"),
+        "scale": (largest, largest, [f"i{top + 1}"], "kg m²"),
+        "torque": (at.torque, sizes, [] if laws is None else laws.names, ""),
+        "bias": (at.bias, model.rate, [f"bias_{k}" for k in _AXES], "rad/s"),
+        "offset": (at.offset, 1 / model.rate, ["clock_offset"], "s"),
+    }
+    names: list[str] = []
+    units: list[str] = []
+    for name, (value, size, own, unit) in given.items():
+        if of[name].stop > of[name].start:
+            values[of[name]], scale[of[name]] = value, size
+            names, units = names + own, units + [unit] * len(own)
+    if laws is not None:
+        units[of["torque"]] = laws.units(scaling)
     _, singular, rows = np.linalg.svd(jacobian * scale, full_matrices=False)
-    least = float(singular[0]) * np.finfo(float).eps * len(scale) or 1.0
+    least = float(singular[0]) * model.flow.precision * len(scale) or 1.0
     spread = 1 / np.maximum(singular, least)
     root = scale[:, np.newaxis] * rows.T * spread
     covariance = root @ root.T
-    statements = [SCALE] + ([ATTITUDE] if at.rotor is None else [])
+    statements = _always(model, scaling)
     errors = np.sqrt(np.diag(covariance)[:2])
     unsure = [
         f"{name}: its standard deviation is {error:.2g}"
@@ -69,8 +90,33 @@ def information(model: Model, at: Parameters, variance: float, others: list[Para
     unsure += _rivals(model, at, variance, others)
     if unsure:
         unsure.append(_arc(model, at))
-    statements += unsure + list(_symmetries(ratios, covariance, rest))
-    return Information(tuple(names), np.array(values), covariance, tuple(statements))
+    statements += [
+        *unsure,
+        *_symmetries(ratios, covariance, rest),
+        *_bounds(model, at, np.sqrt(np.diag(covariance))[of["torque"]]),
+    ]
+    return Information(tuple(names), tuple(units), values, covariance, tuple(statements))
+
+
+def _by_ratios(by_shape: Array, at: Parameters, rest: list[int], top: int) -> Array:
+    """Return derivatives (n, 2) by the two ratios from those by the shape."""
+    by, ratios = at.moments_by_shape(), at.ratios
+    slopes = (by[rest] - np.outer(ratios[rest], by[top])) / at.moments[top]
+    # Singular for a flat body or a needle, whose shape is at the edge of those of bodies.
+    if abs(np.linalg.det(slopes)) < _FLAT:
+        return np.asarray(by_shape @ np.linalg.pinv(slopes))
+    return np.asarray(by_shape @ np.linalg.inv(slopes))
+
+
+def _always(model: Model, scaling: Array | None) -> list[str]:
+    """Return what no data of this kind determine."""
+    found = []
+    if model.laws is None:
+        found.append(SCALE.format("free motion depends"))
+    elif not model.layout.scale:
+        relative = [] if scaling is None else [x for x, p in zip(model.laws.names, scaling, strict=True) if p]
+        found.append(RELATIVE.format(", ".join(relative)) if relative else SCALE.format("the motion depends"))
+    return found if model.layout.attitude else [*found, ATTITUDE]
 
 
 def _directions(names: list[str], rows: Array, spread: Array, none: Any) -> Iterator[str]:
@@ -87,9 +133,9 @@ def _directions(names: list[str], rows: Array, spread: Array, none: Any) -> Iter
 def _rivals(model: Model, at: Parameters, variance: float, others: list[Parameters]) -> Iterator[str]:
     """Yield a statement for each other body that fits almost as well."""
     best = float((model.residuals(at) ** 2).sum())
-    known = [at.moments / at.moments.max()]
+    known = [at.ratios]
     for other in others:
-        moments = other.moments / other.moments.max()
+        moments = other.ratios
         worse = (float((model.residuals(other) ** 2).sum()) - best) / variance
         if worse < _RIVAL and all(np.abs(moments - x).max() > _APART for x in known):
             known.append(moments)
@@ -99,9 +145,8 @@ def _rivals(model: Model, at: Parameters, variance: float, others: list[Paramete
 
 def _arc(model: Model, at: Parameters) -> str:
     """Return how much of the motion the data cover."""
-    source = model.rates or model.attitudes
-    assert source is not None
-    rates = model.motion(at).at(source.times - model.start).omega_body.components
+    source, none = model.source, np.empty(0)
+    rates = model.flow.states(at, none, source.times - model.start)[1]
     change = np.sqrt(np.mean((rates - rates.mean(axis=0)) ** 2) / (np.mean(rates**2) or 1.0))
     return (
         f"the data cover {source.turn()[-1] / (2 * np.pi):.2g} turns, in which the angular velocity in the "
@@ -123,3 +168,12 @@ def _symmetries(ratios: Array, covariance: Array, others: list[int]) -> Iterator
                 f"whether i{a + 1} and i{b + 1} differ: they agree within {_EQUAL:g} standard deviations; of "
                 f"a body symmetric about axis {axis + 1}, no data determine the directions of the other axes"
             )
+
+
+def _bounds(model: Model, at: Parameters, errors: Array) -> Iterator[str]:
+    """Yield a statement for each parameter at its bound, where the linearised covariance does not hold."""
+    if model.laws is None:
+        return
+    for name, value, least, error in zip(model.laws.names, at.torque, model.laws.least, errors, strict=True):
+        if value - least <= _AT_BOUND * error:
+            yield f"{name}: at its bound {least:g}, where its standard deviation does not hold"

@@ -16,12 +16,11 @@ from polhode._mechanics.state import State
 from polhode._report.summary import number
 from polhode._support.arrays import Array, as_float, hands_out_copies
 from polhode._support.extras import optional
+from polhode.torque import Torque
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-_UNITS = {"omega": "rad/s", "attitude": "rad", "bias": "rad/s", "clock": "s"}
 
 
 @hands_out_copies("values", "covariance", "times", "residuals")
@@ -32,13 +31,20 @@ class Fit:
     Attributes
     ----------
     inertia
-        Principal moments relative to the largest, which is 1; on the axes of the data.
+        On the axes of the data, with moments relative to the largest, which is 1; in kg m² where a torque
+        determines the scale.
     omega_body
         Angular velocity in body axes in rad/s at `time`, a bivector.
     rotor
         Attitude at `time`, from body axes to space axes; None without attitudes.
     time
         The first time of the data in s.
+    sensor_axes
+        Rotor that turns components in axes of the data to those in principal axes, ``x_principal =
+        sensor_axes(x_data)``, where the moments ascend; of the equivalent ones that with the smallest angle.
+        None if it is not fitted.
+    torque
+        The torque with its fitted parameters, relative to the moments of `inertia`; None for free motion.
     bias
         Bias of the gyroscope in rad/s, a bivector in body axes: the rates are ``Ω_B + bias``. None if it is
         not fitted.
@@ -46,8 +52,11 @@ class Fit:
         Time in s to add to the times of the rates to get the times of the attitudes; None if not fitted.
     names
         Names of the parameters: ``i1/i3``, the ratio of two moments; ``omega_1``, ``omega_2``, ``omega_3``;
-        ``attitude_1``, …, a small rotation vector in space axes, relative to `rotor`; ``bias_1``, …;
-        ``clock_offset``.
+        ``attitude_1``, …, a small rotation vector in space axes, relative to `rotor`; ``axes_1``, …, one in
+        principal axes, relative to `sensor_axes`; ``i3``, the largest moment; ``viscous_damping.d``, a
+        parameter of a law; ``bias_1``, …; ``clock_offset``.
+    units
+        Their units.
     values
         Array (k,), their values.
     covariance
@@ -67,16 +76,20 @@ class Fit:
     undetermined
         Statements of what the data do not determine, from the singular values of the derivatives: of any free
         motion the overall scale of the moments, and each direction among the parameters whose standard
-        deviation exceeds half of their size (1 for ratios, 1 rad, the initial rate for rates).
+        deviation exceeds half of their size (1 for ratios, 1 rad, the rms rate for rates; for a parameter of
+        a law its value, or if larger what changes the motion by about 1 rad).
     """
 
     inertia: Inertia
     omega_body: Multivector
     rotor: Rotor | None
     time: float
+    sensor_axes: Rotor | None
+    torque: Torque | None
     bias: Multivector | None
     clock_offset: float | None
     names: tuple[str, ...]
+    units: tuple[str, ...]
     values: Array
     covariance: Array
     times: dict[str, Array]
@@ -114,16 +127,18 @@ class Fit:
 
     def summary(self) -> str:
         """Return the parameters with their standard deviations and the other findings, as text."""
-        lines = [f"{name:<22}{text}" for name, text in self._rows()]
+        lines = [f"{name:<21} {text}" for name, text in self._rows()]
         return "\n".join([*lines, "not determined by the data", *(f"  {x}" for x in self.undetermined)])
 
     def _rows(self) -> list[tuple[str, str]]:
         rows = []
-        for name, value, error in zip(self.names, self.values, self.stderr, strict=True):
-            unit = _UNITS.get(name.partition("_")[0], "")
+        for name, unit, value, error in zip(self.names, self.units, self.values, self.stderr, strict=True):
             rows.append((name, f"{_with_error(value, error)} {unit}".rstrip()))
+        if self.sensor_axes is not None:
+            turn = ", ".join(f"{x:.6g}" for x in self.sensor_axes.to_rotation_vector())
+            rows.append(("sensor axes", f"rotation vector {turn} rad to principal axes"))
         regime = FreeMotion(self.inertia, Rotor.identity(), self.omega_body).describe()["regime"]
-        rows.append(("regime", regime))
+        rows.append(("regime", regime if self.torque is None else f"{regime} at the first time"))
         for name, size in self.noise.items():
             rows.append((f"rms of {name}", f"{number(size)} {'rad' if name == 'attitude' else 'rad/s'}"))
         if self.chi2_reduced is None:
@@ -153,10 +168,14 @@ class Fit:
             "moments": self.inertia.principal_moments.tolist(),
             "time": self.time,
             "omega_body": self.omega_body.components.tolist(),
-            "attitude_wxyz": None if self.rotor is None else self.rotor.to_quaternion(order="wxyz").tolist(),
+            "attitude_wxyz": _wxyz(self.rotor),
+            "inertia": self.inertia.matrix.tolist(),
+            "sensor_axes_wxyz": _wxyz(self.sensor_axes),
+            "torque": None if self.torque is None else repr(self.torque),
             "bias": None if self.bias is None else self.bias.components.tolist(),
             "clock_offset": self.clock_offset,
             "names": list(self.names),
+            "units": list(self.units),
             "values": self.values.tolist(),
             "stderr": self.stderr.tolist(),
             "covariance": self.covariance.tolist(),
@@ -184,6 +203,10 @@ class Fit:
         if ax is not None and len(self.times) > 1:
             raise ValueError("the residuals of attitudes and rates need two panels; plot() without ax")
         return residual_figure.on(Sheet(ax), self)
+
+
+def _wxyz(rotor: Rotor | None) -> Any:
+    return None if rotor is None else rotor.to_quaternion(order="wxyz").tolist()
 
 
 def _with_error(value: float, error: float) -> str:

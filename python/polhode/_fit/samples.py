@@ -32,10 +32,11 @@ class Samples:
     def __len__(self) -> int:
         return len(self.times)
 
-    def before(self, end: float) -> Samples:
-        """Return the samples up to a time."""
+    def before(self, end: float, most: int | None = None) -> Samples:
+        """Return the samples up to a time, about `most` of them, equally spaced."""
         n = int(np.searchsorted(self.times, end, side="right"))
-        return Samples(self.times[:n], self.values[:n], self.rates[:n], self.sigma[:n], self.is_known)
+        some = slice(0, n, 1 if most is None else max(1, n // most))
+        return Samples(self.times[some], self.values[some], self.rates[some], self.sigma[some], self.is_known)
 
     def turn(self) -> Array:
         """Return the angle (n,) in rad through which the body has turned, from the first time on."""

@@ -12,6 +12,9 @@ from polhode._support.arrays import Array
 from polhode._support.files import UnreadableError
 
 RATES, QUATERNION = ("t", "wx", "wy", "wz"), ("t", "qw", "qx", "qy", "qz")
+BOTH = RATES + QUATERNION[1:]
+# Number of names, of a time and its values, for each kind of data.
+KINDS = {len(RATES): ("rates",), len(QUATERNION): ("attitude",), len(BOTH): ("rates", "attitude")}
 
 
 @dataclass(frozen=True)
@@ -22,11 +25,12 @@ class Table:
     values: Array
 
 
-def read_table(path: Path, names: tuple[str, ...] | None) -> tuple[Table, tuple[str, ...]]:
-    """Return the columns of these names, and the names; None for `RATES` or `QUATERNION`.
+def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
+    """Return the tables ``"rates"``, ``"attitude"`` or both, from the columns of these names.
 
-    The first line has the names of the columns, separated by commas as the numbers below. Empty lines and
-    lines that begin with # are skipped.
+    Names are those of `RATES`, `QUATERNION` or `BOTH`, or as many others; None for these. The first line has
+    the names of the columns, separated by commas as the numbers below. Empty lines and lines that begin with
+    # are skipped. In a file of both kinds a row may have empty fields for one of them.
 
     Raises
     ------
@@ -53,29 +57,34 @@ def read_table(path: Path, names: tuple[str, ...] | None) -> tuple[Table, tuple[
                 "give the names with --columns"
             )
     places = [header.index(name) for name in names]
-    numbers = np.empty((len(rows) - 1, len(names)))
-    for into, (line, text) in zip(numbers, rows[1:], strict=True):
-        into[:] = _fields(path, line, text, len(header), places)
-    _check_order(path, [line for line, _ in rows[1:]], numbers[:, 0])
-    return Table(numbers[:, 0], numbers[:, 1:]), names
+    kinds = KINDS[len(names)]
+    columns = dict(zip(kinds, (places[1:4], places[4:]) if len(kinds) > 1 else (places[1:],), strict=True))
+    found: dict[str, list[tuple[int, list[float]]]] = {kind: [] for kind in kinds}
+    for line, text in rows[1:]:
+        fields = text.split(",")
+        if len(fields) != len(header):
+            raise UnreadableError(
+                f"{path}:{line}:1: error: {len(fields)} fields, but {len(header)} columns are named"
+            )
+        for kind, own in columns.items():
+            if len(kinds) == 1 or any(fields[place].strip() for place in own):
+                found[kind].append((line, _numbers(path, line, fields, [places[0], *own])))
+    return {kind: _table(path, own, len(columns[kind]) + 1) for kind, own in found.items()}
 
 
 def _default(path: Path, line: int, header: list[str]) -> tuple[str, ...]:
-    """Return `RATES` or `QUATERNION`, whichever the file has."""
-    found = [names for names in (RATES, QUATERNION) if set(names) <= set(header)]
-    if len(found) == 1:
-        return found[0]
-    has = "both rates and a quaternion" if found else "neither rates t,wx,wy,wz nor t,qw,qx,qy,qz"
+    """Return `RATES`, `QUATERNION` or `BOTH`, whichever the file has."""
+    for names in (BOTH, RATES, QUATERNION):
+        if set(names) <= set(header):
+            return names
     raise UnreadableError(
-        f"{path}:{line}:1: error: the columns {', '.join(header)} have {has}; give the names with --columns"
+        f"{path}:{line}:1: error: the columns {', '.join(header)} have neither rates t,wx,wy,wz nor "
+        "t,qw,qx,qy,qz; give the names with --columns"
     )
 
 
-def _fields(path: Path, line: int, text: str, count: int, places: list[int]) -> list[float]:
+def _numbers(path: Path, line: int, fields: list[str], places: list[int]) -> list[float]:
     """Return the numbers at these places of a line."""
-    fields = text.split(",")
-    if len(fields) != count:
-        raise UnreadableError(f"{path}:{line}:1: error: {len(fields)} fields, but {count} columns are named")
     numbers = []
     for place in places:
         field = fields[place].strip()
@@ -89,6 +98,12 @@ def _fields(path: Path, line: int, text: str, count: int, places: list[int]) -> 
             raise UnreadableError(f"{path}:{line}:{column}: error: {field!r} is not a finite number")
         numbers.append(value)
     return numbers
+
+
+def _table(path: Path, rows: list[tuple[int, list[float]]], width: int) -> Table:
+    numbers = np.array([row for _, row in rows]).reshape(-1, width)
+    _check_order(path, [line for line, _ in rows], numbers[:, 0])
+    return Table(numbers[:, 0], numbers[:, 1:])
 
 
 def _check_order(path: Path, lines: list[int], times: Array) -> None:

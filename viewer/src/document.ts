@@ -23,8 +23,18 @@ export interface PageDocument {
   lines?: string;
   /** Values that the algebra page draws beside those of its lines. */
   values?: GivenValue[];
+  /** A lesson in Markdown, which sets what the page shows; its own scenes and meshes are in `files`. */
+  lesson?: { text: string; name: string; step?: number };
   /** Differences from the default view. */
   view?: Partial<ViewState>;
+}
+
+/** A lesson, the files that it refers to, and the number of the step to begin with, from 0. */
+export interface LessonFile {
+  text: string;
+  name: string;
+  files?: ReadonlyMap<string, Uint8Array>;
+  step?: number;
 }
 
 /** A value of projective or conformal geometry, as Python wrote and measured it; a batch has a shape per element. */

@@ -83,9 +83,7 @@ def _title(text: str) -> str:
 def _inline(script: str) -> str:
     """Return a script that can be embedded in a page: nothing in it closes the element.
 
-    ``</script`` occurs in string literals only, where < can be escaped. After ``<!--`` HTML parses scripts by
-    other rules.
+    ``</script``, and ``<!--``, after which HTML parses scripts by other rules, occur in string and regular
+    expression literals only, where < can be escaped.
     """
-    if "<!--" in script:
-        raise ValueError("the viewer's bundle contains `<!--` and cannot be embedded in a page")
-    return re.sub(r"<(?=/script)", r"\\x3C", script, flags=re.IGNORECASE)
+    return re.sub(r"<(?=/script|!--)", r"\\x3C", script, flags=re.IGNORECASE)

@@ -1,7 +1,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import { type About, type Files, Problem, sizeAt, State } from "../core/core.ts";
 import type { Core, Motion } from "../core/wasm.ts";
-import type { CameraName, GivenValue, PageDocument, Shown, ViewState } from "../document.ts";
+import type { CameraName, GivenValue, LessonFile, PageDocument, Shown, ViewState } from "../document.ts";
 import { unpacked } from "../packed.ts";
 
 /** Time limit for solving a scene in the page, in s. */
@@ -56,6 +56,8 @@ export class Model {
   readonly opened = signal<About | null>(null);
   /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
+  /** The lesson that the page shows. */
+  readonly lesson = signal<LessonFile | null>(null);
   /** Number of requests to fit the picture into view. */
   readonly fitted = signal(0);
 
@@ -87,6 +89,7 @@ export class Model {
       if (document.lines !== undefined) this.lines.value = document.lines;
       this.values.value = document.values ?? [];
       this.page.value = document.page ?? "motion";
+      this.lesson.value = document.lesson ? { ...document.lesson, files } : null;
       if (document.recorded && rows) {
         this.record(document, rows, files);
       } else if (document.scene !== undefined) {

@@ -83,7 +83,9 @@ def _title(text: str) -> str:
 def _inline(script: str) -> str:
     """Return a script that can be embedded in a page: nothing in it closes the element.
 
-    ``</script``, and ``<!--``, after which HTML parses scripts by other rules, occur in string and regular
-    expression literals only, where < can be escaped.
+    ``</script`` occurs in string literals only, where < can be escaped. After ``<!--`` HTML parses scripts by
+    other rules.
     """
-    return re.sub(r"<(?=/script|!--)", r"\\x3C", script, flags=re.IGNORECASE)
+    if "<!--" in script:
+        raise ValueError("the viewer's bundle contains `<!--` and cannot be embedded in a page")
+    return re.sub(r"<(?=/script)", r"\\x3C", script, flags=re.IGNORECASE)

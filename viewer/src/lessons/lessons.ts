@@ -92,7 +92,9 @@ export class Lessons {
         const { values } = set;
         if (values) model.lines.value = withValues(model.lines.value, values);
       } else {
-        this.openScene(step.subject, full, `${this.lesson.value!.name}:${step.line}`);
+        const speed = model.speed.value;
+        const opened = this.openScene(step.subject, full, `${this.lesson.value!.name}:${step.line}`);
+        if (opened) model.speed.value = speed;
       }
     }
     this.look(set, model.shown.value);
@@ -133,7 +135,9 @@ export class Lessons {
 
   private look(set: Settings, before: Model["shown"]["value"]): void {
     const { model } = this;
-    const none = Object.fromEntries(Object.keys(SHOWN).map((name) => [name, false])) as unknown as typeof before;
+    const none = Object.fromEntries(
+      Object.keys(SHOWN).map((name) => [name, false]),
+    ) as unknown as typeof before;
     const { camera, time, speed, playing, caption } = set;
     model.shown.value = { ...(set.only ? none : before), ...set.shown };
     if (caption !== undefined) model.caption.value = caption;
@@ -154,6 +158,9 @@ function inLesson(
   place: string,
 ): string {
   if (above === null || set.fields) return `${place}: error: the scene of this step is invalid:\n${problem}`;
-  const parts = problem.split(`${name}:`);
-  return parts.map((part, k) => (k > 0 ? part.replace(/^\d+/u, (line) => String(Number(line) + above)) : part)).join(`${name}:`);
+  const lower = (line: string): string => String(Number(line) + above);
+  // In the places, and beside the lines that are quoted.
+  const quoted = problem.replace(/^\d+(?= +\|)/gmu, lower);
+  const parts = quoted.split(`${name}:`);
+  return parts.map((part, k) => (k > 0 ? part.replace(/^\d+/u, lower) : part)).join(`${name}:`);
 }

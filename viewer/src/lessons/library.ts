@@ -2,7 +2,7 @@ import type { Files } from "../core/core.ts";
 import type { LessonFile } from "../document.ts";
 import { decoded } from "../packed.ts";
 import { PRESETS } from "../presets/index.ts";
-import type { SceneNamed } from "./parse.ts";
+import { plain, type SceneNamed } from "./parse.ts";
 
 const FOLDER = "../../../examples/";
 const scenes = import.meta.glob<string>("../../../examples/*.toml", {
@@ -19,18 +19,18 @@ const texts = import.meta.glob<string>("../../../examples/lessons/*.md", {
 /** The order of the lessons that are part of the page. */
 const ORDER = [
   "book-thrown-three-ways",
-  "why-l-stays",
+  "why-l-stays-and-omega-wanders",
   "cross-products-to-bivectors",
   "half-angles",
-  "symmetric-top",
-  "gyroscope",
+  "earths-wobble",
+  "why-a-gyroscope-stays-up",
 ];
 
 /** The lessons that are part of the page. */
 export const LESSONS: readonly { id: string; title: string; about: string; file: LessonFile }[] = ORDER.map(
   (id) => {
     const text = texts[`${FOLDER}lessons/${id}.md`]!;
-    const field = (name: string) => new RegExp(`^${name}: (.*)$`, "mu").exec(text)?.[1] ?? "";
+    const field = (name: string) => plain(new RegExp(`^${name}: (.*)$`, "mu").exec(text)?.[1] ?? "");
     return { id, title: field("title"), about: field("about"), file: { text, name: `${id}.md` } };
   },
 );

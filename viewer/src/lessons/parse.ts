@@ -42,7 +42,12 @@ class Parser {
     }
     if (this.steps.length === 0)
       throw this.problem(line, "the lesson has no steps; begin each step with a heading `## …`");
-    return { name: this.name, title: fields.get("title")!, about: fields.get("about") ?? "", steps: this.steps };
+    return {
+      name: this.name,
+      title: fields.get("title")!,
+      about: fields.get("about") ?? "",
+      steps: this.steps,
+    };
   }
 
   /** The fields between `---` at the top, and the number of lines that they take. */
@@ -51,7 +56,10 @@ class Parser {
     const end = lines.indexOf("---", 1);
     if (lines[0] !== "---" || end < 0) {
       const example = "---\ntitle: A title\nscene: t-handle\n---";
-      throw this.problem(1, `a lesson begins with its title and scene between two lines \`---\`:\n${example}`);
+      throw this.problem(
+        1,
+        `a lesson begins with its title and scene between two lines \`---\`:\n${example}`,
+      );
     }
     const fields = new Map<string, string>();
     lines.slice(1, end).forEach((written, k) => {
@@ -60,8 +68,8 @@ class Parser {
       if (key === undefined || !(FIELDS as readonly string[]).includes(key))
         throw this.problem(k + 2, `unknown field ${quoted(written)}; write \`${FIELDS.join(": …`, `")}: …\``);
       if (fields.has(key)) throw this.problem(k + 2, `a second field ${quoted(key)}; remove one of them`);
-      fields.set(key, value!);
-      if (key === "scene") this.subject = this.named(value!, k + 2);
+      fields.set(key, plain(value!));
+      if (key === "scene") this.subject = this.named(plain(value!), k + 2);
     });
     if (!fields.get("title")) throw this.problem(1, "the lesson has no title; add a line `title: …`");
     return { fields, lines: end + 1 };
@@ -210,6 +218,11 @@ class Parser {
   private problem(line: number, message: string): Problem {
     return new Problem(`${this.name}:${line}: error: ${message}`);
   }
+}
+
+/** The text of a field, which has quotation marks if it contains a colon. */
+export function plain(value: string): string {
+  return value.replace(/^(["'])(.*)\1$/u, "$2");
 }
 
 /** The tokens inside a token. */

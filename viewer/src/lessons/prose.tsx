@@ -3,7 +3,11 @@ import type { ComponentChildren } from "preact";
 import { drives } from "./lesson.ts";
 
 /** The text of a lesson. `act` does what an underlined phrase says; `last` is the phrase that was pressed last. */
-export function Prose(props: { tokens: readonly Token[]; last: string | null; act: (target: string) => void }) {
+export function Prose(props: {
+  tokens: readonly Token[];
+  last: string | null;
+  act: (target: string) => void;
+}) {
   const { tokens, last, act } = props;
   const inside = (token: Token): ComponentChildren => {
     const { tokens: parts, text } = token as Tokens.Generic;
@@ -64,16 +68,23 @@ function drawn(
     case "link": {
       const link = token as Tokens.Link;
       const target = drives(link);
+      // A link is broken across lines, a button is not.
       if (target !== null)
         return (
-          <button
-            type="button"
+          <a
+            role="button"
+            tabIndex={0}
             class={target === last ? "drive last" : "drive"}
             data-do={target}
             onClick={() => act(target)}
+            onKeyDown={(event) => {
+              if (event.key !== "Enter" && event.key !== " ") return;
+              event.preventDefault();
+              act(target);
+            }}
           >
             {inside}
-          </button>
+          </a>
         );
       return (
         <a href={link.href} target="_blank" rel="noopener noreferrer">

@@ -131,4 +131,3 @@ export function withValues(lines: string, values: Record<string, string>): strin
 export function quoted(text: string): string {
   return `\`${text}\``;
 }
-

@@ -61,7 +61,11 @@ export function App({ model, palette, compact, wide }: Props) {
           {motion ? (
             <MotionPage {...{ model, palette, compact, wide, controls, lessons, folds }} />
           ) : (
-            <AlgebraPage model={model} palette={palette} lesson={lessons.step && <LessonPanel lessons={lessons} />} />
+            <AlgebraPage
+              model={model}
+              palette={palette}
+              lesson={lessons.step && <LessonPanel lessons={lessons} />}
+            />
           )}
         </Boundary>
       </div>

@@ -11,7 +11,9 @@ export const ACCEPTED = ".toml,.json,.md,.stl,.obj,.ply";
 export async function openFiles(model: Model, files: readonly File[]): Promise<void> {
   const hasSuffix = (file: File, suffixes: string) =>
     suffixes.split(",").some((suffix) => file.name.toLowerCase().endsWith(suffix));
-  const scenes = files.filter((file) => hasSuffix(file, ".toml,.json,.md"));
+  // A lesson comes with the scenes and meshes that it names.
+  const lessons = files.filter((file) => hasSuffix(file, ".md"));
+  const scenes = lessons.length > 0 ? lessons : files.filter((file) => hasSuffix(file, ".toml,.json"));
   const named = (some: readonly File[]) => some.map((file) => file.name).join(", ");
   const unknown = files.filter((file) => !hasSuffix(file, ACCEPTED));
   try {

@@ -57,6 +57,10 @@ def test_a_book_is_thrown_three_ways(lesson):
         """Whether the book was thrown about an axis, one degree off."""
         return read(page, "model.about.value.start.omega_body")[axis] == pytest.approx(main, rel=1e-12)
 
+    def about_longest():
+        omega = read(page, "model.about.value.start.omega_body")
+        return omega[0] == pytest.approx(2 * math.pi * math.cos(math.radians(8)), rel=1e-12)
+
     assert step_of(page) == 1
     assert about(0)
     assert read(page, "[model.playing.value, model.speed.value]") == [True, 0.5]
@@ -83,9 +87,11 @@ def test_a_book_is_thrown_three_ways(lesson):
     page.page.locator("#lesson-next").click()
     shown = read(page, "model.shown.value")
     assert {name for name, seen in shown.items() if seen} == {
-        *("body", "bodyFrame", "polhode", "poinsot", "labels"),
+        *("body", "bodyFrame", "momentum", "energy", "labels"),
     }
-    assert read(page, "model.camera.value") == "with the body"
+    page.page.locator(".energy canvas").first.wait_for(state="attached")
+    phrase(page, "the longest")
+    assert about_longest()
 
     page.page.locator("#lesson-next").click()
     assert read(page, "model.camera.value") == "oblique"

@@ -110,6 +110,8 @@ export interface Shown {
   herpolhode: boolean;
   /** The path of a body axis in space. */
   trace: boolean;
+  /** The energy ellipsoid of a free body with its polhodes, in a second picture. */
+  energy: boolean;
   /** Pivot, weight and the sphere of the locus, for tops. */
   gravity: boolean;
   labels: boolean;

@@ -144,7 +144,7 @@ def _add_scenes(commands: Any) -> None:
         commands,
         "view",
         _view,
-        help="show a motion or a lesson in the browser",
+        help="show a motion in the browser, or a lesson",
         description="Show a scene, a motion from a netCDF file, or a lesson in the browser of this machine. "
         "Reload the page to read an edited scene or lesson again.",
     )

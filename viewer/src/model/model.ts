@@ -19,6 +19,7 @@ export const SHOWN: Shown = {
   polhode: true,
   herpolhode: false,
   trace: true,
+  energy: false,
   gravity: true,
   labels: true,
 };
@@ -54,6 +55,8 @@ export class Model {
   readonly values = signal<readonly GivenValue[]>([]);
   /** The motion when its scene was last opened; the sliders take their ranges from it. */
   readonly opened = signal<About | null>(null);
+  /** Whether the tip of Ω is marked, in the picture in space and on the energy ellipsoid. */
+  readonly marked = signal(false);
   /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
   /** The lesson that the page shows. */

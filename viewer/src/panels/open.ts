@@ -25,7 +25,7 @@ export async function openFiles(model: Model, files: readonly File[]): Promise<v
       const netcdf = unknown.some((file) => hasSuffix(file, ".nc"));
       const hint = netcdf ? "; `polhode view` shows netCDF files" : "";
       throw new Error(
-        `${named(unknown)}: the page opens scenes (.toml), lessons (.md), documents (.json) and meshes (.stl, .obj, .ply)${hint}`,
+        `${named(unknown)}: the page opens scenes (.toml), documents (.json) and meshes (.stl, .obj, .ply), and lessons (.md)${hint}`,
       );
     }
     const meshes = files.filter((file) => file !== scene && !unknown.includes(file));

@@ -34,10 +34,12 @@ class Viewer(SphinxDirective):
         if not viewer_exists():
             return [nodes.paragraph(text=f"{self.arguments[0]}: these pages were built without the viewer.")]
         data = json.dumps(document.of_file(path)).replace("<", "\\u003c")
+        # A lesson has its text below the picture.
+        height = 58 if path.suffix == ".md" else 34
         script = os.path.relpath("_static/polhode-viewer.js", Path(self.env.docname).parent)
         html = (
             f'<script src="{script}"></script>'
-            f'<polhode-viewer compact style="display: block; height: 34rem; margin: 1rem 0">'
+            f'<polhode-viewer compact style="display: block; height: {height}rem; margin: 1rem 0">'
             f'<script type="application/json">{data}</script></polhode-viewer>'
         )
         return [nodes.raw("", html, format="html")]

@@ -8,8 +8,10 @@ import pytest
 
 import polhode as ph
 from polhode._report.summary import summary
+from polhode._support.files import UnreadableError
 from polhode._viewer import document as _document
 from polhode._viewer import html
+from polhode._viewer.server import Source
 from viewer_page import VIEWER
 from viewer_scenes import ROOT
 
@@ -318,6 +320,23 @@ def test_files_beside_a_lesson_go_with_it(lesson, tmp_path):
     page = lesson(path)
     assert page.page.evaluate(PROBLEM) is None
     assert read(page, "model.about.value.title") == "T-handle in free flight"
+
+
+def test_lessons_are_served_and_read_again(tmp_path):
+    path = tmp_path / "own.md"
+    with pytest.raises(UnreadableError, match=r"own\.md"):
+        Source(path).document()
+    source = Source(path)
+    for title in ("One", "Two"):
+        path.write_text(FRONT.replace("A lesson", title) + "## A step\n\nText.\n")
+        assert f"title: {title}\n" in source.shown()["lesson"]["text"]
+
+
+def test_lessons_are_shown_in_notebooks():
+    pytest.importorskip("anywidget")
+    viewer = ph.view(LESSONS[0])
+    assert viewer.document["lesson"]["name"] == LESSONS[0].name
+    assert viewer.scene is None
 
 
 def test_a_lesson_that_is_not_utf8(tmp_path):

@@ -84,7 +84,7 @@ def document(
         return of_values(x)
     raise TypeError(
         f"cannot show a value of type {type(x).__name__}: give a Scene, a Trajectory, a closed-form motion, "
-        "the path of a scene or netCDF file, a Body and its State, or values of the algebra"
+        "the path of a scene, lesson or netCDF file, a Body and its State, or values of the algebra"
     )
 
 

@@ -15,6 +15,8 @@ export class Lessons {
   readonly index = signal(0);
   /** The chosen answer of each step. */
   readonly answers = signal<ReadonlyMap<number, number>>(new Map());
+  /** Whether a lesson was left: then the list of lessons is open. */
+  readonly left = signal(false);
   readonly dispose: () => void;
   /** The scene that was opened last, before anything changed it. */
   private opened: string | null = null;
@@ -65,7 +67,10 @@ export class Lessons {
   }
 
   close(): void {
-    this.model.lesson.value = null;
+    batch(() => {
+      this.left.value = true;
+      this.model.lesson.value = null;
+    });
   }
 
   private begin(given: LessonFile | null): void {

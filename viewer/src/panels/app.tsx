@@ -80,9 +80,15 @@ function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds
   // In a lesson its text comes first.
   const wide = props.wide && !learning;
   const varied = !compact && controls.about.value !== null;
-  const listed = !compact && !learning;
+  const listed = (!compact || lessons.left.value) && !learning;
   const panels: [shown: boolean, id: string, title: string, open: boolean, content: ComponentChildren][] = [
-    [listed, "lessons", "Lessons", model.caption.value !== null, <LessonList lessons={lessons} />],
+    [
+      listed,
+      "lessons",
+      "Lessons",
+      model.caption.value !== null || lessons.left.value,
+      <LessonList lessons={lessons} />,
+    ],
     [known, "state", "State", learning ? false : !compact || wide, <Readout model={model} />],
     [varied, "start", "Spin and attitude", wide, <StartPanel controls={controls} />],
     [known, "motion", "Motion", wide && !compact, <Facts model={model} />],

@@ -159,6 +159,25 @@ def test_phone_needs_no_sideways_scrolling(lesson):
     assert wide == []
 
 
+def test_values_change_steadily(lesson):
+    page = lesson(ROOT / "examples/lessons/half-angles.md", reduced_motion="no-preference")
+    for _ in range(4):
+        page.page.locator("#lesson-next").click()
+    page.page.evaluate(
+        f"""async () => {{
+            window.angles = [];
+            (await {VIEWER}.ready).lines.subscribe((text) => window.angles.push(parseFloat(text.slice(4))));
+        }}"""
+    )
+    phrase(page, "by 90°")
+    page.until("model.lines.value.startsWith('θ = 90 deg')")
+    angles = page.page.evaluate("window.angles")
+    assert angles[0] == 0
+    assert angles[-1] == 90
+    assert angles == sorted(angles)
+    assert len(angles) > 2
+
+
 # --- their numbers
 
 

@@ -3,6 +3,7 @@ import { Problem } from "../core/core.ts";
 import type { LessonFile } from "../document.ts";
 import { type Model, SHOWN, words } from "../model/model.ts";
 import { mayAutoplay } from "../presets/index.ts";
+import { glide } from "./glide.ts";
 import type { Lesson, Settings, Step, Subject } from "./lesson.ts";
 import { sceneNamed } from "./library.ts";
 import { joined, lessonOf } from "./parse.ts";
@@ -95,7 +96,7 @@ export class Lessons {
       const full = { ...set, fields: { ...step.set.fields, ...set.fields } };
       if (step.subject.kind === "lines") {
         const { values } = set;
-        if (values) model.lines.value = withValues(model.lines.value, values);
+        if (values) glide(model.lines, withValues(model.lines.value, values));
       } else {
         const speed = model.speed.value;
         const opened = this.openScene(step.subject, full, `${this.lesson.value!.name}:${step.line}`);

@@ -7,7 +7,6 @@ from pathlib import Path
 from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 
-from polhode import Scene
 from polhode._viewer import document
 from polhode._viewer.html import bundle_path
 
@@ -25,7 +24,7 @@ ROOT = Path(__file__).parents[1]
 
 
 class Viewer(SphinxDirective):
-    """Directive that shows a scene in the viewer; its argument is the path from the repository root."""
+    """Directive that shows a scene or a lesson in the viewer; its argument is the path from the root."""
 
     required_arguments = 1
 
@@ -34,11 +33,13 @@ class Viewer(SphinxDirective):
         self.env.note_dependency(str(path))
         if not viewer_exists():
             return [nodes.paragraph(text=f"{self.arguments[0]}: these pages were built without the viewer.")]
-        data = json.dumps(document.of_scene(Scene.read(path))).replace("<", "\\u003c")
+        data = json.dumps(document.of_file(path)).replace("<", "\\u003c")
+        # A lesson has its text below the picture.
+        height = 58 if path.suffix == ".md" else 34
         script = os.path.relpath("_static/polhode-viewer.js", Path(self.env.docname).parent)
         html = (
             f'<script src="{script}"></script>'
-            f'<polhode-viewer compact style="display: block; height: 34rem; margin: 1rem 0">'
+            f'<polhode-viewer compact style="display: block; height: {height}rem; margin: 1rem 0">'
             f'<script type="application/json">{data}</script></polhode-viewer>'
         )
         return [nodes.raw("", html, format="html")]

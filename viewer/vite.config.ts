@@ -36,8 +36,23 @@ function binary(): Plugin {
   };
 }
 
+/**
+ * Pages hold the bundle inside `<script>`, where HTML parses by other rules after `<!--`. These characters occur in
+ * literals of texts and patterns only, where `<` can be escaped.
+ */
+function embeddable(): Plugin {
+  return {
+    name: "embeddable",
+    generateBundle(_, bundle) {
+      for (const file of Object.values(bundle)) {
+        if (file.type === "chunk") file.code = file.code.replaceAll("<!--", "\\x3C!--");
+      }
+    },
+  };
+}
+
 export default defineConfig({
-  plugins: [core(), binary()],
+  plugins: [core(), binary(), embeddable()],
   oxc: { jsx: { runtime: "automatic", importSource: "preact" } },
   server: { fs: { allow: [root] } },
   build: {

@@ -81,7 +81,17 @@ def test_examples_are_listed_with_their_titles():
     done = polhode("examples")
     assert (done.returncode, done.stderr) == (0, "")
     listed = dict(line.split(maxsplit=1) for line in done.stdout.splitlines())
-    assert listed == {path.stem: tomllib.loads(path.read_text())["title"] for path in EXAMPLES.glob("*.toml")}
+    titles = {path.stem: tomllib.loads(path.read_text())["title"] for path in EXAMPLES.glob("*.toml")}
+    assert titles.items() <= listed.items()
+    assert set(listed) - set(titles) == {path.stem for path in EXAMPLES.glob("lessons/*.md")}
+    assert listed["book-thrown-three-ways"] == "Lesson: A book thrown three ways"
+
+
+def test_a_lesson_is_copied(tmp_path):
+    done = polhode("examples", "book-thrown-three-ways.md", "-o", tmp_path)
+    copied = tmp_path / "book-thrown-three-ways.md"
+    assert done.stdout == f"Written\n  {copied}\nTry `polhode view {copied}`.\n"
+    assert copied.read_bytes() == (EXAMPLES / "lessons" / copied.name).read_bytes()
 
 
 def test_examples_are_copied_with_their_meshes(tmp_path):
@@ -145,5 +155,7 @@ def test_wheels_and_source_distributions_hold_the_examples():
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["maturin"]["include"]
     patterns = [entry["path"] for entry in settings if entry["format"] == ["wheel", "sdist"]]
     assert len(patterns) == len(settings)
-    packed = {path.name for pattern in patterns for path in ROOT.glob(pattern) if path.parent == FOLDER}
-    assert {path.name for path in EXAMPLES.glob("*.*")} - packed == {"make_t_handle.py"}
+    folders = (FOLDER, FOLDER / "lessons")
+    packed = {path.name for pattern in patterns for path in ROOT.glob(pattern) if path.parent in folders}
+    files = {path.name for pattern in ("*.*", "lessons/*") for path in EXAMPLES.glob(pattern)}
+    assert files - packed == {"make_t_handle.py"}

@@ -23,8 +23,18 @@ export interface PageDocument {
   lines?: string;
   /** Values that the algebra page draws beside those of its lines. */
   values?: GivenValue[];
+  /** A lesson in Markdown, which sets what the page shows; its own scenes and meshes are in `files`. */
+  lesson?: { text: string; name: string; step?: number };
   /** Differences from the default view. */
   view?: Partial<ViewState>;
+}
+
+/** A lesson, the files that it refers to, and the number of the step to begin with, from 0. */
+export interface LessonFile {
+  text: string;
+  name: string;
+  files?: ReadonlyMap<string, Uint8Array>;
+  step?: number;
 }
 
 /** A value of projective or conformal geometry, as Python wrote and measured it; a batch has a shape per element. */
@@ -100,6 +110,8 @@ export interface Shown {
   herpolhode: boolean;
   /** The path of a body axis in space. */
   trace: boolean;
+  /** The energy ellipsoid of a free body with its polhodes, in a second picture. */
+  energy: boolean;
   /** Pivot, weight and the sphere of the locus, for tops. */
   gravity: boolean;
   labels: boolean;

@@ -124,7 +124,7 @@ export class PolhodeViewer extends HTMLElement {
     const given = this.given ?? (await this.child()) ?? (await this.source());
     this.given ??= given;
     if (given) await model.show(given);
-    if (!given?.scene && !given?.recorded) await openPreset(model, PRESETS[0]!);
+    if (!given?.scene && !given?.recorded && !given?.lesson) await openPreset(model, PRESETS[0]!);
     else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
       model.look({ playing: mayAutoplay() });
   }

@@ -56,6 +56,17 @@ const answers = {
   },
   merged: ({ scene, change }) => core.merged(scene, change),
   evaluated: ({ lines }) => core.evaluated(lines),
+  polhodes: async ({ moments, through }) => {
+    const { Vector3 } = await vite.ssrLoadModule("three");
+    const curves = await vite.ssrLoadModule("/src/stage/polhodes.ts");
+    const plain = (curve) => curve.map((u) => u.toArray());
+    const own = through.map((u) => curves.through(moments, new Vector3(...u)));
+    return {
+      neighbours: curves.neighbours(moments).map(plain),
+      separatrix: curves.separatrix(moments).map(plain),
+      through: own.map((curve) => curve && plain(curve)),
+    };
+  },
   called: ({ name, given }) => core[name](...given),
 };
 
@@ -63,7 +74,7 @@ for await (const line of createInterface({ input: process.stdin })) {
   const { question, ...rest } = JSON.parse(line);
   let answer;
   try {
-    answer = { value: answers[question](rest) };
+    answer = { value: await answers[question](rest) };
   } catch (error) {
     if (!(error instanceof Problem)) throw error;
     answer = { problem: error.message };

@@ -34,9 +34,9 @@ def add(commands: Any) -> None:
     )
     add_folder(demo, "files")
 
-    words = "List the example scenes, or copy the named ones. Existing files are not replaced."
+    words = "List the example scenes and lessons, or copy the named ones. Existing files are not replaced."
     parser = add_command(
-        commands, "examples", _run, help="list or copy the example scenes", description=words
+        commands, "examples", _run, help="list or copy the example scenes and lessons", description=words
     )
     parser.add_argument("names", metavar="NAME", nargs="*", help="name of an example; without one, list all")
     add_folder(parser, "copies")
@@ -52,13 +52,18 @@ def examples() -> dict[str, Path]:
     return found
 
 
+def lessons() -> dict[str, Path]:
+    """Return the files of the lessons by name."""
+    return {path.stem: path for path in sorted((FOLDER / "lessons").glob("*.md"))}
+
+
 def _run(options: argparse.Namespace) -> int:
-    known = examples()
+    known = examples() | lessons()
     if not options.names:
         width = max(map(len, known))
-        print("\n".join(f"{name:<{width}}  {_content(path)['title']}" for name, path in known.items()))
+        print("\n".join(f"{name:<{width}}  {_title(path)}" for name, path in known.items()))
         return 0
-    names = [name.removesuffix(".toml") for name in options.names]
+    names = [name.removesuffix(".toml").removesuffix(".md") for name in options.names]
     for name in names:
         if name not in known:
             close = difflib.get_close_matches(name, known, n=1)
@@ -67,7 +72,8 @@ def _run(options: argparse.Namespace) -> int:
     files = [file for name in dict.fromkeys(names) for file in _files(known[name])]
     copied = _copy(files, Path(options.output))
     print("Written", *(f"  {path}" for path in copied), sep="\n")
-    print(f"Try `polhode run {copied[0]}` or `polhode view {copied[0]}`.")
+    run = "" if copied[0].suffix == ".md" else f"`polhode run {copied[0]}` or "
+    print(f"Try {run}`polhode view {copied[0]}`.")
     return 0
 
 
@@ -75,8 +81,17 @@ def _content(path: Path) -> dict[str, Any]:
     return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
+def _title(path: Path) -> str:
+    if path.suffix == ".toml":
+        return str(_content(path)["title"])
+    line = next(line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("title:"))
+    return f"Lesson: {line.removeprefix('title:').strip().strip(chr(34))}"
+
+
 def _files(scene: Path) -> list[Path]:
-    """Return a scene file and its mesh file, if it has one."""
+    """Return a lesson, or a scene file and its mesh file, if it has one."""
+    if scene.suffix == ".md":
+        return [scene]
     mesh = _content(scene)["body"].get("mesh")
     return [scene] if mesh is None else [scene, scene.with_name(mesh)]
 

@@ -144,11 +144,12 @@ def _add_scenes(commands: Any) -> None:
         commands,
         "view",
         _view,
-        help="show a motion in the browser",
-        description="Show a scene, or a motion from a netCDF file, in the browser of this machine. Reload "
-        "the page to read an edited scene again.",
+        help="show a motion in the browser, or a lesson",
+        description="Show a scene, a motion from a netCDF file, or a lesson in the browser of this machine. "
+        "Reload the page to read an edited scene or lesson again.",
     )
-    view.add_argument("file", metavar="FILE", help="a scene, or the netCDF file of one body's motion")
+    words = "a scene, a lesson (.md), or the netCDF file of one body's motion"
+    view.add_argument("file", metavar="FILE", help=words)
     port = whole_number("port", 0, 65535)
     view.add_argument(
         "--port", metavar="N", type=port, default=0, help="port of the server, default a free one"

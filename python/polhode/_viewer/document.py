@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 import tempfile
 import tomllib
 from collections.abc import Mapping
@@ -83,7 +84,7 @@ def document(
         return of_values(x)
     raise TypeError(
         f"cannot show a value of type {type(x).__name__}: give a Scene, a Trajectory, a closed-form motion, "
-        "the path of a scene or netCDF file, a Body and its State, or values of the algebra"
+        "the path of a scene, lesson or netCDF file, a Body and its State, or values of the algebra"
     )
 
 
@@ -125,10 +126,39 @@ def _parsed(text: str) -> dict[str, Any]:
 
 
 def of_file(path: Path) -> Document:
-    """Return the document of a scene file or a netCDF file; a `SceneError` for an invalid scene."""
+    """Return the document of a scene, a netCDF file or a lesson; a `SceneError` for an invalid scene."""
     if path.suffix.lower() == ".nc":
         return of_trajectory(read(path), path)
+    if path.suffix.lower() == ".md":
+        return of_lesson(path)
     return of_scene(Scene.read(path))
+
+
+def of_lesson(path: Path) -> Document:
+    """Return the document of a lesson, with the scene and mesh files that it names.
+
+    The page checks the lesson. An OSError if it cannot be read, a ValueError if it is not UTF-8.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        found = error.object[error.start]
+        message = f"{path} is not UTF-8 text: byte {error.start} is {found:#04x}; save it as UTF-8"
+        raise ValueError(message) from None
+    scenes = re.findall(r"^```toml *\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    files: dict[str, bytes] = {}
+    for name in re.findall(r"^scene: *[\"']?(.+?\.toml)[\"']? *$", text, re.MULTILINE):
+        with contextlib.suppress(OSError, ValueError):
+            files[name] = (path.parent / name).read_bytes()
+            scenes.append(files[name].decode(errors="replace"))
+    for scene in scenes:
+        body = _parsed(scene).get("body")
+        mesh = body.get("mesh") if isinstance(body, dict) else None
+        if isinstance(mesh, str) and mesh:
+            with contextlib.suppress(OSError, ValueError):
+                files[mesh] = (path.parent / mesh).read_bytes()
+    contents = {name: packed(content) for name, content in files.items()}
+    return {"format": 1, "lesson": {"text": text, "name": path.name}, "files": contents}
 
 
 def of_trajectory(
@@ -190,6 +220,9 @@ def scene_of(shown: Document) -> Scene:
 
 def title_of(shown: Document) -> str:
     """Return the title of a page with this document."""
+    if "lesson" in shown:
+        found = re.search(r"^title: *[\"']?(.+?)[\"']? *$", shown["lesson"]["text"], re.MULTILINE)
+        return found[1] if found else Path(shown["lesson"]["name"]).stem
     if "recorded" in shown:
         title = json.loads(shown["recorded"]["about"])["title"]
     else:

@@ -27,7 +27,7 @@ def view(
     Parameters
     ----------
     x
-        - A `Scene`, or the path of a scene file.
+        - A `Scene`, or the path of a scene file or a lesson (.md).
         - A `Trajectory` of one body, or the path of a netCDF file of one.
         - A `FreeMotion`, `LagrangeTop`, `DampedTop` or `LarmorSphere`.
         - A `Multivector`, a list of them, or a dict of them by name. The algebra page draws those of 3-d

@@ -94,7 +94,7 @@ class Source:
 
         An UnreadableError or a SceneError reports an invalid file; a ValueError, a motion that fails.
         """
-        if self.path.suffix.lower() == ".nc":
+        if self.path.suffix.lower() in (".nc", ".md"):
             try:
                 return of_file(self.path)
             except (OSError, ValueError) as error:

@@ -1,4 +1,5 @@
 import { type ReadonlySignal, useComputed, useSignal } from "@preact/signals";
+import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { IconButton } from "../inputs/button.tsx";
 import { Choices } from "../inputs/fields.tsx";
@@ -13,7 +14,13 @@ import { Rows } from "./rows.tsx";
 import { type Drawable, drawableOfGiven, drawablesOf } from "./drawables.ts";
 
 /** The algebra page: lines of formulas, their values, and a drawing. The text is its only state. */
-export function AlgebraPage({ model, palette }: { model: Model; palette: ReadonlySignal<Palette> }) {
+export function AlgebraPage(props: {
+  model: Model;
+  palette: ReadonlySignal<Palette>;
+  /** The text of a lesson, in place of the list of figures. */
+  lesson: ComponentChildren;
+}) {
+  const { model, palette, lesson } = props;
   useEffect(() => {
     if (model.lines.peek() === "" && model.values.peek().length === 0)
       model.lines.value = ALGEBRA_PRESETS[0]!.lines;
@@ -37,13 +44,14 @@ export function AlgebraPage({ model, palette }: { model: Model; palette: Readonl
   return (
     <div class="algebra">
       <style>{styles}</style>
-      <Presets model={model} />
+      {!lesson && <Presets model={model} />}
       <Picture
         items={items}
         palette={palette}
         move={(line, to) => change(line, (old) => withVector(old, to))}
       />
-      <div class="column">
+      <div class={lesson ? "column whole" : "column"}>
+        {lesson}
         <GivenValues values={model.values} items={items} tones={tones} />
         <Rows text={model.lines} lines={lines} items={items} tones={tones} change={change} />
       </div>

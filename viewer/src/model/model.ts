@@ -3,7 +3,7 @@ import { type About, type Files, Problem, State } from "../core/core.ts";
 import { defaultSpeed } from "./speed.ts";
 import { Solver } from "../core/solver.ts";
 import type { Core, Motion } from "../core/wasm.ts";
-import type { CameraName, GivenValue, PageDocument, Shown, ViewState } from "../document.ts";
+import type { CameraName, GivenValue, LessonFile, PageDocument, Shown, ViewState } from "../document.ts";
 import { unpacked } from "../packed.ts";
 
 /** Default visibility. */
@@ -18,6 +18,7 @@ export const SHOWN: Shown = {
   polhode: true,
   herpolhode: false,
   trace: true,
+  energy: false,
   gravity: true,
   labels: true,
 };
@@ -55,8 +56,12 @@ export class Model {
   readonly values = signal<readonly GivenValue[]>([]);
   /** The motion when its scene was last opened; the sliders take their ranges from it. */
   readonly opened = signal<About | null>(null);
+  /** Whether the tip of Ω is marked, in the picture in space and on the energy ellipsoid. */
+  readonly marked = signal(false);
   /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
+  /** The lesson that the page shows. */
+  readonly lesson = signal<LessonFile | null>(null);
   /** Number of requests to fit the picture into view. */
   readonly fitted = signal(0);
   /** The last request to turn the camera: steps across and down, and the factor of nearness. */
@@ -96,6 +101,7 @@ export class Model {
       if (document.lines !== undefined) this.lines.value = document.lines;
       this.values.value = document.values ?? [];
       this.page.value = document.page ?? "motion";
+      this.lesson.value = document.lesson ? { ...document.lesson, files } : null;
       if (document.recorded && rows) this.record(document, rows, files);
     });
     if (!document.recorded && document.scene !== undefined) {

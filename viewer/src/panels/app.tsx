@@ -2,6 +2,8 @@ import { type ReadonlySignal, useSignal } from "@preact/signals";
 import { Component, type ComponentChildren } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
 import { AlgebraPage } from "../algebra/page.tsx";
+import { LessonList, LessonPanel } from "../lessons/panel.tsx";
+import { Lessons } from "../lessons/lessons.ts";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { Controls } from "../vary/controls.ts";
@@ -34,6 +36,8 @@ export function App({ model, palette, compact, wide }: Props) {
   // Kept while the algebra is shown.
   const controls = useMemo(() => new Controls(model), [model]);
   useEffect(() => () => controls.dispose(), [controls]);
+  const lessons = useMemo(() => new Lessons(model), [model]);
+  useEffect(() => () => lessons.dispose(), [lessons]);
   const folds = useMemo<Folds>(() => new Map(), []);
   const motion = model.page.value === "motion";
   return (
@@ -55,9 +59,13 @@ export function App({ model, palette, compact, wide }: Props) {
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
         <Boundary key={model.page.value}>
           {motion ? (
-            <MotionPage {...{ model, palette, compact, wide, controls, folds }} />
+            <MotionPage {...{ model, palette, compact, wide, controls, lessons, folds }} />
           ) : (
-            <AlgebraPage model={model} palette={palette} />
+            <AlgebraPage
+              model={model}
+              palette={palette}
+              lesson={lessons.step && <LessonPanel lessons={lessons} />}
+            />
           )}
         </Boundary>
       </div>
@@ -65,12 +73,23 @@ export function App({ model, palette, compact, wide }: Props) {
   );
 }
 
-function MotionPage(props: Props & { controls: Controls; folds: Folds }) {
-  const { model, palette, compact, wide, controls, folds } = props;
+function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds: Folds }) {
+  const { model, palette, compact, controls, lessons, folds } = props;
   const known = model.about.value !== null;
+  const learning = lessons.step !== null;
+  // In a lesson its text comes first.
+  const wide = props.wide && !learning;
   const varied = !compact && controls.about.value !== null;
+  const listed = (!compact || lessons.left.value) && !learning;
   const panels: [shown: boolean, id: string, title: string, open: boolean, content: ComponentChildren][] = [
-    [known, "state", "State", !compact || wide, <Readout model={model} />],
+    [
+      listed,
+      "lessons",
+      "Lessons",
+      model.caption.value !== null || lessons.left.value,
+      <LessonList lessons={lessons} />,
+    ],
+    [known, "state", "State", learning ? false : !compact || wide, <Readout model={model} />],
     [varied, "start", "Spin and attitude", wide, <StartPanel controls={controls} />],
     [known, "motion", "Motion", wide && !compact, <Facts model={model} />],
     [varied, "body", "Body", false, <BodyPanel controls={controls} />],
@@ -83,10 +102,11 @@ function MotionPage(props: Props & { controls: Controls; folds: Folds }) {
       <Picture model={model} palette={palette} />
       <Playback model={model} />
       <aside class="panels" aria-label="Values and controls">
+        {learning && <LessonPanel lessons={lessons} />}
         {panels.map(
           ([shown, id, title, open, content]) =>
             shown && (
-              <Panel key={id} id={id} title={title} open={open} folds={folds}>
+              <Panel key={`${id} ${learning}`} id={id} title={title} open={open} folds={folds}>
                 {content}
               </Panel>
             ),

@@ -2,7 +2,7 @@ import { parsed } from "../document.ts";
 import { type Model, words } from "../model/model.ts";
 
 /** Suffixes of the files that the page opens. */
-export const ACCEPTED = ".toml,.json,.stl,.obj,.ply";
+export const ACCEPTED = ".toml,.json,.md,.stl,.obj,.ply";
 
 /**
  * Opens local files: a scene with the meshes that it names, meshes that the current scene lacks, or a document of the
@@ -11,7 +11,9 @@ export const ACCEPTED = ".toml,.json,.stl,.obj,.ply";
 export async function openFiles(model: Model, files: readonly File[]): Promise<void> {
   const hasSuffix = (file: File, suffixes: string) =>
     suffixes.split(",").some((suffix) => file.name.toLowerCase().endsWith(suffix));
-  const scenes = files.filter((file) => hasSuffix(file, ".toml,.json"));
+  // A lesson comes with the scenes and meshes that it names.
+  const lessons = files.filter((file) => hasSuffix(file, ".md"));
+  const scenes = lessons.length > 0 ? lessons : files.filter((file) => hasSuffix(file, ".toml,.json"));
   const named = (some: readonly File[]) => some.map((file) => file.name).join(", ");
   const unknown = files.filter((file) => !hasSuffix(file, ACCEPTED));
   try {
@@ -23,7 +25,7 @@ export async function openFiles(model: Model, files: readonly File[]): Promise<v
       const netcdf = unknown.some((file) => hasSuffix(file, ".nc"));
       const hint = netcdf ? "; `polhode view` shows netCDF files" : "";
       throw new Error(
-        `${named(unknown)}: the page opens scenes (.toml), documents (.json) and meshes (.stl, .obj, .ply)${hint}`,
+        `${named(unknown)}: the page opens scenes (.toml), documents (.json) and meshes (.stl, .obj, .ply), and lessons (.md)${hint}`,
       );
     }
     const meshes = files.filter((file) => file !== scene && !unknown.includes(file));
@@ -34,7 +36,9 @@ export async function openFiles(model: Model, files: readonly File[]): Promise<v
       return;
     }
     const text = new TextDecoder().decode(await bytes(scene));
-    if (hasSuffix(scene, ".json")) {
+    if (hasSuffix(scene, ".md")) {
+      model.lesson.value = { text, name: scene.name, files: others };
+    } else if (hasSuffix(scene, ".json")) {
       await model.show(parsed(text, scene.name));
     } else {
       model.page.value = "motion";

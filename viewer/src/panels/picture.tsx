@@ -4,6 +4,8 @@ import { sizeAt, State } from "../core/core.ts";
 import { typed } from "../format/numbers.ts";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
+import { EnergyView, hasEnergyView } from "../stage/energy.ts";
+import { separatrix } from "../stage/polhodes.ts";
 import { Stage } from "../stage/stage.ts";
 import { LONGEST_STEP } from "../stage/viewport.ts";
 
@@ -22,10 +24,13 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
     }
   }, [model, palette]);
   const caption = model.caption.value ?? model.about.value?.caption ?? null;
+  const beside = model.shown.value.energy && hasEnergyView(model.about.value) && missing.value === null;
+  const looks = ["seen", model.solving.value && "old", beside && "two"].filter(Boolean).join(" ");
   return (
     <section class="picture" aria-label="Picture">
-      <div class={model.solving.value ? "seen old" : "seen"}>
-        <div class="stage" ref={place} />
+      <div class={looks}>
+        <div class="stage" ref={place} {...marking(model)} />
+        {beside && <Energy model={model} palette={palette} />}
         {missing.value !== null && <p class="missing">{missing.value}</p>}
         <Solving model={model} />
         <Strobe model={model} />
@@ -43,6 +48,35 @@ function Solving({ model }: { model: Model }) {
       {model.solving.value && "Computing… This picture is old."}
     </p>
   );
+}
+
+/** The energy ellipsoid beside the picture in space, with the names of what is drawn. */
+function Energy({ model, palette }: { model: Model; palette: ReadonlySignal<Palette> }) {
+  const place = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const view = new EnergyView(place.current!, model, palette);
+    return () => view.dispose();
+  }, [model, palette]);
+  return (
+    <>
+      <p class="where left">In space</p>
+      <div class="energy" ref={place} {...marking(model)} />
+      <p class="where">In the body</p>
+      <ul class="legend">
+        <li class="dot">Ω, on its path</li>
+        <li class="thin">paths of the same energy</li>
+        {separatrix(model.about.value!.body.moments).length > 0 && <li class="dashed">separatrix</li>}
+      </ul>
+    </>
+  );
+}
+
+/** While the pointer is over one picture, the tip of Ω is marked in both. */
+function marking(model: Model) {
+  return {
+    onPointerEnter: () => (model.marked.value = true),
+    onPointerLeave: () => (model.marked.value = false),
+  };
 }
 
 /** Advances the model's time while it plays; returns the function that stops it. */

@@ -14,6 +14,7 @@ const THINGS: [keyof Shown, string][] = [
   ["polhode", "Polhode"],
   ["herpolhode", "Herpolhode"],
   ["poinsot", "Poinsot’s ellipsoid"],
+  ["energy", "Energy ellipsoid, beside"],
   ["gravity", "Pivot and weight"],
 ];
 

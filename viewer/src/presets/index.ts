@@ -37,10 +37,10 @@ export const PRESETS: Preset[] = [
     title: "Dzhanibekov’s T-handle",
     scene: handle,
     files: { "t-handle.stl": handleMesh },
-    view: { speed: 0.2 },
+    view: { speed: 0.2, shown: { energy: true, omega: false, trace: false, polhode: false } },
     caption:
-      "The handle spins about its intermediate axis and flips again and again. L is constant in space; in the body, Ω moves " +
-      "along the polhode from one end of the axis to the other.",
+      "The handle spins about the axis of its middle moment, and flips again and again. In space L stays at rest. In the body " +
+      "Ω keeps its energy, so it stays on this ellipsoid, and passes from one end of the axis to the other.",
   },
   {
     name: "racket.toml",

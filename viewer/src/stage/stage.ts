@@ -15,6 +15,7 @@ import type { Instant, Part, Setting } from "./part.ts";
 import { Paths } from "./paths.ts";
 import { poinsot } from "./poinsot.ts";
 import { quaternion, vector } from "./rotor.ts";
+import { tip } from "./tip.ts";
 import { Viewport } from "./viewport.ts";
 
 /** Options of a captured picture; width and height are in pixels. */
@@ -63,9 +64,8 @@ export class Stage extends Viewport {
       const turn = model.turned.value;
       if (turn && turn !== turned) this.viewpoint.turn(turn);
       turned = turn;
-      for (const watched of [model.motion, model.row, model.shown, model.camera, model.playing, palette]) {
-        void watched.value;
-      }
+      const { motion, row, shown, marked, camera, playing } = model;
+      for (const watched of [motion, row, shown, marked, camera, playing, palette]) void watched.value;
     });
   }
 
@@ -160,6 +160,7 @@ export class Stage extends Viewport {
       disc(setting, MOMENTUM),
       poinsot(setting),
       this.paths,
+      tip(setting, () => this.model.marked.peek()),
       gravity(setting),
       crowd(setting),
     ];
@@ -211,6 +212,7 @@ export class Stage extends Viewport {
       [shown.polhode, "the polhode"],
       [shown.herpolhode, "the herpolhode"],
       [shown.trace, "the path of an axis of the body"],
+      [shown.energy, "the tip of Ω"],
       [shown.gravity && about?.held === true, "the pivot and the weight"],
     ];
     const drawn = things.filter(([seen]) => seen).map(([, thing]) => thing);

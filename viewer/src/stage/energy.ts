@@ -1,0 +1,142 @@
+import type { ReadonlySignal } from "@preact/signals";
+import { Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
+import { type About, State } from "../core/core.ts";
+import type { Motion } from "../core/wasm.ts";
+import type { Model } from "../model/model.ts";
+import { firstRow } from "../model/speed.ts";
+import type { Palette } from "../palette.ts";
+import { REACH } from "./figure.ts";
+import { type Curve, neighbours, ordered, separatrix, through } from "./polhodes.ts";
+import { AXES, quaternion, vector } from "./rotor.ts";
+import { Shapes } from "./shapes.ts";
+import { Viewport } from "./viewport.ts";
+
+/** Scale of the curves, so that they are drawn over the ellipsoid. */
+const LIFTED = 1.004;
+/** The radius of the dot at the tip of Ω, and its size while it is marked. */
+const DOT = 0.045;
+const MARKED = 1.8;
+
+/**
+ * The energy ellipsoid of a free body in body axes: all Ω of its energy. On it are its polhode, neighbours, the
+ * separatrix, and a dot at the present Ω, at the same time as in the picture in space.
+ */
+export class EnergyView extends Viewport {
+  private motion: Motion | null = null;
+  private painted: Palette | null = null;
+  private dot: Mesh | null = null;
+  /** Drawn units for 1 rad/s. */
+  private rate = 1;
+
+  constructor(
+    host: HTMLElement,
+    private readonly model: Model,
+    private readonly palette: ReadonlySignal<Palette>,
+  ) {
+    super(host);
+    this.watch(() => {
+      for (const watched of [model.motion, model.row, model.marked, model.shown, palette]) void watched.value;
+    });
+  }
+
+  override home(): void {
+    if (this.motion) this.viewpoint.from(...towards(this.motion.about));
+    this.draw();
+  }
+
+  protected override show(): void {
+    this.build();
+    const row = this.model.row.peek();
+    if (row && this.dot) {
+      this.dot.position.copy(vector(row, State.omegaBody)).multiplyScalar(this.rate * LIFTED);
+      this.dot.scale.setScalar(this.model.marked.peek() ? MARKED : 1);
+    }
+    this.render(this.model.shown.peek().labels);
+  }
+
+  /** Builds the ellipsoid of a new motion, or in other colours. */
+  private build(): void {
+    const [motion, palette] = [this.model.motion.peek(), this.palette.peek()];
+    if (motion === this.motion && palette === this.painted) return;
+    const first = this.motion === null;
+    [this.motion, this.painted, this.dot] = [motion, palette, null];
+    this.replace(palette);
+    // The user's view is kept while sliders move.
+    if (motion && first) this.viewpoint.from(...towards(motion.about));
+    if (!motion || !hasEnergyView(motion.about)) return;
+    const { moments, frame } = motion.about.body;
+    const row = firstRow(motion);
+    const omega = vector(row, State.omegaBody);
+    const doubleKinetic = omega.dot(vector(row, State.momentumBody));
+    const semiAxes = new Vector3(...moments.map((moment) => Math.sqrt(doubleKinetic / moment)));
+    this.rate = REACH / Math.max(...semiAxes.toArray());
+    semiAxes.multiplyScalar(this.rate);
+
+    const body = new Group();
+    quaternion(frame, 0, body.quaternion);
+    const placed = (curve: Curve) => curve.map((u) => u.clone().multiply(semiAxes).multiplyScalar(LIFTED));
+    body.add(this.skin(palette, semiAxes));
+    const thin = new Shapes(this.screen, palette.polhode);
+    for (const curve of neighbours(moments))
+      thin.line(placed(curve), { width: 1, opacity: 0.7, behind: 0.15 }, true);
+    const dashed = new Shapes(this.screen, palette.text);
+    for (const curve of separatrix(moments))
+      dashed.line(placed(curve), { width: 1.6, opacity: 0.9, behind: 0.2, dash: 0.09 }, true);
+    const own = new Shapes(this.screen, palette.omega);
+    const unit = omega.clone().applyQuaternion(body.quaternion.clone().invert());
+    const curve = through(moments, unit.multiplyScalar(this.rate).divide(semiAxes).normalize());
+    if (curve) own.line(placed(curve), { width: 2.6, behind: 0.3 }, true);
+    body.add(thin.object, dashed.object, own.object);
+
+    this.dot = new Mesh(new SphereGeometry(DOT, 24, 16), new MeshBasicMaterial({ color: palette.omega }));
+    this.space.add(body, this.axes(motion.about, palette), this.dot);
+    this.canvas.ariaLabel =
+      "The energy ellipsoid in the body, with the polhode of Ω, its neighbours and the separatrix. Arrow keys turn it.";
+  }
+
+  private skin(palette: Palette, semiAxes: Vector3): Mesh {
+    const material = new MeshLambertMaterial({
+      color: palette.polhode,
+      transparent: true,
+      opacity: 0.34,
+    });
+    const skin = new Mesh(new SphereGeometry(1, 64, 40).rotateX(Math.PI / 2), material);
+    skin.scale.copy(semiAxes);
+    return skin;
+  }
+
+  /** The principal axes with the names of their moments. */
+  private axes({ body: { moments, frame } }: About, palette: Palette): Group {
+    const names = ["smallest", "middle", "largest"];
+    const order = ordered(moments);
+    const arrows = new Group();
+    const turn = quaternion(frame);
+    AXES.forEach((axis, k) => {
+      const colour = palette.axes[k as 0 | 1 | 2];
+      const to = axis
+        .clone()
+        .applyQuaternion(turn)
+        .multiplyScalar(1.22 * REACH);
+      const shapes = new Shapes(this.screen, colour);
+      shapes.arrow(to, { width: 1.8, behind: 0.35 });
+      arrows.add(shapes.object);
+      const label = this.labels.add(names[order.indexOf(k)]!, colour, { rank: 1 });
+      label.at.copy(to);
+    });
+    return arrows;
+  }
+}
+
+/** A view of the end of the middle axis, where the separatrix crosses itself: azimuth and elevation in degrees. */
+function towards({ body: { moments, frame } }: About): [number, number] {
+  const [small, middle, large] = ordered(moments);
+  const at = new Vector3().setComponent(small, 0.5).setComponent(middle, 1).setComponent(large, 0.45);
+  at.applyQuaternion(quaternion(frame)).normalize();
+  return [(Math.atan2(at.y, at.x) * 180) / Math.PI, (Math.asin(at.z) * 180) / Math.PI];
+}
+
+/** Whether the energy ellipsoid of a motion stays as it is: of a free body with three moments. */
+export function hasEnergyView(about: About | null): boolean {
+  if (!about?.free || about.ensemble !== null) return false;
+  return Math.min(...about.body.moments) > 0 && Math.hypot(...about.start.omega_body) > 0;
+}

@@ -114,10 +114,10 @@ def test_failed_bodies_are_listed_whatever_the_order(tmp_path):
 @pytest.mark.parametrize(
     "damaged",
     [
-        "attitude/c/1/0/0",
+        "attitude/c.1.0.0",
         ".polhode/blocks/1.json",
         "omega_body/zarr.json",
-        "time/c/0",
+        "time/c.0",
         "body/zarr.json",
         "zarr.json",
     ],
@@ -148,7 +148,7 @@ def test_only_what_is_not_done_is_computed(scene, folder, serial, monkeypatch, t
         "missing": [[0, 512], [1536, NUMBER]],
         "corrupt": [],
     }
-    chunk = store / "energy" / "c" / "1" / "0"
+    chunk = store / "energy" / "c.1.0"
     chunk.write_bytes(bytes(len(chunk.read_bytes())))
     assert status(store)["bodies"] == {
         "done": [[1024, 1536]],

@@ -148,7 +148,8 @@ def _proofs(trajectory: Trajectory) -> Iterator[Variable]:
         known = np.where(np.isnan(proof.conserved[name]), np.nan, drift)
         columns[f"{name}_drift"] = (known, "1", f"largest relative change of {name.replace('_', ' ')}")
     for name, (values, units, text) in columns.items():
-        yield Variable(name, (), values, units, text)
+        meanings = flags(["complete", "failed"]) if name == "failed" else {}
+        yield Variable(name, (), values, units, text, meanings)
 
 
 def _wxyz(values: Array) -> Array:

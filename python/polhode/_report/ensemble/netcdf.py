@@ -89,7 +89,6 @@ class EnsembleFile:
     def end(self, records: EnsembleRecords) -> None:
         """Write failures and the names of methods, after the last body or an interrupt."""
         self._file.variables["method"].attrs.update(flags(self._methods))
-        self._file.variables["failed"].attrs.update(flags(["complete", "failed"]))
         if records.failures:
             self._file.dimensions["failure"] = len(records.failures)
             numbers, (name, texts, description) = failures(

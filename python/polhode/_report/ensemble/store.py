@@ -17,16 +17,22 @@ import numpy as np
 from polhode import _native
 from polhode._mechanics.simulate import METHODS
 from polhode._mechanics.trajectory import Trajectory
+from polhode._report.ensemble.arrays import (
+    META,
+    chunk_of,
+    metadata_of,
+    new_array,
+    write_chunk,
+    write_labels,
+    zarr,
+)
 from polhode._report.ensemble.layout import LABELS, EnsembleLayout, Variable, failures, flags
 from polhode._scene.scene import Scene
-from polhode._support.arrays import Array
-from polhode._support.checksums import digests, seal, sealed
-from polhode._support.extras import optional
+from polhode._support.checksums import checksum, digests, seal, sealed
 from polhode._support.locks import Lock, held, locked
 
 # Folder of the store for what is not data; it is an empty Zarr group, so that readers do not stumble on it.
 OWN = ".polhode"
-_META = "zarr.json"
 _GROUP = {"zarr_format": 3, "node_type": "group"}
 # Names of the codes -1, 0, 1, ... of methods: they must not depend on the order of blocks.
 _METHODS = ["none", *METHODS[1:]]
@@ -51,7 +57,8 @@ class EnsembleStore:
 
     Arrays have the layout of `EnsembleLayout`, with chunks of `block` bodies. A block is written to a folder
     of its own; then its files are renamed into their arrays; last its mark, which has the checksums of the
-    files. Bytes do not depend on the order of blocks, so a block may be written again at any time.
+    files and of the metadata of the arrays. Bytes do not depend on the order of blocks, so a block may be
+    written again at any time.
     """
 
     def __init__(self, path: Path, identity: dict[str, Any]) -> None:
@@ -59,8 +66,8 @@ class EnsembleStore:
         self.number, self.block = int(identity["number"]), int(identity["block"])
         self.blocks = -(-self.number // self.block)
         self.drift_bound = float(identity["drift_bound"])
-        self._metadata: dict[str, bytes] = {}
-        self._consolidated: set[str] = set()
+        # The checksums of the metadata that this process has written or found right, by array.
+        self._described: dict[str, str] = {}
 
     @staticmethod
     def exists(path: Path) -> bool:
@@ -95,7 +102,7 @@ class EnsembleStore:
             _write_shared(part, scene)
             for name in ("blocks", "locks", "parts"):
                 (part / OWN / name).mkdir(parents=True)
-            (part / OWN / _META).write_text(json.dumps(_GROUP | {"attributes": {}}))
+            (part / OWN / META).write_text(json.dumps(_GROUP | {"attributes": {}}))
             identity = identity_of(scene)
             seal(part / OWN / "run.json", identity | {"files": digests(part, _files(part, own=False))})
             made = EnsembleStore(part, identity)
@@ -166,32 +173,33 @@ class EnsembleStore:
     def write(self, index: int, scene: Scene, trajectory: Trajectory) -> None:
         """Write a block and mark it done."""
         rows = self.rows(index)
+        codes = [_METHODS.index(name) - 1 for name in _methods(trajectory)]
+        method = Variable("method", (), np.array(codes, np.int8), "1", "method", flags(_METHODS, -1))
+        variables = (method, *EnsembleLayout(scene).of_bodies(rows, trajectory))
         with self._part() as part:
-            codes = [_METHODS.index(name) - 1 for name in _methods(trajectory)]
-            method = Variable("method", (), np.array(codes, np.int8), "1", "method", flags(_METHODS, -1))
-            for variable in (method, *EnsembleLayout(scene).of_bodies(rows, trajectory)):
-                (part / variable.name).mkdir()
-                (part / variable.name / _META).write_bytes(self._metadata_of(variable))
-                _write_chunk(part / variable.name, index, self.block, variable.values)
-            files = _files(part)
-            found = digests(part, files)
-            self._publish(part, files)
+            found = {
+                chunk_of(variable, index): write_chunk(part / variable.name, self.block, variable.values)
+                for variable in variables
+            }
+            new = [variable for variable in variables if variable.name not in self._described]
+            for variable in new:
+                self._describe(part, variable)
+            for chunk in list(found):
+                name = chunk.partition("/")[0]
+                os.replace(part / name, self.path / chunk)
+                found[f"{name}/{META}"] = self._described[name]
             self._publish_mark(part, index, {"files": found, **_outcome(rows, trajectory)})
-        arrays = {name.partition("/")[0] for name in files}
-        if not arrays <= self._consolidated:  # others are the same in all blocks
+        if new:  # others are the same in all blocks
             self.consolidate()
-            self._consolidated |= arrays
 
-    def _metadata_of(self, variable: Variable) -> bytes:
-        """Return the metadata of the array of a variable, as the library writes it."""
-        if variable.name not in self._metadata:
-            extra = flags(["complete", "failed"]) if variable.name == "failed" else {}
-            sizes, dims = variable.values.shape[1:], ("body", *variable.dims)
-            with self._part() as part:
-                group = zarr().open_group(part, mode="w", zarr_format=3)
-                _array(group, variable, (self.number, *sizes), (self.block, *sizes), dims, extra)
-                self._metadata[variable.name] = (part / variable.name / _META).read_bytes()
-        return self._metadata[variable.name]
+    def _describe(self, part: Path, variable: Variable) -> None:
+        """Write the metadata of the array of a variable, unless they are right."""
+        folder, content = self.path / variable.name, metadata_of(variable, self.number, self.block)
+        folder.mkdir(exist_ok=True)
+        if not (folder / META).exists() or (folder / META).read_bytes() != content:
+            (part / META).write_bytes(content)
+            os.replace(part / META, folder / META)
+        self._described[variable.name] = checksum([content])
 
     def finish(self) -> bool:
         """Write the failures and the number of complete bodies if all blocks are done; return whether so."""
@@ -204,8 +212,8 @@ class EnsembleStore:
             if found:
                 numbers, (name, texts, description) = failures(found)
                 shape = numbers.values.shape
-                _array(group, numbers, shape, shape, ("failure",))[:] = numbers.values
-                _labels(group, name, texts, "failure", {"long_name": description})
+                new_array(group, numbers, shape, shape, ("failure",))[:] = numbers.values
+                write_labels(group, name, texts, "failure", {"long_name": description})
             self._publish(part, _files(part))
         self.consolidate({"bodies_complete": self.number})
         return True
@@ -229,9 +237,9 @@ class EnsembleStore:
 
         Processes that add an array at the same time may miss that of the other until the last block is done.
         """
-        path = self.path / _META
+        path = self.path / META
         arrays = {}
-        for file in sorted(self.path.glob(f"*/{_META}")):
+        for file in sorted(self.path.glob(f"*/{META}")):
             with contextlib.suppress(ValueError):  # damaged: its blocks are written again
                 arrays[file.parent.name] = json.loads(file.read_bytes())
         arrays.pop(OWN, None)
@@ -240,8 +248,8 @@ class EnsembleStore:
         text = json.dumps(_GROUP | {"attributes": attributes, "consolidated_metadata": inline})
         if not path.exists() or path.read_bytes() != text.encode():
             with self._part() as part:
-                (part / _META).write_text(text)
-                os.replace(part / _META, path)
+                (part / META).write_text(text)
+                os.replace(part / META, path)
 
     def _mark(self, index: int) -> Path:
         return self.path / OWN / "blocks" / f"{index:0{len(str(self.blocks - 1))}d}.json"
@@ -262,11 +270,6 @@ class EnsembleStore:
             target = self.path / name
             target.parent.mkdir(parents=True, exist_ok=True)
             os.replace(part / name, target)
-
-
-def zarr() -> Any:
-    """Return the library."""
-    return optional("zarr", "zarr", "a Zarr store")
 
 
 def identity_of(scene: Scene) -> dict[str, Any]:
@@ -293,65 +296,13 @@ def _write_shared(part: Path, scene: Scene) -> None:
     """Write the variables that all bodies share, labels and numbers of bodies included."""
     group = zarr().open_group(part, mode="w", zarr_format=3)
     for name, labels in LABELS.items():
-        _labels(group, name, list(labels), name, {})
+        write_labels(group, name, list(labels), name, {})
     assert scene.ensemble is not None
     numbers = np.arange(scene.ensemble.number)
     body = Variable("body", ("body",), numbers, "1", "number of the body")
     for shared in (body, *EnsembleLayout(scene).shared()):
         values = np.asarray(shared.values)
-        _array(group, shared, values.shape, values.shape, shared.dims)[...] = values
-
-
-def _array(
-    group: Any,
-    variable: Variable,
-    shape: tuple[int, ...],
-    chunks: tuple[int, ...],
-    dims: tuple[str, ...],
-    extra: dict[str, Any] | None = None,
-) -> Any:
-    """Return a new array."""
-    dtype = np.asarray(variable.values).dtype
-    attributes = variable.labels | (extra or {})
-    return group.create_array(
-        variable.name,
-        shape=shape,
-        chunks=chunks,
-        dtype=dtype,
-        dimension_names=dims,
-        fill_value=_fill(dtype),
-        compressors=None,  # the last digits do not compress, and bytes must not depend on a library's version
-        attributes={name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in attributes.items()},
-    )
-
-
-def _write_chunk(array: Path, index: int, block: int, values: Array) -> None:
-    """Write the chunk of a block: its numbers in C order, little-endian, the last chunk filled up."""
-    missing = (block - len(values), *values.shape[1:])
-    whole = np.concatenate([values, np.full(missing, _fill(values.dtype), values.dtype)])
-    path = array.joinpath("c", str(index), *["0"] * (values.ndim - 1))
-    path.parent.mkdir(parents=True)
-    path.write_bytes(whole.astype(whole.dtype.newbyteorder("<"), order="C", copy=False).tobytes())
-
-
-def _fill(dtype: np.dtype[Any]) -> float | int:
-    """Return the value of numbers that are not written: NaN, or -1."""
-    return np.nan if dtype.kind == "f" else -1
-
-
-def _labels(group: Any, name: str, texts: list[str], dim: str, attributes: dict[str, Any]) -> None:
-    """Write an array of texts."""
-    count = (len(texts),)
-    array = group.create_array(
-        name,
-        shape=count,
-        chunks=count,
-        dtype=str,
-        compressors=None,
-        dimension_names=(dim,),
-        attributes=attributes,
-    )
-    array[:] = np.array(texts, dtype=object)
+        new_array(group, shared, values.shape, values.shape, shared.dims)[...] = values
 
 
 def _methods(trajectory: Trajectory) -> list[str]:

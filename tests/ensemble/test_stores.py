@@ -24,22 +24,8 @@ xr = pytest.importorskip("xarray")
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    path = tmp_path_factory.mktemp("stores")
-    (path / "a.toml").write_text(TEXT)
-    return path
-
-
-@pytest.fixture(scope="module")
 def scene(folder):
     return ph.Scene.read(folder / "a.toml")
-
-
-@pytest.fixture(scope="module")
-def serial(scene, folder):
-    """The content of a store that was filled in one go."""
-    scene.run(store=folder / "serial.zarr", threads=1).close()
-    return content(folder / "serial.zarr")
 
 
 def test_a_store_has_the_layout_of_the_netcdf_file(scene, folder, serial):

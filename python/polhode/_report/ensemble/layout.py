@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
+from polhode._mechanics.bodies import matrices
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.netcdf import CF, CONVENTIONS, MOTION, components
@@ -98,14 +99,14 @@ class EnsembleLayout:
         if "moments" in self._ensemble.varied:
             inertias = np.broadcast_to(trajectory.inertia, len(trajectory))
             dims, units, text = MOTION["inertia"]
-            yield Variable("inertia", dims, np.array([x.matrix for x in inertias]), units, text)
+            yield Variable("inertia", dims, matrices(inertias), units, text)
         yield from _proofs(trajectory)
         if any(name.startswith(("torque.", "gravity.")) for name in self._ensemble.varied):
             yield from self._laws(rows)
 
     def _laws(self, rows: slice) -> Iterator[Variable]:
         """Yield the drawn parameters of torque laws."""
-        for law in self._ensemble.draw(rows.start, rows.stop - rows.start)[2]:
+        for law in self._ensemble.laws(rows.start, rows.stop - rows.start):
             if isinstance(law, _native.Law):
                 continue
             name, arguments = law

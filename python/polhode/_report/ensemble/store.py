@@ -28,6 +28,7 @@ from polhode._report.ensemble.arrays import (
 )
 from polhode._report.ensemble.layout import LABELS, EnsembleLayout, Variable, failures, flags
 from polhode._scene.scene import Scene
+from polhode._support.arrays import Array
 from polhode._support.checksums import checksum, digests, seal, sealed
 from polhode._support.locks import Lock, held, locked
 
@@ -173,8 +174,7 @@ class EnsembleStore:
     def write(self, index: int, scene: Scene, trajectory: Trajectory) -> None:
         """Write a block and mark it done."""
         rows = self.rows(index)
-        codes = [_METHODS.index(name) - 1 for name in _methods(trajectory)]
-        method = Variable("method", (), np.array(codes, np.int8), "1", "method", flags(_METHODS, -1))
+        method = Variable("method", (), _codes(trajectory), "1", "method", flags(_METHODS, -1))
         variables = (method, *EnsembleLayout(scene).of_bodies(rows, trajectory))
         with self._part() as part:
             found = {
@@ -305,15 +305,18 @@ def _write_shared(part: Path, scene: Scene) -> None:
         new_array(group, shared, values.shape, values.shape, shared.dims)[...] = values
 
 
-def _methods(trajectory: Trajectory) -> list[str]:
-    """Return the name of each body's method; ``none`` for failed ones."""
-    names = np.broadcast_to(np.asarray(trajectory.certificate.method, object), len(trajectory))
-    return np.where(trajectory.ok, names, "none").tolist()  # type: ignore[no-any-return]
+def _codes(trajectory: Trajectory) -> Array:
+    """Return the code of each body's method; -1 for failed ones."""
+    names, which = np.unique(np.asarray(trajectory.certificate.method, str), return_inverse=True)
+    codes = np.array([_METHODS.index(name) - 1 for name in names], np.int8)
+    return np.where(trajectory.ok, codes[which], np.int8(-1))
 
 
 def _outcome(rows: slice, trajectory: Trajectory) -> dict[str, Any]:
     """Return the outcome of a block: failures, number of bodies by method, and largest drifts."""
-    proof, names = trajectory.certificate, _methods(trajectory)
+    proof = trajectory.certificate
+    codes, counts = np.unique(_codes(trajectory), return_counts=True)
+    methods = {_METHODS[code + 1]: int(count) for code, count in zip(codes, counts, strict=True)}
     drifts = {"rotor_norm": proof.norm_drift}
     drifts |= {name: np.where(np.isnan(proof.conserved[name]), np.nan, x) for name, x in proof.drift.items()}
     worst = {}
@@ -324,7 +327,7 @@ def _outcome(rows: slice, trajectory: Trajectory) -> dict[str, Any]:
     return {
         "bodies": [rows.start, rows.stop],
         "failures": [[rows.start + f.index[0], f.time, f.message] for f in trajectory.failures],
-        "methods": {name: names.count(name) for name in sorted({*names})},
+        "methods": dict(sorted(methods.items())),
         "worst": worst,
     }
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import json
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -99,9 +98,9 @@ def chunk_of(variable: Variable, index: int) -> str:
     return f"{variable.name}/{'.'.join(['c', str(index), *['0'] * (variable.values.ndim - 1)])}"
 
 
-def write_chunk(path: Path, block: int, values: Array) -> str:
+def write_chunk(path: str, block: int, values: Array) -> str:
     """Write the chunk of a block, and return its checksum."""
-    with path.open("xb") as file:
+    with open(path, "xb") as file:
 
         def written() -> Iterator[memoryview]:
             for piece in _pieces(block, values):

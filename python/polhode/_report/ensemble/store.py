@@ -178,7 +178,7 @@ class EnsembleStore:
         variables = (method, *EnsembleLayout(scene).of_bodies(rows, trajectory))
         with self._part() as part:
             found = {
-                chunk_of(variable, index): write_chunk(part / variable.name, self.block, variable.values)
+                chunk_of(variable, index): write_chunk(f"{part}/{variable.name}", self.block, variable.values)
                 for variable in variables
             }
             new = [variable for variable in variables if variable.name not in self._described]
@@ -186,7 +186,7 @@ class EnsembleStore:
                 self._describe(part, variable)
             for chunk in list(found):
                 name = chunk.partition("/")[0]
-                os.replace(part / name, self.path / chunk)
+                os.replace(f"{part}/{name}", f"{self.path}/{chunk}")
                 found[f"{name}/{META}"] = self._described[name]
             self._publish_mark(part, index, {"files": found, **_outcome(rows, trajectory)})
         if new:  # others are the same in all blocks

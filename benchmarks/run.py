@@ -1,7 +1,8 @@
 """Compare the speed with other libraries: `python benchmarks/run.py [--quick] [--only SECTION]`.
 
 Prints tables and writes them to build/bench-COMMIT.md, the data to build/bench-COMMIT.json, plots of work and
-precision to build/bench-COMMIT-motion.png and of the cost of ensembles to build/bench-COMMIT-ensembles.png.
+precision to build/bench-COMMIT-motion.png, of the cost of ensembles to build/bench-COMMIT-ensembles.png and
+of that of their files to build/bench-COMMIT-files.png.
 Compare ratios: absolute times depend on the machine and its load. A library that is not installed has an
 empty column.
 """
@@ -17,6 +18,7 @@ import numpy as np
 import algebras
 import batches
 import compiled
+import ensemble_files
 import ensembles
 import imports
 import machine
@@ -55,7 +57,7 @@ def main() -> None:
     """Run the benchmarks, print the tables and write the files."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--quick", action="store_true", help="use smaller batches and shorter runs")
-    titles = [*SECTIONS, scaling.TITLE, work_precision.TITLE]
+    titles = [*SECTIONS, scaling.TITLE, ensemble_files.TITLE, work_precision.TITLE]
     parser.add_argument(
         "--only",
         action="append",
@@ -87,6 +89,9 @@ def main() -> None:
     costs = scaling.points(pace) if scaling.TITLE in wanted else []
     if costs:
         say(scaling.section(costs))
+    written = ensemble_files.points(pace) if ensemble_files.TITLE in wanted else []
+    if written:
+        say(ensemble_files.section(written))
     panels = list(work_precision.panels(pace)) if work_precision.TITLE in wanted else []
     if panels:
         say(work_precision.section(panels))
@@ -104,6 +109,7 @@ def main() -> None:
                 **about,
                 "versions": versions,
                 "costs": scaling.data(costs),
+                "files": ensemble_files.data(written),
                 "panels": work_precision.data(panels),
             },
             sections,
@@ -113,6 +119,8 @@ def main() -> None:
         files[target.with_name(f"{target.name}-motion.png")] = drawing
     if costs and (drawing := scaling.plot(costs)):
         files[target.with_name(f"{target.name}-ensembles.png")] = drawing
+    if written and (drawing := ensemble_files.plot(written)):
+        files[target.with_name(f"{target.name}-files.png")] = drawing
     write_atomically(files)
     print("Written to", " and ".join(str(path.relative_to(machine.ROOT)) for path in files))
 

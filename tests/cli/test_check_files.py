@@ -1,32 +1,21 @@
 """`polhode check` of robot files and meshes: a line for each link, places, doubts about units, exit codes."""
 
+import functools
 import json
 import re
 import shutil
-from types import SimpleNamespace
 
 import pytest
 
 import polhode as ph
 from command_line import EXAMPLES, ROOT, polhode
 from meshes import cube, write_binary_stl
-from polhode._cli.main import main
 
 
 @pytest.fixture
-def check(tmp_path, monkeypatch, capsys):
-    """Return a function that runs the command in this process, in a folder of its own."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        try:
-            code = main(["check", *arguments])
-        except SystemExit as stop:
-            code = stop.code
-        output = capsys.readouterr()
-        return SimpleNamespace(returncode=code, stdout=output.out, stderr=output.err)
-
-    return run
+def check(command):
+    """Return a function that runs the subcommand in this process, in a folder of its own."""
+    return functools.partial(command, "check")
 
 
 GOOD = '<inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="2.5"/></inertial>'

@@ -1,7 +1,7 @@
 """`polhode convert` among netCDF, CSV, Parquet and AEM."""
 
+import functools
 import itertools
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +9,6 @@ import pytest
 import polhode as ph
 from command_line import polhode
 from motions import ASYMMETRIC, START
-from polhode._cli.main import main
 
 MOTION = ph.simulate(ASYMMETRIC, START, np.linspace(0, 1, 5), ph.torque.heavy([0.3, 0, 2]))
 AEM = ["--epoch", "2026-01-01T00:00:00", "--reference-frame", "EME2000"]
@@ -17,19 +16,9 @@ FORMS = ("nc", "csv", "parquet", "aem")
 
 
 @pytest.fixture
-def convert(tmp_path, monkeypatch, capsys):
-    """Return a function that runs the command in this process, in a folder of its own."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        try:
-            code = main(["convert", *arguments])
-        except SystemExit as stop:
-            code = stop.code
-        output = capsys.readouterr()
-        return SimpleNamespace(code=code, out=output.out, err=output.err)
-
-    return run
+def convert(command):
+    """Return a function that runs the subcommand in this process, in a folder of its own."""
+    return functools.partial(command, "convert")
 
 
 @pytest.mark.parametrize(("a", "b"), [*itertools.product(FORMS, FORMS)])
@@ -39,15 +28,15 @@ def test_every_format_to_every_other(a, b, convert, tmp_path):
     else:
         MOTION.save(f"a.{a}")
     done = convert(f"a.{a}", f"b.{b}", *(AEM if b == "aem" and a != "aem" else []))
-    assert (done.code, done.err) == (0, "")
-    assert done.out == f"Written\n  b.{b}\n"
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == f"Written\n  b.{b}\n"
     found = ph.io.read(f"b.{b}")
     assert found.time.tolist() == MOTION.time.tolist()
     assert np.array_equal(found.rotor.components, MOTION.rotor.components)
     np.testing.assert_allclose(found.omega_body.components, MOTION.omega_body.components, rtol=4e-16)
     # A file of ours is replaced without --force, unless a table lacks the columns by which it is known.
     if b != "csv" or a != "aem":
-        assert convert(f"a.{a}", f"b.{b}", *(AEM if b == "aem" and a != "aem" else [])).code == 0
+        assert convert(f"a.{a}", f"b.{b}", *(AEM if b == "aem" and a != "aem" else [])).returncode == 0
 
 
 def test_the_command_reads_what_the_command_wrote(tmp_path, scene):
@@ -65,23 +54,23 @@ def test_the_command_reads_what_the_command_wrote(tmp_path, scene):
 
 def test_netcdf_keeps_the_certificate(convert):
     MOTION.save("a.nc")
-    assert convert("a.nc", "b.nc").code == 0
+    assert convert("a.nc", "b.nc").returncode == 0
     assert ph.Trajectory.read("b.nc").certificate == MOTION.certificate
 
 
 def test_what_is_missing_is_asked_for_by_option(convert, tmp_path):
     MOTION.save("a.nc")
     done = convert("a.nc", "b.aem")
-    assert done.code == 1
-    assert "the epoch of time 0 is not known; give --epoch='YYYY-MM-DDThh:mm:ss'" in done.err
+    assert done.returncode == 1
+    assert "the epoch of time 0 is not known; give --epoch='YYYY-MM-DDThh:mm:ss'" in done.stderr
     assert not (tmp_path / "b.aem").exists()
     ph.io.write_aem(MOTION, "c.aem", epoch="2026-01-01T00:00:00", reference_frame="EME2000", version="1.0")
     text = (tmp_path / "c.aem").read_text().replace("QUATERNION_TYPE = LAST\n", "")
     (tmp_path / "c.aem").write_text(text)
     done = convert("c.aem", "c.csv")
-    assert done.code == 3
-    assert "the segment has no QUATERNION_TYPE; give --quaternion-type='FIRST' or" in done.err
-    assert convert("c.aem", "c.csv", "--quaternion-type", "LAST").code == 0
+    assert done.returncode == 3
+    assert "the segment has no QUATERNION_TYPE; give --quaternion-type='FIRST' or" in done.stderr
+    assert convert("c.aem", "c.csv", "--quaternion-type", "LAST").returncode == 0
 
 
 @pytest.mark.parametrize(
@@ -102,7 +91,7 @@ def test_wrong_uses(arguments, code, expected, convert, tmp_path):
     (tmp_path / "bad.csv").write_text("time,q\n0,1\n")
     (tmp_path / "foreign.csv").write_text("mine")
     done = convert(*arguments)
-    assert done.code == code
-    assert expected in done.err
+    assert done.returncode == code
+    assert expected in done.stderr
     assert (tmp_path / "foreign.csv").read_text() == "mine"
-    assert convert("a.nc", "foreign.csv", "--force").code == 0
+    assert convert("a.nc", "foreign.csv", "--force").returncode == 0

@@ -8,27 +8,13 @@ import time
 
 import pytest
 
-import polhode as ph
 import processes
 from command_line import POLHODE, polhode
-from stores import TEXT, content, status
+from stores import content, status
 
 pytest.importorskip("zarr")
 pytest.importorskip("xarray")
 pytest.importorskip("distributed")
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    path = tmp_path_factory.mktemp("clusters")
-    (path / "a.toml").write_text(TEXT)
-    return path
-
-
-@pytest.fixture(scope="module")
-def serial(folder):
-    ph.Scene.read(folder / "a.toml").run(store=folder / "serial.zarr", threads=1).close()
-    return content(folder / "serial.zarr")
 
 
 # A worker that takes its time for each block, and reports it; the second argument is its version of polhode.

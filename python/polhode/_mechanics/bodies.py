@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, overload
 
 import numpy as np
@@ -18,6 +18,11 @@ from polhode._algebra.rotor import Rotor
 from polhode._support.arrays import Array, as_components, as_float, as_floats
 
 _G3 = algebra_of(3)
+
+
+def matrices(inertias: Iterable[Inertia]) -> Array:
+    """Return the matrices (n, 3, 3) of inertias."""
+    return _native.Inertia.matrices([inertia._core for inertia in inertias]).reshape(-1, 3, 3)
 
 
 class Inertia(LinearMap):

@@ -13,7 +13,7 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.bodies import Inertia, matrices
 from polhode._mechanics.result import Certificate, Crossings
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.summary import QUANTITIES
@@ -81,8 +81,7 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
         flat = speeds.reshape(count, *speeds.shape[-2:]) if shape else speeds
         variables["wheel_speed"] = wheels_of(("body", "time") if shape else ("time",), flat)
     if isinstance(trajectory.inertia, np.ndarray):
-        matrices = np.array([inertia.matrix for inertia in trajectory.inertia.flat]).reshape(count, 3, 3)
-        variables["inertia"] = _quantity("inertia", ("body",), matrices)
+        variables["inertia"] = _quantity("inertia", ("body",), matrices(trajectory.inertia.flat))
     else:
         variables["inertia"] = _quantity("inertia", (), trajectory.inertia.matrix)
     coordinates = _coordinates(trajectory.time)

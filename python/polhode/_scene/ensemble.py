@@ -128,6 +128,10 @@ class EnsembleSpec:
         state = State(Rotor._from_rows(rotors), bivector(omegas), *center, time=time)
         return state, tuple(map(Inertia, inertias)), tuple(laws)
 
+    def laws(self, first: int, count: int) -> tuple[DrawnLaw, ...]:
+        """Return the torque laws of some bodies, as `draw` does."""
+        return tuple(self._core.draw(first, count)[5])
+
 
 def _words(form: str, widths: list[float], unit: str) -> str:
     """Return a distribution in words: ``normal, 0.0349066 rad``."""

@@ -64,6 +64,13 @@ impl Inertia {
         table(py, self.0.matrix().into_iter())
     }
 
+    /// The matrices of n inertias, (3n, 3).
+    #[staticmethod]
+    fn matrices<'py>(py: Python<'py>, inertias: Vec<PyRef<'py, Inertia>>) -> Out<'py> {
+        let rows: Vec<[f64; 3]> = inertias.iter().flat_map(|inertia| inertia.0.matrix()).collect();
+        table(py, rows.into_iter())
+    }
+
     fn principal_moments<'py>(&self, py: Python<'py>) -> Array<'py> {
         line(py, self.0.principal_moments().to_vec())
     }

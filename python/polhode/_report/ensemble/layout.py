@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
+from polhode._mechanics.bodies import matrices
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.netcdf import CF, CONVENTIONS, MOTION, components
@@ -104,7 +105,7 @@ class EnsembleLayout:
         if self._ensemble._varies(*_INERTIAS):
             inertias = np.broadcast_to(trajectory.inertia, len(trajectory))
             dims, units, text = MOTION["inertia"]
-            yield Variable("inertia", dims, np.array([x.matrix for x in inertias]), units, text)
+            yield Variable("inertia", dims, matrices(inertias), units, text)
         yield from _proofs(trajectory)
         if self._ensemble._varies("torque", "gravity", "body", "define"):
             yield from self._laws(rows)
@@ -113,7 +114,7 @@ class EnsembleLayout:
 
     def _laws(self, rows: slice) -> Iterator[Variable]:
         """Yield the drawn parameters of torque laws."""
-        for law in self._ensemble.draw(rows.start, rows.stop - rows.start)[2]:
+        for law in self._ensemble.laws(rows.start, rows.stop - rows.start):
             if isinstance(law, _native.Law):
                 continue
             name, arguments = law
@@ -172,7 +173,8 @@ def _proofs(trajectory: Trajectory) -> Iterator[Variable]:
         known = np.where(np.isnan(proof.conserved[name]), np.nan, drift)
         columns[f"{name}_drift"] = (known, "1", f"largest relative change of {name.replace('_', ' ')}")
     for name, (values, units, text) in columns.items():
-        yield Variable(name, (), values, units, text)
+        meanings = flags(["complete", "failed"]) if name == "failed" else {}
+        yield Variable(name, (), values, units, text, meanings)
 
 
 def _wxyz(values: Array) -> Array:

@@ -15,9 +15,6 @@ from polhode._report.ensemble.reduced_layout import bytes_of_body, layout_of
 from polhode._scene.scene import Scene
 from polhode._support.extras import optional
 
-# Bytes of a chunk, the unit of reading and writing.
-_CHUNK = 1 << 20
-
 
 def bytes_of_file(scene: Scene) -> int:
     """Return the approximate size in bytes of the file of a scene's ensemble."""
@@ -34,14 +31,21 @@ class EnsembleFile:
     def __init__(self, path: Path, scene: Scene) -> None:
         assert scene.ensemble is not None
         self._layout, self._number = layout_of(scene), scene.ensemble.number
-        self._file = optional("h5netcdf", "io", "a netCDF file").File(path, "w")
-        self._text = optional("h5py", "io", "a netCDF file").string_dtype()
+        hdf = optional("h5py", "io", "a netCDF file")
+        self._text = hdf.string_dtype()
+        # netCDF needs the order of creation.
+        self._hdf = hdf.File(path, "w", track_order=True)
+        self._file = optional("h5netcdf", "io", "a netCDF file").File(self._hdf, "w")
+        # The variables of bodies as HDF5 datasets: h5netcdf looks each one up again at every use.
+        self._datasets: dict[str, Any] = {}
+        self._block = scene.block
         self._methods: list[str] = []
         self._begin(len(scene.times))
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+        self._hdf.close()
 
     def _begin(self, times: int) -> None:
         """Write dimensions, coordinates and attributes."""
@@ -65,7 +69,6 @@ class EnsembleFile:
 
     def add(self, rows: slice, trajectory: Trajectory | ReducedBlock) -> None:
         """Write the next bodies."""
-        self._file.resize_dimension("body", rows.stop)
         numbers = np.arange(rows.start, rows.stop)
         self._grow(rows, Variable("body", (), numbers, "1", "number of the body"))
         self._grow(rows, Variable("method", (), self._codes(trajectory), "1", "method"))
@@ -74,32 +77,35 @@ class EnsembleFile:
 
     def _codes(self, trajectory: Trajectory | ReducedBlock) -> Any:
         """Return the number of each body's method in the list of all so far."""
-        names = np.broadcast_to(trajectory.certificate.method, len(trajectory)).tolist()
-        self._methods += sorted({*names} - {*self._methods})
-        return np.array([self._methods.index(name) for name in names], np.int8)
+        names, which = np.unique(np.asarray(trajectory.certificate.method, str), return_inverse=True)
+        self._methods += sorted({*names.tolist()} - {*self._methods})
+        codes = np.array([self._methods.index(name) for name in names.tolist()], np.int8)
+        return np.broadcast_to(codes[which], len(trajectory))
 
     def _grow(self, rows: slice, given: Variable) -> None:
         """Write some bodies' rows of a variable; earlier rows of a new variable are NaN."""
-        variable = self._file.variables.get(given.name)
-        if variable is None:
-            dtype = given.values.dtype
-            shape = [self._file.dimensions[dim].size for dim in given.dims]
-            size = int(np.prod(shape, initial=dtype.itemsize))
-            chunk = max(1, min(_CHUNK // max(size, 1), self._number))
-            fill = {"fillvalue": np.nan} if dtype.kind == "f" else {}
-            variable = self._file.create_variable(
-                given.name, ("body", *given.dims), dtype, chunks=(chunk, *shape), **fill
-            )
-            variable.attrs.update(given.labels)
-        variable[rows] = given.values
+        if given.name not in self._datasets:
+            self._create(given)
+        dataset = self._datasets[given.name]
+        dataset.resize(rows.stop, 0)
+        dataset[rows] = given.values
+
+    def _create(self, given: Variable) -> None:
+        """Create a variable with a row for each body; its chunks are the blocks, which are written whole."""
+        dtype = given.values.dtype
+        fill = {"fillvalue": np.nan} if dtype.kind == "f" else {}
+        chunks = (self._block, *given.values.shape[1:])
+        variable = self._file.create_variable(given.name, ("body", *given.dims), dtype, chunks=chunks, **fill)
+        variable.attrs.update(given.labels)
+        self._datasets[given.name] = self._hdf[given.name]
 
     def end(self, records: EnsembleRecords | ReducedRecords) -> None:
         """Write failures and the names of methods, after the last body or an interrupt."""
+        self._file.resize_dimension("body", records.complete)
         if isinstance(records, ReducedRecords):
             for quantiles in records.variables():
                 self._write(quantiles)
         self._file.variables["method"].attrs.update(flags(self._methods))
-        self._file.variables["failed"].attrs.update(flags(["complete", "failed"]))
         if records.failures:
             self._file.dimensions["failure"] = len(records.failures)
             numbers, (name, texts, description) = failures(

@@ -63,10 +63,9 @@ class ReducedBlock:
         return mask
 
     def write_counts(self, path: Path) -> None:
-        """Write the counts, if there are any: column, bin and count of each filled bin."""
-        if self.counts is not None:
-            path.parent.mkdir(parents=True)
-            path.write_bytes(np.stack([x.astype("<i4") for x in self.counts.filled()]).tobytes())
+        """Write the counts, which there must be: column, bin and count of each filled bin."""
+        assert self.counts is not None
+        path.write_bytes(np.stack([x.astype("<i4") for x in self.counts.filled()]).tobytes())
 
     @staticmethod
     def add_counts(path: Path, counts: _native.BinCounts) -> None:

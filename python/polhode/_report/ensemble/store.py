@@ -17,18 +17,25 @@ import numpy as np
 from polhode import _native
 from polhode._mechanics.simulate import METHODS
 from polhode._mechanics.trajectory import Trajectory
+from polhode._report.ensemble.arrays import (
+    META,
+    chunk_of,
+    metadata_of,
+    new_array,
+    write_chunk,
+    write_labels,
+    zarr,
+)
 from polhode._report.ensemble.layout import LABELS, Variable, failures, flags
 from polhode._report.ensemble.reduced import ReducedBlock
 from polhode._report.ensemble.reduced_layout import layout_of
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
-from polhode._support.checksums import digests, seal, sealed
-from polhode._support.extras import optional
+from polhode._support.checksums import checksum, digests, seal, sealed
 from polhode._support.locks import Lock, held, locked
 
 # Folder of the store for what is not data; it is an empty Zarr group, so that readers do not stumble on it.
 OWN = ".polhode"
-_META = "zarr.json"
 _GROUP = {"zarr_format": 3, "node_type": "group"}
 # Names of the codes -1, 0, 1, ... of methods: they must not depend on the order of blocks.
 _METHODS = ["none", *METHODS[1:]]
@@ -55,7 +62,8 @@ class EnsembleStore:
 
     Arrays have the layout of `EnsembleLayout`, with chunks of `block` bodies. A block is written to a folder
     of its own; then its files are renamed into their arrays; last its mark, which has the checksums of the
-    files. Bytes do not depend on the order of blocks, so a block may be written again at any time.
+    files and of the metadata of the arrays. Bytes do not depend on the order of blocks, so a block may be
+    written again at any time.
     """
 
     def __init__(self, path: Path, identity: dict[str, Any]) -> None:
@@ -63,8 +71,8 @@ class EnsembleStore:
         self.number, self.block = int(identity["number"]), int(identity["block"])
         self.blocks = -(-self.number // self.block)
         self.drift_bound = float(identity["drift_bound"])
-        self._metadata: dict[str, bytes] = {}
-        self._consolidated: set[str] = set()
+        # The checksums of the metadata that this process has written or found right, by array.
+        self._described: dict[str, str] = {}
 
     @staticmethod
     def exists(path: Path) -> bool:
@@ -99,7 +107,7 @@ class EnsembleStore:
             _write_shared(part, scene)
             for name in ("blocks", "locks", "parts"):
                 (part / OWN / name).mkdir(parents=True)
-            (part / OWN / _META).write_text(json.dumps(_GROUP | {"attributes": {}}))
+            (part / OWN / META).write_text(json.dumps(_GROUP | {"attributes": {}}))
             identity = identity_of(scene)
             seal(part / OWN / "run.json", identity | {"files": digests(part, _files(part, own=False))})
             made = EnsembleStore(part, identity)
@@ -170,34 +178,38 @@ class EnsembleStore:
     def write(self, index: int, scene: Scene, trajectory: Trajectory | ReducedBlock) -> None:
         """Write a block and mark it done."""
         rows = self.rows(index)
+        method = Variable("method", (), _codes(trajectory), "1", "method", flags(_METHODS, -1))
+        variables = (method, *layout_of(scene).of_bodies(rows, trajectory))
         with self._part() as part:
-            codes = [_METHODS.index(name) - 1 for name in _methods(trajectory)]
-            method = Variable("method", (), np.array(codes, np.int8), "1", "method", flags(_METHODS, -1))
-            for variable in (method, *layout_of(scene).of_bodies(rows, trajectory)):
-                (part / variable.name).mkdir()
-                (part / variable.name / _META).write_bytes(self._metadata_of(variable))
-                _write_chunk(part / variable.name, index, self.block, variable.values)
-            if isinstance(trajectory, ReducedBlock):
-                trajectory.write_counts(part / self.counts_of(index).relative_to(self.path))
-            files = _files(part)
-            found = digests(part, files)
-            self._publish(part, files)
+            found = {
+                chunk_of(variable, index): write_chunk(f"{part}/{variable.name}", self.block, variable.values)
+                for variable in variables
+            }
+            new = [variable for variable in variables if variable.name not in self._described]
+            for variable in new:
+                self._describe(part, variable)
+            for chunk in list(found):
+                name = chunk.partition("/")[0]
+                os.replace(f"{part}/{name}", f"{self.path}/{chunk}")
+                found[f"{name}/{META}"] = self._described[name]
+            if isinstance(trajectory, ReducedBlock) and trajectory.counts is not None:
+                counts = self.counts_of(index)
+                trajectory.write_counts(part / counts.name)
+                found[counts.relative_to(self.path).as_posix()] = digests(part, [counts.name])[counts.name]
+                counts.parent.mkdir(exist_ok=True)
+                os.replace(part / counts.name, counts)
             self._publish_mark(part, index, {"files": found, **_outcome(rows, trajectory)})
-        arrays = {name.partition("/")[0] for name in files}
-        if not arrays <= self._consolidated:  # others are the same in all blocks
+        if new:  # others are the same in all blocks
             self.consolidate()
-            self._consolidated |= arrays
 
-    def _metadata_of(self, variable: Variable) -> bytes:
-        """Return the metadata of the array of a variable, as the library writes it."""
-        if variable.name not in self._metadata:
-            extra = flags(["complete", "failed"]) if variable.name == "failed" else {}
-            sizes, dims = variable.values.shape[1:], ("body", *variable.dims)
-            with self._part() as part:
-                group = zarr().open_group(part, mode="w", zarr_format=3)
-                _array(group, variable, (self.number, *sizes), (self.block, *sizes), dims, extra)
-                self._metadata[variable.name] = (part / variable.name / _META).read_bytes()
-        return self._metadata[variable.name]
+    def _describe(self, part: Path, variable: Variable) -> None:
+        """Write the metadata of the array of a variable, unless they are right."""
+        folder, content = self.path / variable.name, metadata_of(variable, self.number, self.block)
+        folder.mkdir(exist_ok=True)
+        if not (folder / META).exists() or (folder / META).read_bytes() != content:
+            (part / META).write_bytes(content)
+            os.replace(part / META, folder / META)
+        self._described[variable.name] = checksum([content])
 
     def counts_of(self, index: int) -> Path:
         """Return the file of the counts of a block, from which the quantiles over all bodies follow."""
@@ -217,10 +229,10 @@ class EnsembleStore:
             if found:
                 numbers, (name, texts, description) = failures(found)
                 shape = numbers.values.shape
-                _array(group, numbers, shape, shape, ("failure",))[:] = numbers.values
-                _labels(group, name, texts, "failure", {"long_name": description})
+                new_array(group, numbers, shape, shape, ("failure",))[:] = numbers.values
+                write_labels(group, name, texts, "failure", {"long_name": description})
             for over in shared():
-                _array(group, over, over.values.shape, over.values.shape, over.dims)[...] = over.values
+                new_array(group, over, over.values.shape, over.values.shape, over.dims)[...] = over.values
             self._publish(part, _files(part))
         self.consolidate({"bodies_complete": self.number})
         return True
@@ -244,9 +256,9 @@ class EnsembleStore:
 
         Processes that add an array at the same time may miss that of the other until the last block is done.
         """
-        path = self.path / _META
+        path = self.path / META
         arrays = {}
-        for file in sorted(self.path.glob(f"*/{_META}")):
+        for file in sorted(self.path.glob(f"*/{META}")):
             with contextlib.suppress(ValueError):  # damaged: its blocks are written again
                 arrays[file.parent.name] = json.loads(file.read_bytes())
         arrays.pop(OWN, None)
@@ -255,8 +267,8 @@ class EnsembleStore:
         text = json.dumps(_GROUP | {"attributes": attributes, "consolidated_metadata": inline})
         if not path.exists() or path.read_bytes() != text.encode():
             with self._part() as part:
-                (part / _META).write_text(text)
-                os.replace(part / _META, path)
+                (part / META).write_text(text)
+                os.replace(part / META, path)
 
     def _mark(self, index: int) -> Path:
         return self.path / OWN / "blocks" / f"{index:0{len(str(self.blocks - 1))}d}.json"
@@ -277,11 +289,6 @@ class EnsembleStore:
             target = self.path / name
             target.parent.mkdir(parents=True, exist_ok=True)
             os.replace(part / name, target)
-
-
-def zarr() -> Any:
-    """Return the library."""
-    return optional("zarr", "zarr", "a Zarr store")
 
 
 def identity_of(scene: Scene) -> dict[str, Any]:
@@ -311,76 +318,27 @@ def _write_shared(part: Path, scene: Scene) -> None:
     """Write the variables that all bodies share, labels and numbers of bodies included."""
     group = zarr().open_group(part, mode="w", zarr_format=3)
     for name, labels in LABELS.items():
-        _labels(group, name, list(labels), name, {})
+        write_labels(group, name, list(labels), name, {})
     assert scene.ensemble is not None
     numbers = np.arange(scene.ensemble.number)
     body = Variable("body", ("body",), numbers, "1", "number of the body")
     for shared in (body, *layout_of(scene).shared()):
         values = np.asarray(shared.values)
-        _array(group, shared, values.shape, values.shape, shared.dims)[...] = values
+        new_array(group, shared, values.shape, values.shape, shared.dims)[...] = values
 
 
-def _array(
-    group: Any,
-    variable: Variable,
-    shape: tuple[int, ...],
-    chunks: tuple[int, ...],
-    dims: tuple[str, ...],
-    extra: dict[str, Any] | None = None,
-) -> Any:
-    """Return a new array."""
-    dtype = np.asarray(variable.values).dtype
-    attributes = variable.labels | (extra or {})
-    return group.create_array(
-        variable.name,
-        shape=shape,
-        chunks=chunks,
-        dtype=dtype,
-        dimension_names=dims,
-        fill_value=_fill(dtype),
-        compressors=None,  # the last digits do not compress, and bytes must not depend on a library's version
-        attributes={name: x.tolist() if isinstance(x, np.ndarray) else x for name, x in attributes.items()},
-    )
-
-
-def _write_chunk(array: Path, index: int, block: int, values: Array) -> None:
-    """Write the chunk of a block: its numbers in C order, little-endian, the last chunk filled up."""
-    missing = (block - len(values), *values.shape[1:])
-    whole = np.concatenate([values, np.full(missing, _fill(values.dtype), values.dtype)])
-    path = array.joinpath("c", str(index), *["0"] * (values.ndim - 1))
-    path.parent.mkdir(parents=True)
-    path.write_bytes(whole.astype(whole.dtype.newbyteorder("<"), order="C", copy=False).tobytes())
-
-
-def _fill(dtype: np.dtype[Any]) -> float | int:
-    """Return the value of numbers that are not written: NaN, or -1."""
-    return np.nan if dtype.kind == "f" else -1
-
-
-def _labels(group: Any, name: str, texts: list[str], dim: str, attributes: dict[str, Any]) -> None:
-    """Write an array of texts."""
-    count = (len(texts),)
-    array = group.create_array(
-        name,
-        shape=count,
-        chunks=count,
-        dtype=str,
-        compressors=None,
-        dimension_names=(dim,),
-        attributes=attributes,
-    )
-    array[:] = np.array(texts, dtype=object)
-
-
-def _methods(trajectory: Trajectory | ReducedBlock) -> list[str]:
-    """Return the name of each body's method; ``none`` for failed ones."""
-    names = np.broadcast_to(np.asarray(trajectory.certificate.method, object), len(trajectory))
-    return np.where(trajectory.ok, names, "none").tolist()  # type: ignore[no-any-return]
+def _codes(trajectory: Trajectory | ReducedBlock) -> Array:
+    """Return the code of each body's method; -1 for failed ones."""
+    names, which = np.unique(np.asarray(trajectory.certificate.method, str), return_inverse=True)
+    codes = np.array([_METHODS.index(name) - 1 for name in names], np.int8)
+    return np.where(trajectory.ok, codes[which], np.int8(-1))
 
 
 def _outcome(rows: slice, trajectory: Trajectory | ReducedBlock) -> dict[str, Any]:
     """Return the outcome of a block: failures, number of bodies by method, and largest drifts."""
-    proof, names = trajectory.certificate, _methods(trajectory)
+    proof = trajectory.certificate
+    codes, counts = np.unique(_codes(trajectory), return_counts=True)
+    methods = {_METHODS[code + 1]: int(count) for code, count in zip(codes, counts, strict=True)}
     drifts = {"rotor_norm": proof.norm_drift}
     drifts |= {name: np.where(np.isnan(proof.conserved[name]), np.nan, x) for name, x in proof.drift.items()}
     worst = {}
@@ -391,7 +349,7 @@ def _outcome(rows: slice, trajectory: Trajectory | ReducedBlock) -> dict[str, An
     return {
         "bodies": [rows.start, rows.stop],
         "failures": [[rows.start + f.index[0], f.time, f.message] for f in trajectory.failures],
-        "methods": {name: names.count(name) for name in sorted({*names})},
+        "methods": dict(sorted(methods.items())),
         "worst": worst,
     }
 

@@ -117,7 +117,7 @@ def _pieces(block: int, values: Array) -> Iterator[memoryview]:
     missing = (block - len(values), *values.shape[1:])
     for part in (values, np.full(missing, _fill(dtype), dtype)):
         for start in range(0, len(part), rows):
-            yield memoryview(np.ascontiguousarray(part[start : start + rows], dtype)).cast("B")
+            yield np.ascontiguousarray(part[start : start + rows], dtype).data.cast("B")
 
 
 def _fill(dtype: np.dtype[Any]) -> float | int:

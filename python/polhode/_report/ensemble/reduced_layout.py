@@ -56,7 +56,8 @@ class ReducedLayout(EnsembleLayout):
     def of_bodies(self, rows: slice, block: Any) -> Iterator[Variable]:
         """Yield the variables of a `ReducedBlock`, without the method and the number of the body."""
         columns = block.columns
-        yield Variable("failed", (), (~block.ok).astype(np.int8), "1", "1 if the body failed")
+        meanings = flags(["complete", "failed"])
+        yield Variable("failed", (), (~block.ok).astype(np.int8), "1", "1 if the body failed", meanings)
         if "last" in self._keep:
             yield from self._last(columns)
         if "extrema" in self._keep:

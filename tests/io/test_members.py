@@ -135,7 +135,7 @@ def test_blocks_that_are_not_done(folder, tmp_path):
         ph.io.FileError, match="the block of body 512 is missing, as bodies 512 to 999; compute"
     ):
         ph.io.read(store, body=512)
-    chunk = tmp_path / "a.zarr/attitude/c/0/0/0"
+    chunk = tmp_path / "a.zarr/attitude/c.0.0.0"
     chunk.write_bytes(b"x" + chunk.read_bytes()[1:])
     with pytest.raises(ph.io.FileError, match="the block of body 0 is corrupt"):
         ph.io.read(store, body=0)

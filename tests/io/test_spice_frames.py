@@ -30,7 +30,7 @@ def two_vectors(primary, secondary, name="CURLEW_NOMINAL", number=1400001):
 
 def test_a_frame_of_constant_vectors(furnish):
     """-Z along (0, 3, 4) and Y near e1: Y is e1 itself, perpendicular to it."""
-    frame = two_vectors(Vector.constant("-Z", [0, 3, 4], "J2000"), Vector.constant("Y", [2, 3, 4], "J2000"))
+    frame = two_vectors(Vector.fixed("-Z", [0, 3, 4], "J2000"), Vector.fixed("Y", [2, 3, 4], "J2000"))
     furnish(ph.io.write_fk, "a.tf", [frame])
     # Columns are the axes of the frame in J2000; x = y × z.
     expected = np.array([[0, 1, 0], [0.8, 0, -0.6], [-0.6, 0, -0.8]])
@@ -69,7 +69,10 @@ def test_a_nadir_frame_of_position_and_velocity(t, orbit, furnish):
 def test_a_vector_of_a_frame_that_turns(orbit, furnish):
     """A constant vector may be constant in another frame of the kernel."""
     nadir = two_vectors(Vector.position("Z", -999, 399), Vector.velocity("X", 399, -999, "J2000"))
-    axes = Vector.constant("X", [0, 0, 1], "CURLEW_NOMINAL"), Vector.constant("Z", [0, 0, 1], "J2000")
+    axes = (
+        Vector.fixed("X", [0, 0, 1], "CURLEW_NOMINAL"),
+        Vector.fixed("Z", [0, 0, 1], "J2000"),
+    )
     furnish(ph.io.write_fk, "a.tf", [nadir, two_vectors(*axes, "CURLEW_TURNED", 1400002)])
     found = spice.pxform("CURLEW_TURNED", "J2000", orbit)
     np.testing.assert_allclose(found, [[-1, 0, 0], [0, -1, 0], [0, 0, 1]], atol=2e-9)
@@ -114,19 +117,22 @@ def test_a_ck_with_frames_and_clock_of_ours(furnish, tmp_path):
     assert again.attributes["body_frame"] == "CURLEW_BODY"
 
 
-E1 = Vector.constant("X", [1, 0, 0], "J2000")
-E2 = Vector.constant("Y", [0, 1, 0], "J2000")
+E1 = Vector.fixed("X", [1, 0, 0], "J2000")
+E2 = Vector.fixed("Y", [0, 1, 0], "J2000")
 
 
 @pytest.mark.parametrize(
     ("make", "expected"),
     [
         (
-            lambda p: Vector.constant("W", [1, 0, 0], "J2000"),
+            lambda p: Vector.fixed("W", [1, 0, 0], "J2000"),
             "axis must be one of X, -X, Y, -Y, Z, -Z, got 'W'",
         ),
-        (lambda p: Vector.constant("X", [0, 0, 0], "J2000"), "a constant vector must have a direction"),
-        (lambda p: Vector.constant("X", [0, 1], "J2000"), "the vector"),
+        (
+            lambda p: Vector.fixed("X", [0, 0, 0], "J2000"),
+            "a constant vector must have a direction",
+        ),
+        (lambda p: Vector.fixed("X", [0, 1], "J2000"), "the vector"),
         (
             lambda p: Vector.position("X", "EARTH", "SUN", aberration="S"),
             "aberration must be one of NONE, LT",
@@ -135,7 +141,10 @@ E2 = Vector.constant("Y", [0, 1, 0], "J2000")
             lambda p: Vector.position("X", "Ünder", "SUN"),
             "a name of SPICE must be 1 to 36 characters of ASCII",
         ),
-        (lambda p: two_vectors(E1, Vector.constant("-X", [0, 1, 0], "J2000")), "must differ, got X and -X"),
+        (
+            lambda p: two_vectors(E1, Vector.fixed("-X", [0, 1, 0], "J2000")),
+            "must differ, got X and -X",
+        ),
         (lambda p: two_vectors(E1, E2, "curlew"), "the name of a frame must be 1 to 26 of A-Z"),
         (lambda p: two_vectors(E1, E2, "A" * 27), "the name of a frame must be 1 to 26 of A-Z"),
         (lambda p: two_vectors(E1, E2, number=0), "the number of frame 'CURLEW_NOMINAL' must not be 0"),

@@ -79,8 +79,8 @@ def add(commands: Any) -> None:
         metavar="NAMES",
         type=lambda text: tuple(name.strip() for name in text.split(",")),
         default=(),
-        help="parameters of these torques to fit, separated by commas, such as viscous_damping or "
-        "pd_control.kp; they start from the values of the scene",
+        help="parameters of these torques to fit, separated by commas, such as pd_control.kp or "
+        "formula.k; they start from the values of the scene",
     )
     fit.add_argument(
         "--periods",

@@ -147,7 +147,7 @@ class Laws:
 def laws_of(torque: Any, free: Any) -> Laws:
     """Return the checked torque and the arguments that `free` names: of laws, or ``law.argument``."""
     if isinstance(free, str) or not isinstance(free, Iterable):
-        raise TypeError(f"free must be a sequence of names, such as ('viscous_damping',), got {free!r}")
+        raise TypeError(f"free must be a sequence of names, such as ('heavy',), got {free!r}")
     names = list(free)
     if torque is None:
         if names:

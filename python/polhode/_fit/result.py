@@ -53,7 +53,7 @@ class Fit:
     names
         Names of the parameters: ``i1/i3``, the ratio of two moments; ``omega_1``, ``omega_2``, ``omega_3``;
         ``attitude_1``, …, a small rotation vector in space axes, relative to `rotor`; ``axes_1``, …, one in
-        principal axes, relative to `sensor_axes`; ``i3``, the largest moment; ``viscous_damping.d``, a
+        principal axes, relative to `sensor_axes`; ``i3``, the largest moment; ``pd_control.kp``, a
         parameter of a law; ``bias_1``, …; ``clock_offset``.
     units
         Their units.

@@ -36,7 +36,7 @@ _TICKS, _SECONDS = 65536, 4294967296
 
 @dataclass(frozen=True)
 class FrameVector:
-    """A direction of space along an axis of a `TwoVectorFrame`; see `position`, `velocity` and `constant`.
+    """A direction of space along an axis of a `TwoVectorFrame`; see `position`, `velocity` and `fixed`.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class FrameVector:
         return FrameVector(axis, (*seen, ("FRAME", _quoted(frame))))
 
     @staticmethod
-    def constant(axis: str, vector: object, frame: str) -> FrameVector:
+    def fixed(axis: str, vector: object, frame: str) -> FrameVector:
         """Return the direction of a vector (3,) that is constant in a frame of SPICE, such as ``"J2000"``."""
         numbers = as_components(vector, 3, "the vector")
         if not numbers.any():

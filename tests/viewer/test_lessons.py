@@ -17,7 +17,6 @@ from viewer_scenes import ROOT
 
 LESSONS = sorted((ROOT / "examples/lessons").glob("*.md"))
 MODEL = f"async () => {{ const model = await {VIEWER}.ready; return %s; }}"
-PROBLEM = MODEL % "model.problem.value"
 
 
 @pytest.fixture
@@ -35,7 +34,8 @@ def lesson(new_page, tmp_path):
 
 
 def read(page, expression):
-    """Return the value of an expression of the page's `model`."""
+    """Return the value of an expression of the page's `model`, when no scene is being solved."""
+    page.until("!model.solving.value")
     return page.page.evaluate(MODEL % expression)
 
 
@@ -129,10 +129,10 @@ def test_every_step_and_phrase_works(path, lesson):
             before = read(page, "[model.scene.value, model.lines.value]")
             link.press("Enter")
             phrases += 1
-            assert page.page.evaluate(PROBLEM) is None, link.get_attribute("data-do")
+            assert read(page, "model.problem.value") is None, link.get_attribute("data-do")
             if "let " in (target := link.get_attribute("data-do")) and step != count:
                 assert read(page, "[model.scene.value, model.lines.value]")[0] == before[0], target
-        assert page.page.evaluate(PROBLEM) is None
+        assert read(page, "model.problem.value") is None
         assert page.page.locator("[data-problem]").count() == 0
         if step < count:
             page.page.locator("#lesson-next").click()
@@ -320,7 +320,7 @@ def test_scene_of_a_lesson_is_reported_at_its_line(opened):
     page.page.evaluate(
         f"async text => {{ (await {VIEWER}.ready).lesson.value = {{ text, name: 'x.md' }}; }}", text
     )
-    assert "x.md:8:1: error: missing field `spin`" in page.page.evaluate(PROBLEM)
+    assert "x.md:8:1: error: missing field `spin`" in read(page, "model.problem.value")
 
 
 # --- files beside a lesson
@@ -337,7 +337,7 @@ def test_files_beside_a_lesson_go_with_it(lesson, tmp_path):
     assert set(shown["files"]) == {"t-handle.toml", "t-handle.stl"}
     assert _document.title_of(shown) == "Mine: own"
     page = lesson(path)
-    assert page.page.evaluate(PROBLEM) is None
+    assert read(page, "model.problem.value") is None
     assert read(page, "model.about.value.title") == "T-handle in free flight"
 
 

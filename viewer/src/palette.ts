@@ -1,6 +1,7 @@
 /**
- * Colours of the page, light and dark: Okabe and Ito's palette, safe for colour-blind readers. Each part also has a label
- * or a shape of its own. The figures of `python/polhode/_figures` use the same colours.
+ * Colours of the page, light and dark. The axes have those of Okabe and Ito's palette, safe for colour-blind readers; Ω and
+ * L have others, and the paths of Ω have that of Ω. Each part also has a label or a shape of its own. The figures of
+ * `python/polhode/_figures` use the same colours.
  */
 export interface Palette {
   background: string;
@@ -24,11 +25,11 @@ export const LIGHT: Palette = {
   text: "#1c2430",
   faint: "#8a94a3",
   axes: ["#0072B2", "#D55E00", "#009E73"],
-  omega: "#D55E00",
-  momentum: "#0072B2",
+  omega: "#B07A00",
+  momentum: "#7B3F98",
   trace: "#CC79A7",
   polhode: "#B07A00",
-  herpolhode: "#009E73",
+  herpolhode: "#B07A00",
   body: "#c9d2de",
   weight: "#5b6675",
 };
@@ -39,11 +40,11 @@ export const DARK: Palette = {
   text: "#e8ecf2",
   faint: "#7c8798",
   axes: ["#56B4E9", "#F0803C", "#2FC99A"],
-  omega: "#F0803C",
-  momentum: "#56B4E9",
+  omega: "#F0C75E",
+  momentum: "#C79BE0",
   trace: "#E59CC4",
   polhode: "#F0C75E",
-  herpolhode: "#2FC99A",
+  herpolhode: "#F0C75E",
   body: "#5a6678",
   weight: "#a8b2c1",
 };

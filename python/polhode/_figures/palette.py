@@ -1,9 +1,11 @@
 """Colours and labels of the figures."""
 
-# Okabe and Ito's palette, safe for colour-blind readers; the same as in viewer/src/palette.ts.
+# The axes have colours of Okabe and Ito's palette, safe for colour-blind readers; Ω and L have others, and the paths of
+# Ω have that of Ω. The same as in viewer/src/palette.ts.
 BLUE, ORANGE, GREEN, BLACK = "#0072B2", "#D55E00", "#009E73", "#222222"
 AXES = (BLUE, ORANGE, GREEN)
-OMEGA, MOMENTUM, TRACE, POLHODE, HERPOLHODE = ORANGE, BLUE, "#CC79A7", "#B07A00", GREEN
+OMEGA = POLHODE = HERPOLHODE = "#B07A00"
+MOMENTUM, TRACE = "#7B3F98", "#CC79A7"
 FAINT, WEIGHT = "#8A94A3", "#5B6675"
 # Neighbouring motions.
 OTHERS = "#B8B8B8"

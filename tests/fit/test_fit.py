@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from coverage_of_fits import check_coverage
 from polhode._fit.model import Model
 from polhode._fit.parameters import Layout, Parameters
 from polhode._fit.samples import attitudes_of, rates_of
@@ -62,40 +63,20 @@ def errors(fit, kind):
     return off
 
 
-def check_coverage(kind, draws, start):
-    """Intervals of 68 and 95 % contain the truth in these shares of the draws.
-
-    The number of hits among n draws is binomial; over 12 parameters, 2 levels and 3 kinds, each bound is left
-    by chance with probability 2e-5, any of them with 1e-3. The squared errors in the metric of the covariance
-    have mean k and variance 2k per draw: their average is within 4 standard deviations.
-    """
-    from scipy import stats
-
+def check(kind, draws, start):
     rng = np.random.default_rng(18)
-    hits, distances = {0.68: 0, 0.95: 0}, []
-    for _ in range(draws):
-        fit = ph.fit(**measured(kind, rng), start=start)
-        off = errors(fit, kind)
-        distances.append(off @ np.linalg.solve(fit.covariance, off))
-        for level in hits:
-            half = np.diff(fit.interval(level), axis=1)[:, 0] / 2
-            hits[level] = hits[level] + (np.abs(off) <= half)
-    for level, count in hits.items():
-        low, high = stats.binom.ppf([1e-5, 1 - 1e-5], draws, level)
-        assert np.all((count >= low) & (count <= high)), (level, count)
-    k = len(off)
-    assert abs(np.mean(distances) - k) < 4 * np.sqrt(2 * k / draws)
+    check_coverage(lambda: ph.fit(**measured(kind, rng), start=start), lambda fit: errors(fit, kind), draws)
 
 
 @pytest.mark.parametrize("kind", ["rates", "attitude", "both"])
 def test_intervals_cover_the_truth(kind):
-    check_coverage(kind, 25, (BODY, OMEGA))
+    check(kind, 25, (BODY, OMEGA))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["rates", "attitude", "both"])
 def test_intervals_cover_the_truth_of_200_searches(kind):
-    check_coverage(kind, 200, None)
+    check(kind, 200, None)
 
 
 @pytest.mark.parametrize("order", list(itertools.permutations((1, 2, 2.6))))

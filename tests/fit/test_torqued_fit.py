@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from coverage_of_fits import check_coverage
 from polhode._fit.free import FreeFlow
 from polhode._fit.laws import laws_of
 from polhode._fit.parameters import Layout, Parameters
@@ -181,35 +182,21 @@ def test_a_parameter_at_its_bound():
     assert fit.undetermined[-1].startswith("viscous_damping.d: at its bound 0")
 
 
-def check_coverage(draws):
-    """As `check_coverage` of test_fit: 12 parameters, 2 levels, each left by chance with 2e-5."""
-    from scipy import stats
-
+def check(draws):
     law = ph.torque.viscous_damping([0.1, 0.2, 0.3]) + ph.torque.constant_body([0.4, 0.5, -0.6])
     truth = np.array([1 / 2.6, 2 / 2.6, *OMEGA.components, 2.6, 0.1, 0.2, 0.3, 0, 0, 0])
     rng = np.random.default_rng(18)
-    hits, distances = {0.68: 0, 0.95: 0}, []
-    for _ in range(draws):
-        fit = ph.fit(**measured(law, rng), torque=law, free=["viscous_damping"], start=(BODY, OMEGA))
-        off = fit.values - truth
-        distances.append(off @ np.linalg.solve(fit.covariance, off))
-        for level in hits:
-            half = np.diff(fit.interval(level), axis=1)[:, 0] / 2
-            hits[level] = hits[level] + (np.abs(off) <= half)
-    for level, count in hits.items():
-        low, high = stats.binom.ppf([1e-5, 1 - 1e-5], draws, level)
-        assert np.all((count >= low) & (count <= high)), (level, count)
-    k = len(off)
-    assert abs(np.mean(distances) - k) < 4 * np.sqrt(2 * k / draws)
+    options = {"torque": law, "free": ["viscous_damping"], "start": (BODY, OMEGA)}
+    check_coverage(lambda: ph.fit(**measured(law, rng), **options), lambda fit: fit.values - truth, draws)
 
 
 def test_intervals_under_a_torque_cover_the_truth():
-    check_coverage(4)
+    check(4)
 
 
 @pytest.mark.slow
 def test_intervals_under_a_torque_cover_the_truth_of_200_draws():
-    check_coverage(200)
+    check(200)
 
 
 RATES = (TIMES, np.tile([0.1, 0.2, 0.3], (80, 1)))

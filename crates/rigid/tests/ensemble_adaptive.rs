@@ -80,7 +80,7 @@ fn bodies(count: usize, laws: Vec<Torque>) -> Ensemble {
         });
     }
     let laws = laws.into_iter().map(|law| Rows::new(vec![law])).collect();
-    let forces = vec![Force::Constant(Vector([0.0, 0.0, -2.0]))];
+    let forces = vec![Rows::new(vec![Force::Constant(Vector([0.0, 0.0, -2.0]))])];
     Ensemble { inertias: Rows::new(inertias), starts, laws, masses: Rows::new(vec![2.0]), forces }
 }
 
@@ -302,7 +302,7 @@ fn unsupported_laws_run_body_by_body() {
     let mut all = bodies(2, vec![laws()[0].clone()]);
     let splitting = Options { method: Method::from_name("strang"), rtol: Some(1e-5), ..Options::default() };
     assert_as_alone(&all, &TIMES, &splitting, 1e-5);
-    all.forces = vec![Force::Drag(0.1)];
+    all.forces = vec![Rows::new(vec![Force::Drag(0.1)])];
     assert_as_alone(&all, &TIMES, &dop853(1e-9), 1e-9);
 }
 

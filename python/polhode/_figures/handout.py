@@ -111,7 +111,7 @@ def turned_vector(figure: Figure, a: Multivector, B: Multivector, angle: float) 
         (R(within), FAINT, r"$a'_\parallel$", 1.2, (8, -9)),
         (across, GREEN, r"$a_\perp = a'_\perp$", 1.4, (-6, 8)),
         (a, BLUE, "$a$", 1.9, (-10, 4)),
-        (turned, ORANGE, r"$a' = R a \tilde{R}$", 1.9, (9, 3)),
+        (turned, ORANGE, r"$a' = R a \tilde{R}$", 1.9, (16, 9)),
     ):
         picture.arrow(np.zeros(3), value.components, colour, width)
         picture.write(value.components, name, WEIGHT if colour == FAINT else colour, offset)

@@ -54,7 +54,7 @@ def herpolhode_figure(figure: Figure, trajectory: Trajectory) -> str:
 def _draw_annulus(axes: Axes, least: float, largest: float) -> None:
     s = np.linspace(0, 2 * np.pi, 361)
     circle = np.stack([np.cos(s), np.sin(s)])
-    axes.fill(*(largest * circle), facecolor="#EAF5F1", edgecolor="none", zorder=0)
+    axes.fill(*(largest * circle), facecolor="#F8F2E4", edgecolor="none", zorder=0)
     axes.fill(*(least * circle), facecolor="white", edgecolor="none", zorder=0)
     for radius in (least, largest) if largest > (1 + _EQUAL) * least else (largest,):
         axes.plot(*(radius * circle), color=BLACK, lw=0.8, ls=(0, (4, 2)), zorder=2)

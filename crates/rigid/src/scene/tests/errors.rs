@@ -29,7 +29,7 @@ fn all_errors_of_a_file_are_reported_in_order() {
         errors(text),
         [
             "1:9: expected a string, found an integer",
-            "2:1: unknown field `tilte`, expected one of `title`, `define`, `body`, `initial`, `gravity`, `torque`, \
+            "2:1: unknown field `tilte`, expected one of `title`, `caption`, `define`, `body`, `initial`, `gravity`, `torque`, \
              `force`, `run`, `method`, `ensemble`, `torque_body`, `torque_space`",
             "3:1: missing field in [body], expected one of `density`, `mass`",
             "4:9: unknown solid `bx`, expected one of `box`, `ellipsoid`, `sphere`, `hollow_sphere`, \

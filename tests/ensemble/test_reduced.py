@@ -225,6 +225,36 @@ def test_files_and_stores_have_the_reduced_outputs(text, tmp_path):
         np.testing.assert_array_equal(last, file.from_nominal_quantiles[:, -1])
 
 
+def test_points_and_given_numbers_are_written_as_in_whole_files(tmp_path):
+    xr = pytest.importorskip("xarray")
+    pytest.importorskip("zarr")
+    torque = '[torque]\nviscous_damping = "1e-5 N m s/rad"\n[run]'
+    grid = """
+[ensemble]
+number = 8
+moments = { relative = 0.05 }
+grid.torque.viscous_damping = ["1e-5 N m s/rad", 2e-5]
+grid.body.mass = [2, 3]
+"""
+    text = SCENE.replace("[run]", torque) + grid
+    scene, whole = read(tmp_path, text, ["last"]), read(tmp_path, text).run(store=tmp_path / "b.zarr")
+    assert polhode("run", read(tmp_path, text, ["last"]).path, "-o", tmp_path / "a.nc").returncode == 0
+    with (
+        whole,
+        scene.run(store=tmp_path / "a.zarr") as store,
+        xr.open_dataset(tmp_path / "a.nc") as file,
+    ):
+        found = scene.reduce()
+        for data in (store, file, found.to_xarray()):
+            assert data.point.values.tolist() == [0, 1, 2, 3] * 2
+            for name in ("point", "torque_viscous_damping", "body_mass"):
+                assert data[name].attrs == whole[name].attrs
+                np.testing.assert_array_equal(data[name], whole[name])
+            # Drawn.
+            assert "inertia" in whole
+            assert "inertia" not in data
+
+
 def test_a_resumed_store_in_ranges_is_the_serial_one(tmp_path):
     pytest.importorskip("zarr")
     scene = read(tmp_path, FREE, WORDS)

@@ -36,7 +36,8 @@ _PERIODS = {"period": "period of the angular velocity in the body", "precession_
 class ReducedLayout(EnsembleLayout):
     """The variables of an ensemble whose motions are not kept.
 
-    Drawn parameters are not written: they follow from the seed.
+    Points and given numbers are written; drawn parameters, inertia included, are not: they follow from the
+    seed.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -71,6 +72,8 @@ class ReducedLayout(EnsembleLayout):
         if "periods" in self._keep:
             for name, text in _PERIODS.items():
                 yield Variable(name, (), columns[name], "s", text)
+        if self._ensemble.points is not None:
+            yield from self._points(rows, self._ensemble.points)
 
     def _last(self, columns: dict[str, Array]) -> Iterator[Variable]:
         wxyz = columns["rotor"] * np.array([1.0, -1.0, -1.0, -1.0])

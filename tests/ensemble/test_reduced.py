@@ -186,6 +186,17 @@ def test_wrong_words_are_reported(tmp_path):
     )
 
 
+@pytest.mark.parametrize("kind", ["free", "torqued"])
+def test_the_tilt_is_described_as_in_the_summary(kind, request):
+    pytest.importorskip("xarray")
+    scene, _, reduced = request.getfixturevalue(kind)
+    motion = json.loads(polhode("run", scene.path, "--json").stdout)["motion"]
+    tilt = f"tilt of {motion['axis']} from {motion['tilt_from']}"
+    data = reduced.to_xarray()
+    for name in ("tilt_min", "tilt_max", "tilt_quantiles", "flips"):
+        assert tilt in data[name].attrs["long_name"]
+
+
 def test_a_dataset_has_units(free):
     pytest.importorskip("xarray")
     data = free[2].to_xarray()

@@ -111,7 +111,7 @@ def reduce(
         if block.counts is not None:
             counts.merge(block.counts)
         failures += [replace(x, index=(rows.start + x.index[0],)) for x in block.failures]
-    shared = [*layout.shared(), *(over_bodies(scene, counts) if reduction.counting else ())]
+    shared = [*layout.shared(), *(over_bodies(reduction, counts) if reduction.counting else ())]
     variables |= {one.name: one for one in shared}
     for one in variables.values():
         frozen(np.asarray(one.values))

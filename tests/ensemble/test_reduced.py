@@ -104,7 +104,7 @@ def test_regimes_and_periods_are_those_of_free_motions(free):
 def test_quantiles_are_those_of_the_bodies_to_the_width_of_a_bin(kind, request):
     scene, motions, reduced = request.getfixturevalue(kind)
     expected = series(scene, motions)
-    assert reduced["quantile"].tolist() == list(LEVELS)
+    assert reduced["level"].tolist() == list(LEVELS)
     for name in ("from_nominal", "tilt", "rate"):
         low, high = (np.quantile(expected[name], LEVELS, axis=0, method=m) for m in ("lower", "higher"))
         found = reduced[f"{name}_quantiles"]
@@ -201,7 +201,9 @@ def test_a_dataset_has_units(free):
     pytest.importorskip("xarray")
     data = free[2].to_xarray()
     assert data.last_attitude.dims == ("body", "quaternion")
-    assert data.rate_quantiles.dims == ("quantile", "time")
+    assert data.rate_quantiles.dims == ("level", "time")
+    assert data.level.values.tolist() == list(LEVELS)
+    assert callable(data.quantile)  # not shadowed
     assert data.rate_max.attrs["units"] == "rad/s"
     assert data.rate_quantiles.attrs["relative_resolution"] == WIDTH
     assert data.attrs["keep"] == " ".join(WORDS)

@@ -300,7 +300,7 @@ def over_bodies(reduction: Reduction, counts: _native.BinCounts) -> Iterator[Var
     }
     for name, (units, text) in texts.items():
         label = f"quantiles over the bodies: {text}"
-        yield Variable(f"{name}_quantiles", ("quantile", "time"), found[name], units, label, note)
+        yield Variable(f"{name}_quantiles", ("level", "time"), found[name], units, label, note)
 
 
 def _quantiles(counts: _native.BinCounts, n: int) -> dict[str, Array]:

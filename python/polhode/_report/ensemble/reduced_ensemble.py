@@ -75,7 +75,7 @@ class ReducedEnsemble(Mapping[str, Array]):
         used = {dim for dims, *_ in data.values() for dim in dims}
         labels = {name: list(text) for name, text in LABELS.items() if name in used}
         dataset: xarray.Dataset = xr.Dataset(data, labels, self.attributes).set_coords(
-            [name for name in ("time", "quantile", "body") if name in data]
+            [name for name in ("time", "level", "body") if name in data]
         )
         return dataset
 

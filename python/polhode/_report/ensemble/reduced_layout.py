@@ -53,7 +53,7 @@ class ReducedLayout(EnsembleLayout):
         """Yield the variables that all bodies share, without the labels."""
         yield from super().shared()
         if "quantiles" in self._keep:
-            yield Variable("quantile", ("quantile",), np.array(LEVELS), "1", "level of a quantile")
+            yield Variable("level", ("level",), np.array(LEVELS), "1", "level of a quantile")
 
     def of_bodies(self, rows: slice, block: Any) -> Iterator[Variable]:
         """Yield the variables of a `ReducedBlock`, without the method and the number of the body."""

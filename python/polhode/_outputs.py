@@ -260,7 +260,7 @@ def reduce(
         - ``regime``, ``periods``, of bodies without torques: the code of the regime; `period` of Ω in the
           body and `precession_period` about L in s, as `FreeMotion.describe`.
         - ``quantiles``: `from_nominal_quantiles`, `tilt_quantiles`, `rate_quantiles` (5, n) over the bodies
-          at n times, at the levels `quantile`, from counts in bins of a relative width of 1/1024.
+          at n times, at the levels `level`, from counts in bins of a relative width of 1/1024.
         - ``events``: `flips`, how often the tilt passes 90° between output times, with `first_flip` and
           `last_flip` in s; `beyond_10_degrees` and `beyond_90_degrees`, the first time at which
           `from_nominal` is more. Times are interpolated linearly between output times.

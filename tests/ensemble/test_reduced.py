@@ -104,7 +104,7 @@ def test_regimes_and_periods_are_those_of_free_motions(free):
 def test_quantiles_are_those_of_the_bodies_to_the_width_of_a_bin(kind, request):
     scene, motions, reduced = request.getfixturevalue(kind)
     expected = series(scene, motions)
-    assert reduced["quantile"].tolist() == list(LEVELS)
+    assert reduced["level"].tolist() == list(LEVELS)
     for name in ("from_nominal", "tilt", "rate"):
         low, high = (np.quantile(expected[name], LEVELS, axis=0, method=m) for m in ("lower", "higher"))
         found = reduced[f"{name}_quantiles"]
@@ -186,11 +186,24 @@ def test_wrong_words_are_reported(tmp_path):
     )
 
 
+@pytest.mark.parametrize("kind", ["free", "torqued"])
+def test_the_tilt_is_described_as_in_the_summary(kind, request):
+    pytest.importorskip("xarray")
+    scene, _, reduced = request.getfixturevalue(kind)
+    motion = json.loads(polhode("run", scene.path, "--json").stdout)["motion"]
+    tilt = f"tilt of {motion['axis']} from {motion['tilt_from']}"
+    data = reduced.to_xarray()
+    for name in ("tilt_min", "tilt_max", "tilt_quantiles", "flips"):
+        assert tilt in data[name].attrs["long_name"]
+
+
 def test_a_dataset_has_units(free):
     pytest.importorskip("xarray")
     data = free[2].to_xarray()
     assert data.last_attitude.dims == ("body", "quaternion")
-    assert data.rate_quantiles.dims == ("quantile", "time")
+    assert data.rate_quantiles.dims == ("level", "time")
+    assert data.level.values.tolist() == list(LEVELS)
+    assert callable(data.quantile)  # not shadowed
     assert data.rate_max.attrs["units"] == "rad/s"
     assert data.rate_quantiles.attrs["relative_resolution"] == WIDTH
     assert data.attrs["keep"] == " ".join(WORDS)
@@ -223,6 +236,36 @@ def test_files_and_stores_have_the_reduced_outputs(text, tmp_path):
         assert "attitude" not in file
         last = [entry["quantiles"] for entry in result["motion"]["from_nominal"]][-1]
         np.testing.assert_array_equal(last, file.from_nominal_quantiles[:, -1])
+
+
+def test_points_and_given_numbers_are_written_as_in_whole_files(tmp_path):
+    xr = pytest.importorskip("xarray")
+    pytest.importorskip("zarr")
+    torque = '[torque]\nviscous_damping = "1e-5 N m s/rad"\n[run]'
+    grid = """
+[ensemble]
+number = 8
+moments = { relative = 0.05 }
+grid.torque.viscous_damping = ["1e-5 N m s/rad", 2e-5]
+grid.body.mass = [2, 3]
+"""
+    text = SCENE.replace("[run]", torque) + grid
+    scene, whole = read(tmp_path, text, ["last"]), read(tmp_path, text).run(store=tmp_path / "b.zarr")
+    assert polhode("run", read(tmp_path, text, ["last"]).path, "-o", tmp_path / "a.nc").returncode == 0
+    with (
+        whole,
+        scene.run(store=tmp_path / "a.zarr") as store,
+        xr.open_dataset(tmp_path / "a.nc") as file,
+    ):
+        found = scene.reduce()
+        for data in (store, file, found.to_xarray()):
+            assert data.point.values.tolist() == [0, 1, 2, 3] * 2
+            for name in ("point", "torque_viscous_damping", "body_mass"):
+                assert data[name].attrs == whole[name].attrs
+                np.testing.assert_array_equal(data[name], whole[name])
+            # Drawn.
+            assert "inertia" in whole
+            assert "inertia" not in data
 
 
 def test_a_resumed_store_in_ranges_is_the_serial_one(tmp_path):

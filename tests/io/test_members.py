@@ -1,5 +1,7 @@
 """One body of an ensemble or a batch, from netCDF files and Zarr stores, against xarray."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -79,6 +81,18 @@ def test_the_command_converts_one_body(name, form, folder, tmp_path, capsys):
         assert np.array_equal(ph.io.read(target).rotor.components, expected.rotor.components)
     assert main(["convert", str(folder / name), target, *of_form.get(form, [])]) == 3
     assert "the file holds 1000 bodies; choose one by its number, as in --body=0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["k.nc", "k.zarr"])
+def test_reduced_outputs_have_no_attitudes(name, tmp_path, capsys):
+    (tmp_path / "k.toml").write_text(
+        SCENE + '[ensemble]\nnumber = 4\nspin = { relative = 0.1 }\nkeep = ["last"]\n'
+    )
+    files = [str(tmp_path / x) for x in ("k.toml", name, "x.csv")]
+    assert main(["run", files[0], "-o", files[1], "--no-figures", "--quiet"]) == 0
+    assert main(["convert", *files[1:], "--body", "3"]) == 3
+    expected = r"reduced outputs only \(keep: last\); run its scene without keep in \[ensemble\]"
+    assert re.search(expected, capsys.readouterr().err)
 
 
 def test_a_body_of_a_batch(tmp_path):

@@ -137,6 +137,11 @@ def _require_body(name: str, body: int | None, count: int) -> int:
 
 def _member(name: str, arrays: Any, attributes: Mapping[str, Any], body: int | None) -> AttitudeHistory:
     """Return the history of a body from the arrays of a file, whose first axis is that of the bodies."""
+    if "attitude" not in arrays and "keep" in attributes:
+        raise FileError(
+            f"{name}: error: no attitudes of bodies: it has reduced outputs only "
+            f"(keep: {attributes['keep']}); run its scene without keep in [ensemble]"
+        )
     for needed in ("time", "attitude"):
         if needed not in arrays:
             raise FileError(f"{name}: error: no attitudes of bodies: {needed!r} is missing")

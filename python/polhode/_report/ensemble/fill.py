@@ -13,7 +13,7 @@ from polhode._report.ensemble.block import Report, compute_block
 from polhode._report.ensemble.cluster import ClusterError, check_address, compute_on, connected
 from polhode._report.ensemble.layout import Variable
 from polhode._report.ensemble.netcdf import bytes_of_file
-from polhode._report.ensemble.reduced import ReducedBlock, over_bodies
+from polhode._report.ensemble.reduced import ReducedBlock, over_bodies, reduction_of
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._scene.scene import Scene
 from polhode._support import memory
@@ -72,7 +72,7 @@ def over_all(store: EnsembleStore, scene: Scene) -> Iterator[Variable]:
         counts = _native.BinCounts(len(scene.times))
         for index in range(store.blocks):
             ReducedBlock.add_counts(store.counts_of(index), counts)
-        yield from over_bodies(scene, counts)
+        yield from over_bodies(reduction_of(scene), counts)
 
 
 def _opened(

@@ -51,6 +51,8 @@ class ReducedBlock:
     certificate: Certificate
     failures: tuple[Failure, ...]
     counts: _native.BinCounts | None
+    # What tilt is, in words.
+    tilt: str = "tilt"
 
     def __len__(self) -> int:
         return len(self.columns["rotor"])
@@ -94,12 +96,16 @@ class Reduction:
         self.scene, self.counting = scene, counting
         self._described = described and scene.kind == "free"
         self._watched: tuple[Array, Any, Array] | None = None
+        # What tilt is, in words.
+        self.tilt = "tilt"
         if counting or not _COMPARED.isdisjoint(keep):
             nominal = nominal_motion(scene) if nominal is None else nominal
-            upright = tilt_reference(scene, nominal)[0]
+            axis, axis_name = watched_axis(scene, nominal)
+            upright, origin = tilt_reference(scene, nominal)
+            self.tilt = f"tilt of {axis_name} from {origin}"
             self._watched = (
                 np.ascontiguousarray(nominal.rotor._data),
-                watched_axis(scene, nominal)[0].tolist(),
+                axis.tolist(),
                 np.ascontiguousarray(np.zeros((0, 3)) if upright is None else upright),
             )
 
@@ -127,7 +133,7 @@ class Reduction:
         ]
         certificate = _joined([part[1] for part in found], [len(part[0]["rotor"]) for part in found])
         warn_of(certificate)
-        return ReducedBlock(columns, certificate, tuple(failures), counts)
+        return ReducedBlock(columns, certificate, tuple(failures), counts, self.tilt)
 
     def _few(
         self, rows: slice, counts: _native.BinCounts | None, progress: Report | None, threads: int | None
@@ -263,7 +269,7 @@ class ReducedRecords:
         """Yield the variables over all bodies of the file, those that the scene keeps."""
         assert self.scene.ensemble is not None
         if "quantiles" in self.scene.ensemble.keep:
-            yield from over_bodies(self.scene, self._counts)
+            yield from over_bodies(self._reduction, self._counts)
 
 
 def blocks_of(
@@ -283,18 +289,18 @@ def blocks_of(
         yield rows, reduction.block(rows, of_all if progress else None, threads)
 
 
-def over_bodies(scene: Scene, counts: _native.BinCounts) -> Iterator[Variable]:
+def over_bodies(reduction: Reduction, counts: _native.BinCounts) -> Iterator[Variable]:
     """Yield the quantiles over the bodies of counts."""
-    found = _quantiles(counts, len(scene.times))
+    found = _quantiles(counts, len(reduction.scene.times))
     note = {"relative_resolution": ReducedRecords.resolution}
     texts = {
         "from_nominal": ("rad", "angle between the attitude and that of the nominal body"),
-        "tilt": ("rad", "tilt of the axis"),
+        "tilt": ("rad", reduction.tilt),
         "rate": ("rad/s", "angular velocity |Omega|"),
     }
     for name, (units, text) in texts.items():
         label = f"quantiles over the bodies: {text}"
-        yield Variable(f"{name}_quantiles", ("quantile", "time"), found[name], units, label, note)
+        yield Variable(f"{name}_quantiles", ("level", "time"), found[name], units, label, note)
 
 
 def _quantiles(counts: _native.BinCounts, n: int) -> dict[str, Array]:

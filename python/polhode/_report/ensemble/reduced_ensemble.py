@@ -75,7 +75,7 @@ class ReducedEnsemble(Mapping[str, Array]):
         used = {dim for dims, *_ in data.values() for dim in dims}
         labels = {name: list(text) for name, text in LABELS.items() if name in used}
         dataset: xarray.Dataset = xr.Dataset(data, labels, self.attributes).set_coords(
-            [name for name in ("time", "quantile", "body") if name in data]
+            [name for name in ("time", "level", "body") if name in data]
         )
         return dataset
 
@@ -111,7 +111,7 @@ def reduce(
         if block.counts is not None:
             counts.merge(block.counts)
         failures += [replace(x, index=(rows.start + x.index[0],)) for x in block.failures]
-    shared = [*layout.shared(), *(over_bodies(scene, counts) if reduction.counting else ())]
+    shared = [*layout.shared(), *(over_bodies(reduction, counts) if reduction.counting else ())]
     variables |= {one.name: one for one in shared}
     for one in variables.values():
         frozen(np.asarray(one.values))

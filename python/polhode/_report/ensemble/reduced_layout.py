@@ -16,15 +16,16 @@ from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 
 # Names in files of the series whose extrema are kept, with unit and description; in the order of `rows`.
+# `{tilt}` stands for the tilt in words, which say of what it is and from what.
 _EXTREMA = {
     "from_nominal": ("rad", "angle between the attitude and that of the nominal body"),
-    "tilt": ("rad", "tilt of the axis"),
+    "tilt": ("rad", "{tilt}"),
     "rate": ("rad/s", "angular velocity |Omega|"),
     "energy": ("J", "rotational kinetic and potential energy"),
 }
 # The numbers of `rows` after the extrema.
 _EVENTS = {
-    "flips": ("1", "number of times that the tilt of the axis passes 90 degrees between output times"),
+    "flips": ("1", "number of times that the {tilt} passes 90 degrees between output times"),
     "first_flip": ("s", "first time of a flip, interpolated"),
     "last_flip": ("s", "last time of a flip, interpolated"),
     "beyond_10_degrees": ("s", "first time at which the attitude is over 10 degrees from the nominal one"),
@@ -36,7 +37,8 @@ _PERIODS = {"period": "period of the angular velocity in the body", "precession_
 class ReducedLayout(EnsembleLayout):
     """The variables of an ensemble whose motions are not kept.
 
-    Drawn parameters are not written: they follow from the seed.
+    Points and given numbers are written; drawn parameters, inertia included, are not: they follow from the
+    seed.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -51,7 +53,7 @@ class ReducedLayout(EnsembleLayout):
         """Yield the variables that all bodies share, without the labels."""
         yield from super().shared()
         if "quantiles" in self._keep:
-            yield Variable("quantile", ("quantile",), np.array(LEVELS), "1", "level of a quantile")
+            yield Variable("level", ("level",), np.array(LEVELS), "1", "level of a quantile")
 
     def of_bodies(self, rows: slice, block: Any) -> Iterator[Variable]:
         """Yield the variables of a `ReducedBlock`, without the method and the number of the body."""
@@ -61,9 +63,9 @@ class ReducedLayout(EnsembleLayout):
         if "last" in self._keep:
             yield from self._last(columns)
         if "extrema" in self._keep:
-            yield from self._extrema(columns["rows"])
+            yield from self._extrema(columns["rows"], block.tilt)
         if "events" in self._keep:
-            yield from _events(columns["rows"])
+            yield from _events(columns["rows"], block.tilt)
         if "regime" in self._keep:
             names = ["none", *(_word(name) for name in _native.regimes())]
             text = "regime of the free motion"
@@ -71,6 +73,8 @@ class ReducedLayout(EnsembleLayout):
         if "periods" in self._keep:
             for name, text in _PERIODS.items():
                 yield Variable(name, (), columns[name], "s", text)
+        if self._ensemble.points is not None:
+            yield from self._points(rows, self._ensemble.points)
 
     def _last(self, columns: dict[str, Array]) -> Iterator[Variable]:
         wxyz = columns["rotor"] * np.array([1.0, -1.0, -1.0, -1.0])
@@ -80,19 +84,20 @@ class ReducedLayout(EnsembleLayout):
                 dims, units, text = MOTION[name]
                 yield Variable(f"last_{name}", dims, values, units, f"{text}, at the last output time")
 
-    def _extrema(self, rows: Array) -> Iterator[Variable]:
+    def _extrema(self, rows: Array, tilt: str) -> Iterator[Variable]:
         for k, (name, (units, text)) in enumerate(_EXTREMA.items()):
             if self._notes.get(name, None) is None:  # constant quantities have no extrema
                 for end, (word, least) in enumerate((("min", "smallest"), ("max", "largest"))):
-                    label = f"{least} over the output times: {text}"
+                    label = f"{least} over the output times: {text.format(tilt=tilt)}"
                     yield Variable(
                         f"{name}_{word}", (), rows[:, 2 * k + end].astype(np.float32), units, label
                     )
 
 
-def _events(rows: Array) -> Iterator[Variable]:
+def _events(rows: Array, tilt: str) -> Iterator[Variable]:
     for k, (name, (units, text)) in enumerate(_EVENTS.items()):
         values = rows[:, 2 * len(_EXTREMA) + k]
+        text = text.format(tilt=tilt)
         yield Variable(name, (), values.astype(np.int32) if name == "flips" else values, units, text)
 
 

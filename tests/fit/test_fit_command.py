@@ -55,6 +55,31 @@ def test_summary_and_files(rates, tmp_path, capsys):
     assert (tmp_path / "fit.svg").read_text().startswith("<?xml")
 
 
+@pytest.mark.parametrize("form", ["json", "svg", "pdf", "png"])
+def test_files_of_others_are_kept(form, rates, tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    path = tmp_path / f"mine.{form}"
+    path.write_text("{}")
+    option = "-o" if form == "json" else "--plot"
+    arguments = ["fit", rates, *UNITS, "--quiet", option, str(path)]
+    assert main.main(arguments) == 1
+    assert f"{path} exists and was not written by polhode" in capsys.readouterr().err
+    assert path.read_text() == "{}"
+    assert main.main([*arguments, "--force"]) == 0
+    assert main.main(arguments) == 0  # its own file is overwritten
+    assert path.stat().st_size > 1000
+
+
+def test_periods_keep_files_of_others(tmp_path, capsys):
+    path = tmp_path / "mine.json"
+    path.write_text("{}")
+    arguments = ["fit", "--periods", "263 h", "27.38 h", "--moments", "0.61", "0.965", "1", "-o", str(path)]
+    assert main.main(arguments) == 1
+    assert "overwrite it with --force" in capsys.readouterr().err
+    assert main.main([*arguments, "--force"]) == main.main(arguments) == 0
+    assert json.loads(path.read_text())["source"].startswith("polhode ")
+
+
 @pytest.mark.parametrize("order", ["wxyz", "xyzw"])
 def test_quaternions(order, tmp_path, capsys):
     q = FREE.at(TIMES * 0.01).rotor.to_quaternion(order=order)

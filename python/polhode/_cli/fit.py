@@ -8,7 +8,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli.common import add_amount, add_command, file_name, positive
+from polhode._cli.common import add_amount, add_command, add_force, check_written, file_name, positive
+from polhode._native import __version__
 
 if TYPE_CHECKING:
     from polhode._fit.result import Fit
@@ -105,25 +106,25 @@ def add(commands: Any) -> None:
         type=file_name("a figure"),
         help="draw the residuals to FILE.svg, FILE.pdf or FILE.png",
     )
+    add_force(fit)
     add_amount(fit, "the fit as JSON, in SI units")
 
 
 def run(options: argparse.Namespace) -> int:
     """Fit the data, print the summary and write the files."""
     from polhode._support.extras import optional
-    from polhode._support.files import check_target, write_atomically
+    from polhode._support.files import write_atomically
 
     if options.periods is not None:
         return _run_periods(options)
     if options.moments is not None:
         options.parser.error("--moments needs --periods")
     written = [Path(x) for x in (options.output, options.plot) if x is not None]
-    for path in written:
-        check_target(path)
+    check_written(written, options.force)
     if options.plot is not None:
         optional("matplotlib", "plot", "a figure")
     found = _fitted(options)
-    text = json.dumps(found.to_dict(), indent=2, allow_nan=False)
+    text = _as_json(found.to_dict())
     if options.output is not None:
         write_atomically({Path(options.output): f"{text}\n".encode()})
     if options.plot is not None:
@@ -142,16 +143,16 @@ def run(options: argparse.Namespace) -> int:
 def _run_periods(options: argparse.Namespace) -> int:
     """Print and write the rotations that two periods leave possible."""
     from polhode._fit.light_curve import as_dict, rotations, statements
-    from polhode._support.files import check_target, write_atomically
+    from polhode._support.files import write_atomically
 
     if options.data is not None or options.plot is not None:
         options.parser.error("--periods takes neither a file of data nor --plot")
     if options.output is not None:
-        check_target(Path(options.output))
+        check_written([Path(options.output)], options.force)
     found = rotations(options.moments, *options.periods)
     unknown = statements(options.moments, found)
     facts = {"moments": options.moments, "rotations": as_dict(found), "undetermined": unknown}
-    text = json.dumps(facts, indent=2, allow_nan=False)
+    text = _as_json(facts)
     if options.output is not None:
         write_atomically({Path(options.output): f"{text}\n".encode()})
     if options.json:
@@ -164,6 +165,11 @@ def _run_periods(options: argparse.Namespace) -> int:
         if options.output is not None:
             print(f"Written\n  {options.output}")
     return 0
+
+
+def _as_json(facts: dict[str, Any]) -> str:
+    """Return a result as JSON that names the program first, by which its files are recognised."""
+    return json.dumps({"source": f"polhode {__version__}", **facts}, indent=2, allow_nan=False)
 
 
 def _fitted(options: argparse.Namespace) -> Fit:

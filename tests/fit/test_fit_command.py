@@ -199,6 +199,9 @@ LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
         ("t,wx,wy\n0,1,2\n", ":1:1: error: the columns t, wx, wy have neither rates t,wx,wy,wz nor"),
         ("t,wx,wx,wy,wz\n", ":1:1: error: 2 columns are named 'wx'"),
         ("\n\n", ": error: the file is empty"),
+        ("t,wx,wy,wz\n", ":1:1: error: the file ends after 0 rows of rates; a fit needs at least 3"),
+        (LINES, ":3:1: error: the file ends after 2 rows of rates; a fit needs at least 3"),
+        ("t,qw,qx,qy,qz\n0,1,0,0,0\n1, 0,0,0,0\n", ":3:4: error: all components of the quaternion are zero"),
     ],
 )
 def test_errors_have_places(text, message, tmp_path, capsys):
@@ -216,8 +219,8 @@ def test_missing_names_and_bytes(rates, tmp_path, capsys):
     (tmp_path / "b.csv").write_bytes(b"t,wx\xff")
     assert main.main(["fit", str(tmp_path / "b.csv"), *UNITS]) == 3
     assert "not UTF-8 text from byte 4 on" in capsys.readouterr().err
-    assert main.main(["fit", str(tmp_path / "absent.csv"), *UNITS]) == 1
-    assert "absent.csv" in capsys.readouterr().err
+    assert main.main(["fit", str(tmp_path / "absent.csv"), *UNITS]) == 3
+    assert "absent.csv: error: no such file or directory" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -223,13 +223,34 @@ def test_missing_names_and_bytes(rates, tmp_path, capsys):
     assert "absent.csv: error: no such file or directory" in capsys.readouterr().err
 
 
+def test_options_that_do_not_apply_are_refused(rates, tmp_path, capsys):
+    (tmp_path / "scene.toml").write_text(SCENE.replace("viscous_damping", "# viscous_damping"))
+    q = FREE.at(TIMES * 0.01).rotor.to_quaternion(order="wxyz")
+    attitudes = table(tmp_path / "q.csv", "t,qw,qx,qy,qz", TIMES * 0.01, q)
+    seconds = ["--time-unit", "s"]
+    for arguments, message in (
+        ([rates, *UNITS, "--sigma-attitude", "0.1"], "--sigma-attitude needs a file with attitudes"),
+        ([rates, *UNITS, "--order", "xyzw"], "--order needs a file with attitudes"),
+        ([rates, *UNITS, "--torque", str(tmp_path / "scene.toml")], "--torque needs a scene with torques"),
+        ([attitudes, *seconds, "--rate-unit", "rpm"], "--rate-unit needs a file with rates"),
+        ([attitudes, *seconds, "--no-bias"], "--no-bias needs a file with rates"),
+        ([attitudes, *seconds, "--clock-offset"], "--clock-offset needs a file with rates and attitudes"),
+        ([attitudes, *seconds, "--order", "xyzw"], "--order needs --columns"),
+        ([attitudes, *seconds, "--sigma", "1", "--sigma-attitude", "1"], "give one of them"),
+    ):
+        with pytest.raises(SystemExit) as stop:
+            main.main(["fit", *arguments])
+        assert stop.value.code == 2
+        assert message in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
         (["--time-unit", "s"], "rates need their unit: --rate-unit rad/s"),
         (["--rate-unit", "rpm"], "required: --time-unit"),
         ([*UNITS, "--columns", "t,wx"], "expected 4 names (time and rates), 5"),
-        ([*UNITS, "--columns", "t,wx,wy,wz,wx"], "needs its order: --order wxyz"),
+        ([*UNITS[:2], "--columns", "t,wx,wy,wz,wx"], "needs its order: --order wxyz"),
         ([*UNITS, "--sigma", "0"], "expected a positive number, got '0'"),
         ([*UNITS, "-o", "fit.csv"], "a fit is saved as FILE.json, not 'fit.csv'"),
     ],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -183,7 +184,11 @@ def _fitted(options: argparse.Namespace) -> Fit:
         error("the following arguments are required: --time-unit")
     if options.free and options.torque is None:
         error("--free names parameters of torques; give them with --torque SCENE.toml")
+    torque = None if options.torque is None else Scene.read(options.torque).torque
+    if options.torque is not None and torque is None:
+        error(f"--torque needs a scene with torques, and {options.torque} has none")
     tables = read_tables(Path(options.data), options.columns)
+    _refuse_unused(options, tables)
     given: dict[str, Any] = {}
     if "attitude" in tables:
         order: Any = "wxyz" if options.columns is None else options.order
@@ -202,15 +207,35 @@ def _fitted(options: argparse.Namespace) -> Fit:
         given["bias"] = options.bias
     if len(tables) == 2 and (options.sigma is None or options.sigma_attitude is None):
         error("rates and attitudes together need --sigma, of the rates, and --sigma-attitude, to weigh them")
-    if len(tables) == 1 and options.clock_offset:
-        error("--clock-offset needs a file with rates and attitudes")
     return fit(
         **given,
         clock_offset=options.clock_offset,
         sensor_axes=options.sensor_axes,
-        torque=None if options.torque is None else Scene.read(options.torque).torque,
+        torque=torque,
         free=options.free,
     )
+
+
+def _refuse_unused(options: argparse.Namespace, tables: Container[str]) -> None:
+    """Report an option that does not apply to data of these kinds, as wrong usage."""
+    error = options.parser.error
+    if "rates" not in tables:
+        for name, is_given in (
+            ("--rate-unit", options.rate_unit is not None),
+            ("--no-bias", not options.bias),
+        ):
+            if is_given:
+                error(f"{name} needs a file with rates")
+        if None not in (options.sigma, options.sigma_attitude):
+            error("--sigma and --sigma-attitude are the same in a file of attitudes alone; give one of them")
+    if "attitude" not in tables:
+        for name, value in (("--sigma-attitude", options.sigma_attitude), ("--order", options.order)):
+            if value is not None:
+                error(f"{name} needs a file with attitudes")
+    if options.order is not None and options.columns is None:
+        error("--order needs --columns: the names qw,qx,qy,qz already state the order")
+    if options.clock_offset and not ("rates" in tables and "attitude" in tables):
+        error("--clock-offset needs a file with rates and attitudes")
 
 
 def _columns(text: str) -> tuple[str, ...]:

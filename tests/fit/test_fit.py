@@ -263,3 +263,32 @@ def test_a_level_out_of_range():
     fit = ph.fit(**measured("rates", np.random.default_rng(9)), start=(BODY, OMEGA))
     with pytest.raises(ValueError, match="level must be between 0 and 1, got 95"):
         fit.interval(95)
+
+
+@pytest.mark.parametrize("rate", [[0, 0, 5], [3, 0, 0]])
+@pytest.mark.parametrize("bias", [True, False])
+def test_steady_rates_without_noise_are_reported(rate, bias):
+    times = np.arange(100) * 0.1
+    fit = ph.fit(rates=(times, np.tile(np.array(rate, float), (100, 1))), bias=bias)
+    assert np.isfinite(fit.covariance).all()
+    assert (fit.stderr[:2] > 0.5).all()
+    assert any("steady rotations determine little" in x for x in fit.undetermined)
+    if bias:  # the sum of rate and bias alone is determined
+        assert any("bias_3: no information" in x for x in fit.undetermined)
+
+
+def test_steady_attitudes_without_noise_are_reported():
+    times = np.arange(100) * 0.1
+    rotors = ph.Rotor.from_rotation_vector(np.outer(times, [0, 0, 0.5]))
+    fit = ph.fit(attitude=(times, rotors))
+    assert (fit.stderr[:2] > 0.5).all()
+    assert any("steady rotations determine little" in x for x in fit.undetermined)
+
+
+@pytest.mark.parametrize("sigma", [None, 0.01])
+def test_a_body_at_rest_cannot_be_fitted(sigma):
+    times = np.arange(100) * 0.1
+    with pytest.raises(ValueError, match="the body is at rest in all data"):
+        ph.fit(rates=(times, np.zeros((100, 3))), sigma_rates=sigma)
+    with pytest.raises(ValueError, match="the body is at rest in all data"):
+        ph.fit(attitude=(times, ph.Rotor.from_rotation_vector(np.zeros((100, 3)))), sigma_attitude=sigma)

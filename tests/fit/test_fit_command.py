@@ -55,6 +55,31 @@ def test_summary_and_files(rates, tmp_path, capsys):
     assert (tmp_path / "fit.svg").read_text().startswith("<?xml")
 
 
+@pytest.mark.parametrize("form", ["json", "svg", "pdf", "png"])
+def test_files_of_others_are_kept(form, rates, tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    path = tmp_path / f"mine.{form}"
+    path.write_text("{}")
+    option = "-o" if form == "json" else "--plot"
+    arguments = ["fit", rates, *UNITS, "--quiet", option, str(path)]
+    assert main.main(arguments) == 1
+    assert f"{path} exists and was not written by polhode" in capsys.readouterr().err
+    assert path.read_text() == "{}"
+    assert main.main([*arguments, "--force"]) == 0
+    assert main.main(arguments) == 0  # its own file is overwritten
+    assert path.stat().st_size > 1000
+
+
+def test_periods_keep_files_of_others(tmp_path, capsys):
+    path = tmp_path / "mine.json"
+    path.write_text("{}")
+    arguments = ["fit", "--periods", "263 h", "27.38 h", "--moments", "0.61", "0.965", "1", "-o", str(path)]
+    assert main.main(arguments) == 1
+    assert "overwrite it with --force" in capsys.readouterr().err
+    assert main.main([*arguments, "--force"]) == main.main(arguments) == 0
+    assert json.loads(path.read_text())["source"].startswith("polhode ")
+
+
 @pytest.mark.parametrize("order", ["wxyz", "xyzw"])
 def test_quaternions(order, tmp_path, capsys):
     q = FREE.at(TIMES * 0.01).rotor.to_quaternion(order=order)
@@ -174,6 +199,9 @@ LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
         ("t,wx,wy\n0,1,2\n", ":1:1: error: the columns t, wx, wy have neither rates t,wx,wy,wz nor"),
         ("t,wx,wx,wy,wz\n", ":1:1: error: 2 columns are named 'wx'"),
         ("\n\n", ": error: the file is empty"),
+        ("t,wx,wy,wz\n", ":1:1: error: the file ends after 0 rows of rates; a fit needs at least 3"),
+        (LINES, ":3:1: error: the file ends after 2 rows of rates; a fit needs at least 3"),
+        ("t,qw,qx,qy,qz\n0,1,0,0,0\n1, 0,0,0,0\n", ":3:4: error: all components of the quaternion are zero"),
     ],
 )
 def test_errors_have_places(text, message, tmp_path, capsys):
@@ -191,8 +219,29 @@ def test_missing_names_and_bytes(rates, tmp_path, capsys):
     (tmp_path / "b.csv").write_bytes(b"t,wx\xff")
     assert main.main(["fit", str(tmp_path / "b.csv"), *UNITS]) == 3
     assert "not UTF-8 text from byte 4 on" in capsys.readouterr().err
-    assert main.main(["fit", str(tmp_path / "absent.csv"), *UNITS]) == 1
-    assert "absent.csv" in capsys.readouterr().err
+    assert main.main(["fit", str(tmp_path / "absent.csv"), *UNITS]) == 3
+    assert "absent.csv: error: no such file or directory" in capsys.readouterr().err
+
+
+def test_options_that_do_not_apply_are_refused(rates, tmp_path, capsys):
+    (tmp_path / "scene.toml").write_text(SCENE.replace("viscous_damping", "# viscous_damping"))
+    q = FREE.at(TIMES * 0.01).rotor.to_quaternion(order="wxyz")
+    attitudes = table(tmp_path / "q.csv", "t,qw,qx,qy,qz", TIMES * 0.01, q)
+    seconds = ["--time-unit", "s"]
+    for arguments, message in (
+        ([rates, *UNITS, "--sigma-attitude", "0.1"], "--sigma-attitude needs a file with attitudes"),
+        ([rates, *UNITS, "--order", "xyzw"], "--order needs a file with attitudes"),
+        ([rates, *UNITS, "--torque", str(tmp_path / "scene.toml")], "--torque needs a scene with torques"),
+        ([attitudes, *seconds, "--rate-unit", "rpm"], "--rate-unit needs a file with rates"),
+        ([attitudes, *seconds, "--no-bias"], "--no-bias needs a file with rates"),
+        ([attitudes, *seconds, "--clock-offset"], "--clock-offset needs a file with rates and attitudes"),
+        ([attitudes, *seconds, "--order", "xyzw"], "--order needs --columns"),
+        ([attitudes, *seconds, "--sigma", "1", "--sigma-attitude", "1"], "give one of them"),
+    ):
+        with pytest.raises(SystemExit) as stop:
+            main.main(["fit", *arguments])
+        assert stop.value.code == 2
+        assert message in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -201,7 +250,7 @@ def test_missing_names_and_bytes(rates, tmp_path, capsys):
         (["--time-unit", "s"], "rates need their unit: --rate-unit rad/s"),
         (["--rate-unit", "rpm"], "required: --time-unit"),
         ([*UNITS, "--columns", "t,wx"], "expected 4 names (time and rates), 5"),
-        ([*UNITS, "--columns", "t,wx,wy,wz,wx"], "needs its order: --order wxyz"),
+        ([*UNITS[:2], "--columns", "t,wx,wy,wz,wx"], "needs its order: --order wxyz"),
         ([*UNITS, "--sigma", "0"], "expected a positive number, got '0'"),
         ([*UNITS, "-o", "fit.csv"], "a fit is saved as FILE.json, not 'fit.csv'"),
     ],

@@ -147,3 +147,14 @@ def test_wrong_usage_of_periods(options, message, capsys):
         main.main(["fit", *options])
     assert stop.value.code == 2
     assert message in capsys.readouterr().err
+
+
+def test_a_ball_has_no_precession(capsys):
+    omega = ph.omega_from_periods([[1, 1, 1], TOUTATIS], 5.41 * DAY, 7.35 * DAY, mode="long").components
+    assert np.isnan(omega[0]).all()
+    assert np.isfinite(omega[1]).all()
+    assert main.main(["fit", "--periods", "5 d", "7 d", "--moments", "2", "2", "2"]) == 0
+    found = capsys.readouterr()
+    assert found.err == ""
+    assert found.out.count("not possible") == 4
+    assert "a ball rotates steadily, without precession" in found.out

@@ -85,8 +85,9 @@ HEADER = "time,attitude_w,attitude_x,attitude_y,attitude_z"
         ("time\n1\n", "the file has no column 'attitude_w'"),
         (f"{HEADER}\n0,1,0,0\n", "a.csv:2:1: error: expected 5 numbers as in the first line, got 4"),
         (f"{HEADER}\n0,1,0,x,0\n", "a.csv:2:7: error: 'x' is not a finite number"),
-        (f"{HEADER}\n0,2,0,0,0\n", "attitude must be unit quaternions, got norm 2 at row 0"),
-        (f"{HEADER}\n1,1,0,0,0\n0,1,0,0,0\n", "times must increase, got 0.0 s at 1 after 1.0 s"),
+        (f"{HEADER}\n0,2,0,0,0\n", "a.csv:2:3: error: attitude must be unit quaternions, got norm 2\n"),
+        (f"{HEADER}\n0,1,0,0,0\n\n10,0,0,0,0\n", "a.csv:4:4: error: attitude must be unit quaternions, got"),
+        (f"{HEADER}\n1,1,0,0,0\n0,1,0,0,0\n", "a.csv:3:1: error: times must increase, got 0.0 s after 1.0 s"),
         (f"{HEADER},omega_body_x\n0,1,0,0,0,1\n", "the columns of omega_body must be"),
         (f"{HEADER},time\n0,1,0,0,0,1\n", "column 'time' appears more than once"),
     ],
@@ -96,6 +97,12 @@ def test_errors_of_tables_have_their_place(text, expected, tmp_path):
     with pytest.raises(ph.io.FileError) as caught:
         ph.io.read_csv(tmp_path / "a.csv")
     assert expected in str(caught.value)
+
+
+def test_errors_of_a_body_in_a_batch_have_their_place(tmp_path):
+    (tmp_path / "a.csv").write_text(f"body,{HEADER}\n0,0,1,0,0,0\n1,0,1,0,0,0\n0,1,1,0,0,0\n1,1,0,0,0,0\n")
+    with pytest.raises(ph.io.FileError, match=r"a\.csv:5:5: error: attitude must be unit quaternions"):
+        ph.io.read_csv(tmp_path / "a.csv", body=1)
 
 
 @pytest.mark.parametrize("form", ["csv", "parquet", "nc", "aem"])

@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode._native import SceneError
-from polhode._support.files import form_of
+from polhode._support.files import check_target, form_of
 
 if TYPE_CHECKING:
     from polhode._scene.scene import Scene
@@ -92,6 +92,22 @@ def add_amount(parser: argparse.ArgumentParser, what: str) -> None:
     amount = parser.add_mutually_exclusive_group()
     amount.add_argument("--json", action="store_true", help=f"print {what}")
     amount.add_argument("--quiet", action="store_true", help="print errors and warnings only")
+
+
+def add_force(parser: argparse.ArgumentParser) -> None:
+    """Add the option that overwrites files of others."""
+    words = "overwrite existing files even if polhode did not write them"
+    parser.add_argument("--force", action="store_true", help=words)
+
+
+def check_written(paths: Iterable[Path], force: bool) -> None:
+    """Raise an OSError if a file cannot be written, or without `force` if it is not polhode's own."""
+    from polhode._report.output import require_own
+
+    for path in paths:
+        check_target(path)
+        if not force:
+            require_own(path)
 
 
 @contextmanager

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from polhode._cli import common
-from polhode._cli.common import add_command, positive, whole_number
-from polhode._support.files import UnreadableError, check_target
+from polhode._cli.common import add_command, add_force, check_written, positive, whole_number
+from polhode._support.files import UnreadableError
 
 # Options that a reader takes, and those of the written file; each is given to the format that has it.
 _READING = (
@@ -85,8 +85,7 @@ def add(commands: Any) -> None:
     }.items():
         amount = partial(positive, wanted=f"{name} must be a positive number")
         convert.add_argument(f"--{name}", metavar="X", type=amount, help=text)
-    words_of_force = "overwrite an existing file even if polhode did not write it"
-    convert.add_argument("--force", action="store_true", help=words_of_force)
+    add_force(convert)
 
 
 def _convert(options: argparse.Namespace) -> int:
@@ -171,12 +170,8 @@ def _given(options: argparse.Namespace, takes: set[str], where: str) -> dict[str
 
 def _target(options: argparse.Namespace) -> Path:
     """Return the file to write, which may be written."""
-    from polhode._report.output import require_own
-
     target = Path(options.target)
-    check_target(target)
-    if not options.force:
-        require_own(target)
+    check_written([target], options.force)
     return target
 
 

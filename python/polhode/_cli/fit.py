@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli.common import add_amount, add_command, file_name, positive
+from polhode._cli.common import add_amount, add_command, add_force, check_written, file_name, positive
+from polhode._native import __version__
 
 if TYPE_CHECKING:
     from polhode._fit.result import Fit
@@ -105,25 +107,25 @@ def add(commands: Any) -> None:
         type=file_name("a figure"),
         help="draw the residuals to FILE.svg, FILE.pdf or FILE.png",
     )
+    add_force(fit)
     add_amount(fit, "the fit as JSON, in SI units")
 
 
 def run(options: argparse.Namespace) -> int:
     """Fit the data, print the summary and write the files."""
     from polhode._support.extras import optional
-    from polhode._support.files import check_target, write_atomically
+    from polhode._support.files import write_atomically
 
     if options.periods is not None:
         return _run_periods(options)
     if options.moments is not None:
         options.parser.error("--moments needs --periods")
     written = [Path(x) for x in (options.output, options.plot) if x is not None]
-    for path in written:
-        check_target(path)
+    check_written(written, options.force)
     if options.plot is not None:
         optional("matplotlib", "plot", "a figure")
     found = _fitted(options)
-    text = json.dumps(found.to_dict(), indent=2, allow_nan=False)
+    text = _as_json(found.to_dict())
     if options.output is not None:
         write_atomically({Path(options.output): f"{text}\n".encode()})
     if options.plot is not None:
@@ -142,16 +144,16 @@ def run(options: argparse.Namespace) -> int:
 def _run_periods(options: argparse.Namespace) -> int:
     """Print and write the rotations that two periods leave possible."""
     from polhode._fit.light_curve import as_dict, rotations, statements
-    from polhode._support.files import check_target, write_atomically
+    from polhode._support.files import write_atomically
 
     if options.data is not None or options.plot is not None:
         options.parser.error("--periods takes neither a file of data nor --plot")
     if options.output is not None:
-        check_target(Path(options.output))
+        check_written([Path(options.output)], options.force)
     found = rotations(options.moments, *options.periods)
     unknown = statements(options.moments, found)
     facts = {"moments": options.moments, "rotations": as_dict(found), "undetermined": unknown}
-    text = json.dumps(facts, indent=2, allow_nan=False)
+    text = _as_json(facts)
     if options.output is not None:
         write_atomically({Path(options.output): f"{text}\n".encode()})
     if options.json:
@@ -166,6 +168,11 @@ def _run_periods(options: argparse.Namespace) -> int:
     return 0
 
 
+def _as_json(facts: dict[str, Any]) -> str:
+    """Return a result as JSON that names the program first, by which its files are recognised."""
+    return json.dumps({"source": f"polhode {__version__}", **facts}, indent=2, allow_nan=False)
+
+
 def _fitted(options: argparse.Namespace) -> Fit:
     from polhode import Rotor, Scene, fit
     from polhode._fit.table import read_tables
@@ -177,7 +184,11 @@ def _fitted(options: argparse.Namespace) -> Fit:
         error("the following arguments are required: --time-unit")
     if options.free and options.torque is None:
         error("--free names parameters of torques; give them with --torque SCENE.toml")
+    torque = None if options.torque is None else Scene.read(options.torque).torque
+    if options.torque is not None and torque is None:
+        error(f"--torque needs a scene with torques, and {options.torque} has none")
     tables = read_tables(Path(options.data), options.columns)
+    _refuse_unused(options, tables)
     given: dict[str, Any] = {}
     if "attitude" in tables:
         order: Any = "wxyz" if options.columns is None else options.order
@@ -196,15 +207,35 @@ def _fitted(options: argparse.Namespace) -> Fit:
         given["bias"] = options.bias
     if len(tables) == 2 and (options.sigma is None or options.sigma_attitude is None):
         error("rates and attitudes together need --sigma, of the rates, and --sigma-attitude, to weigh them")
-    if len(tables) == 1 and options.clock_offset:
-        error("--clock-offset needs a file with rates and attitudes")
     return fit(
         **given,
         clock_offset=options.clock_offset,
         sensor_axes=options.sensor_axes,
-        torque=None if options.torque is None else Scene.read(options.torque).torque,
+        torque=torque,
         free=options.free,
     )
+
+
+def _refuse_unused(options: argparse.Namespace, tables: Container[str]) -> None:
+    """Report an option that does not apply to data of these kinds, as wrong usage."""
+    error = options.parser.error
+    if "rates" not in tables:
+        for name, is_given in (
+            ("--rate-unit", options.rate_unit is not None),
+            ("--no-bias", not options.bias),
+        ):
+            if is_given:
+                error(f"{name} needs a file with rates")
+        if None not in (options.sigma, options.sigma_attitude):
+            error("--sigma and --sigma-attitude are the same in a file of attitudes alone; give one of them")
+    if "attitude" not in tables:
+        for name, value in (("--sigma-attitude", options.sigma_attitude), ("--order", options.order)):
+            if value is not None:
+                error(f"{name} needs a file with attitudes")
+    if options.order is not None and options.columns is None:
+        error("--order needs --columns: the names qw,qx,qy,qz already state the order")
+    if options.clock_offset and not ("rates" in tables and "attitude" in tables):
+        error("--clock-offset needs a file with rates and attitudes")
 
 
 def _columns(text: str) -> tuple[str, ...]:

@@ -16,7 +16,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode._cli import check, common, store
-from polhode._cli.common import add_amount, add_command, file_name, progress, read_scene, whole_number
+from polhode._cli.common import (
+    add_amount,
+    add_command,
+    add_force,
+    check_written,
+    file_name,
+    progress,
+    read_scene,
+    whole_number,
+)
 from polhode._native import SceneError, __version__
 from polhode._support.files import UnreadableError
 
@@ -125,8 +134,7 @@ def _add_scenes(commands: Any) -> None:
         type=file_name("a page"),
         help="write a self-contained page that shows the motion in a browser",
     )
-    words = "overwrite existing files even if polhode did not write them"
-    run.add_argument("--force", action="store_true", help=words)
+    add_force(run)
     words = "write the data alone; then matplotlib is not needed"
     run.add_argument("--no-figures", dest="figures", action="store_false", help=words)
     add_amount(run, "the summary as JSON, in SI units")
@@ -238,11 +246,7 @@ def _run(options: argparse.Namespace) -> int:
         from polhode._viewer.server import check_page
 
         check_page(pages[0])
-    if not options.force:
-        from polhode._report.output import require_own
-
-        for path in (*targets, *pages):
-            require_own(path)
+    check_written([*targets, *pages], options.force)
     run = _run_one if scene.ensemble is None else _run_many
     result = run(scene, targets, pages, options)
     written = result["files"] = [str(path) for path in (*targets, *pages)]
@@ -310,7 +314,7 @@ def _checked_targets(options: argparse.Namespace, scene: Scene) -> list[Path]:
     from polhode._figures.registry import ON_ELLIPSOID
     from polhode._report.output import require_libraries
     from polhode._support.extras import optional
-    from polhode._support.files import check_target, form_of
+    from polhode._support.files import form_of
 
     output, form = Path(options.output), form_of(options.output, "a motion")
     if scene.ensemble is not None and form != "nc":
@@ -325,10 +329,7 @@ def _checked_targets(options: argparse.Namespace, scene: Scene) -> list[Path]:
         figures = ("motion", "polhode" if scene.kind in ON_ELLIPSOID else "axis")
         if scene.ensemble is not None:
             figures = ("ensemble",) if scene.ensemble.keep else ("ensemble", "directions")
-    targets = [output, *(output.with_name(f"{output.stem}-{figure}.png") for figure in figures)]
-    for path in targets:
-        check_target(path)
-    return targets
+    return [output, *(output.with_name(f"{output.stem}-{figure}.png") for figure in figures)]
 
 
 if __name__ == "__main__":

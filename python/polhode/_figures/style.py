@@ -48,8 +48,8 @@ _FORMULA = r"(?<!\\)\$[^$]+\$"
 # journals accept.
 _AS_FILES = {"svg.fonttype": "path", "svg.hashsalt": "polhode", "pdf.fonttype": 42}
 _UNDATED: dict[str, dict[str, Any]] = {
-    "svg": {"Date": None},
-    "pdf": {"CreationDate": None},
+    "svg": {"Date": None, "Creator": "Polhode"},
+    "pdf": {"CreationDate": None, "Creator": "Polhode"},
     "png": {"Software": "Polhode"},
 }
 

@@ -14,7 +14,7 @@ from polhode._fit.laws import Laws, laws_of
 from polhode._fit.model import Model
 from polhode._fit.parameters import Layout, Parameters, shape_of
 from polhode._fit.result import Fit
-from polhode._fit.samples import attitudes_of, rates_of
+from polhode._fit.samples import Samples, attitudes_of, rates_of
 from polhode._fit.solve import solve
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.state import angular_velocity
@@ -91,8 +91,8 @@ def fit(
     Raises
     ------
     ValueError
-        For data that are not finite, too few, or in wrong shapes, for names that the torque does not have,
-        and if no start leads to a fit.
+        For data that are not finite, too few, or in wrong shapes, for those of a body at rest without a
+        torque, for names that the torque does not have, and if no start leads to a fit.
     ImportError
         Without SciPy: ``pip install 'polhode[scipy]'``.
     """
@@ -120,6 +120,11 @@ def fit(
         scale=scaling is None,
         torque=laws.size,
     )
+    if not laws.torque.laws and not any(x.rates.any() for x in data.values()):
+        raise ValueError(
+            "the body is at rest in all data: without a rotation or a torque nothing of it can be found; "
+            "measure it while it turns"
+        )
     model = Model(attitudes, measured, first, layout, laws if laws.torque.laws else None)
     dof = 3 * sum(map(len, data.values())) - model.size
     if dof <= 0:
@@ -130,7 +135,7 @@ def fit(
     found, *others = solve(model, axes, None if start is None else _start(start, model, axes, laws))
     sums = float((model.residuals(found) ** 2).sum())
     is_known = all(x.is_known for x in data.values())
-    variance = 1.0 if is_known else sums / dof
+    variance = 1.0 if is_known else max(sums / dof, *(_least_variance(x) for x in data.values()))
     facts = information(model, found, variance, others, scaling)
     differences = dict(zip(data, model.differences(found), strict=True))
     return Fit(
@@ -153,6 +158,11 @@ def fit(
         dof=dof,
         undetermined=facts.undetermined,
     )
+
+
+def _least_variance(samples: Samples) -> float:
+    """Return the least variance of residuals in standard deviations; that of data without noise."""
+    return float((samples.least / samples.sigma.min()) ** 2)
 
 
 def _axes(given: Any) -> Rotor:

@@ -122,7 +122,7 @@ def _always(model: Model, scaling: Array | None) -> list[str]:
 def _directions(names: list[str], rows: Array, spread: Array, none: Any) -> Iterator[str]:
     """Yield a statement for each singular direction that is uncertain, in units of the parameters' sizes."""
     for row, size, is_free in zip(rows, spread, none, strict=True):
-        if size <= _UNSURE:
+        if size <= _UNSURE and not is_free:
             continue
         parts = np.abs(row)
         named = [name for name, x in zip(names, parts, strict=True) if x >= _PART * parts.max()]

@@ -69,6 +69,8 @@ def rotations(moments: Any, first: float, second: float) -> list[Rotation]:
 def statements(moments: Any, found: list[Rotation]) -> list[str]:
     """Return what the periods do not determine."""
     count = sum(x.is_possible for x in found)
+    if moments is not None and min(moments) == max(moments):
+        return ["the motion: a ball rotates steadily, without precession, and has no such two periods"]
     texts = ["overall scale of the moments: free motion depends on their ratios only"]
     if moments is None:
         texts.append("moments: two periods leave a family of bodies for each mode; give --moments of a shape")

@@ -45,7 +45,8 @@ def omega_from_periods(
     Returns
     -------
     Bivectors (...) in body axes in rad/s, at a time when the component about the middle axis is 0; NaN where
-    the body has no such motion. The ratio of the periods grows with the wobble, so that there is at most one.
+    the body has no such motion, as a ball, which does not precess. The ratio of the periods grows with the
+    wobble, so that there is at most one.
 
     Raises
     ------
@@ -65,8 +66,9 @@ def omega_from_periods(
     order = order if mode == "long" else order[:, ::-1]
     near, middle, far = np.take_along_axis(flat, order, axis=1).T
     # On the separatrix, 2E = L²/middle.
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         edge = np.arctan(np.sqrt(np.maximum((1 / near - 1 / middle) / (1 / middle - 1 / far), 0.0)))
+    edge[near == far] = 0.0  # a ball, which rotates steadily and has no periods
     low, high = _EDGE * edge, (1 - _EDGE) * edge
     wanted = rotation_period / precession_period
     outside = ~((_ratio(bodies, flat, order, low) <= wanted) & (_ratio(bodies, flat, order, high) >= wanted))

@@ -21,13 +21,17 @@ _LEAST = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Measurements at n times: rotors, or rates (n, 3); `sigma` (n, 3) is assumed if it was not given."""
+    """Measurements at n times: rotors, or rates (n, 3); `sigma` (n, 3) is assumed if it was not given.
+
+    `least` is the least noise that is assumed in that case, 0 if `sigma` was given.
+    """
 
     times: Array
     values: Any
     rates: Array
     sigma: Array
     is_known: bool
+    least: float
 
     def __len__(self) -> int:
         return len(self.times)
@@ -36,7 +40,14 @@ class Samples:
         """Return the samples up to a time, about `most` of them, equally spaced."""
         n = int(np.searchsorted(self.times, end, side="right"))
         some = slice(0, n, 1 if most is None else max(1, n // most))
-        return Samples(self.times[some], self.values[some], self.rates[some], self.sigma[some], self.is_known)
+        return Samples(
+            self.times[some],
+            self.values[some],
+            self.rates[some],
+            self.sigma[some],
+            self.is_known,
+            self.least,
+        )
 
     def turn(self) -> Array:
         """Return the angle (n,) in rad through which the body has turned, from the first time on."""
@@ -90,17 +101,18 @@ def _finite(values: Array, name: str) -> Array:
     return values
 
 
-def _deviations(sigma: Any, name: str, values: Array, count: int, share: float) -> tuple[Array, bool]:
-    """Return standard deviations (n, 3); without `sigma`, those of the noise in values (m, 3).
+def _deviations(sigma: Any, name: str, values: Array, count: int, share: float) -> tuple[Array, bool, float]:
+    """Return standard deviations (n, 3), whether they are known, and the least that is assumed.
 
-    Third differences of a smooth curve are small, so that they show the noise. `share` is the variance of a
-    measurement relative to that of a value.
+    Without `sigma` they are those of the noise in values (m, 3): third differences of a smooth curve are
+    small, so that they show the noise. `share` is the variance of a measurement relative to that of a value.
     """
     if sigma is None:
         size = float(np.sqrt(np.mean(values**2))) or 1.0
         wobble = np.diff(values, 3, axis=0) if len(values) > 3 else values
         noise = float(np.sqrt(np.mean(wobble**2) * share / _THIRD))
-        return np.full((count, 3), max(noise, _LEAST * size)), False
+        least = _LEAST * size
+        return np.full((count, 3), max(noise, least)), False, least
     given = as_floats(sigma, name)
     rows = given[:, np.newaxis] if given.ndim == 1 and given.shape == (count,) != (3,) else given
     try:
@@ -112,4 +124,4 @@ def _deviations(sigma: Any, name: str, values: Array, count: int, share: float) 
         ) from None
     if not (np.isfinite(result) & (result > 0)).all():
         raise ValueError(f"{name} must be positive and finite, got {float(result.min())}")
-    return result, True
+    return result, True, 0.0

@@ -15,6 +15,8 @@ RATES, QUATERNION = ("t", "wx", "wy", "wz"), ("t", "qw", "qx", "qy", "qz")
 BOTH = RATES + QUATERNION[1:]
 # Number of names, of a time and its values, for each kind of data.
 KINDS = {len(RATES): ("rates",), len(QUATERNION): ("attitude",), len(BOTH): ("rates", "attitude")}
+# Least number of rows of each kind.
+FEWEST = 3
 
 
 @dataclass(frozen=True)
@@ -35,13 +37,14 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     Raises
     ------
     UnreadableError
-        With file, line and column, for a name that is missing, a field that is not a finite number, a line
-        with another number of fields, and times that do not increase.
-    OSError
-        If the file cannot be read.
+        With file, line and column, for a name that is missing, a field that is not a finite number, a
+        quaternion of zeros, a line with another number of fields, times that do not increase, and too few
+        rows; with the file if it cannot be read.
     """
     try:
         lines = path.read_text("utf-8-sig").split("\n")
+    except OSError as error:
+        raise UnreadableError(f"{path}: error: {(error.strerror or str(error)).lower()}") from None
     except UnicodeDecodeError as error:
         raise UnreadableError(f"{path}: error: not UTF-8 text from byte {error.start} on") from None
     rows = [(k, x) for k, x in enumerate(lines, 1) if x.strip() and not x.lstrip().startswith("#")]
@@ -69,6 +72,12 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
         for kind, own in columns.items():
             if len(kinds) == 1 or any(fields[place].strip() for place in own):
                 found[kind].append((line, _numbers(path, line, fields, [places[0], *own])))
+    for kind, numbers in found.items():
+        if len(numbers) < FEWEST:
+            raise UnreadableError(
+                f"{path}:{rows[-1][0]}:1: error: the file ends after {len(numbers)} rows of {kind}; "
+                f"a fit needs at least {FEWEST}"
+            )
     return {kind: _table(path, own, len(columns[kind]) + 1) for kind, own in found.items()}
 
 
@@ -93,11 +102,22 @@ def _numbers(path: Path, line: int, fields: list[str], places: list[int]) -> lis
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            before = sum(len(x) + 1 for x in fields[:place])
-            column = before + len(fields[place]) - len(fields[place].lstrip()) + 1
-            raise UnreadableError(f"{path}:{line}:{column}: error: {field!r} is not a finite number")
+            raise UnreadableError(
+                f"{path}:{line}:{_column(fields, place)}: error: {field!r} is not a finite number"
+            )
         numbers.append(value)
+    if len(places) == len(QUATERNION) and not any(numbers[1:]):
+        raise UnreadableError(
+            f"{path}:{line}:{_column(fields, places[1])}: error: all components of the quaternion are zero, "
+            "which is not a rotation; remove the row"
+        )
     return numbers
+
+
+def _column(fields: list[str], place: int) -> int:
+    """Return the column, from 1, at which the text of a field begins."""
+    before = sum(len(x) + 1 for x in fields[:place])
+    return before + len(fields[place]) - len(fields[place].lstrip()) + 1
 
 
 def _table(path: Path, rows: list[tuple[int, list[float]]], width: int) -> Table:

@@ -20,6 +20,14 @@ class FileError(ValueError):
     """A mistake in a file, with its place."""
 
 
+class RowError(ValueError):
+    """A mistake at a time of a history: what is wrong, the row from 0, and the first column it is in."""
+
+    def __init__(self, words: str, row: int, column: str) -> None:
+        super().__init__(f"{words} at row {row}")
+        self.words, self.row, self.column = words, row, column
+
+
 # The optional quantities, and their grades.
 _OPTIONAL = {"omega_body": 2, "momentum_space": 2, "position": 1, "velocity": 1}
 
@@ -71,7 +79,7 @@ class AttitudeHistory:
             raise ValueError(f"time must be finite numbers of shape (n,), got shape {time.shape}")
         if len(fallen := np.flatnonzero(np.diff(time) <= 0)):
             k = int(fallen[0]) + 1
-            raise ValueError(f"times must increase, got {time[k]} s at {k} after {time[k - 1]} s")
+            raise RowError(f"times must increase, got {time[k]} s after {time[k - 1]} s", k, "time")
         if not isinstance(self.rotor, Rotor):
             raise TypeError(f"rotor must be a Rotor, got {type(self.rotor).__name__}")
         for name in ("rotor", *_OPTIONAL):

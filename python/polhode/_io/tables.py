@@ -14,7 +14,7 @@ import numpy as np
 
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.rotor import Rotor
-from polhode._io.history import AttitudeHistory, FileError
+from polhode._io.history import AttitudeHistory, FileError, RowError
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.robots.document import Source
 from polhode._mechanics.trajectory import Trajectory
@@ -70,8 +70,13 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
     if len(columns) < len(header):
         twice = next(x for x in header if header.count(x) > 1)
         raise FileError(source.error(1, 0, f"column {twice!r} appears more than once"))
+    if "body" in columns:
+        lines = [line for line, number in zip(lines, columns["body"], strict=True) if number == body]
     try:
         return _history(columns, body, {})
+    except RowError as error:
+        line, place = lines[error.row], header.index(error.column)
+        raise FileError(source.error(line, _start(source, line, place), error.words)) from None
     except (TypeError, ValueError) as error:
         raise FileError(source.error(1, 0, str(error))) from None
 
@@ -133,9 +138,13 @@ def _number(source: Source, line: int, row: list[str], k: int) -> float:
     except ValueError:
         value = None
     if value is None or math.isinf(value):
-        column = sum(len(x) + 1 for x in row[:k])
-        raise FileError(source.error(line, column, f"{row[k]!r} is not a finite number"))
+        raise FileError(source.error(line, _start(source, line, k), f"{row[k]!r} is not a finite number"))
     return value
+
+
+def _start(source: Source, line: int, k: int) -> int:
+    """Return the number of characters before a field of a line."""
+    return sum(len(x) + 1 for x in source.lines[line - 1].split(",")[:k])
 
 
 def _names(name: str) -> list[str]:
@@ -195,7 +204,7 @@ def of_parts(
     norms = np.linalg.norm(quaternions, axis=-1)
     if not (np.abs(norms - 1) < 1e-3).all():
         k = int(np.argmax(~(np.abs(norms - 1) < 1e-3)))
-        raise ValueError(f"attitude must be unit quaternions, got norm {norms[k]:.6g} at row {k}")
+        raise RowError(f"attitude must be unit quaternions, got norm {norms[k]:.6g}", k, "attitude_w")
     grades = {"omega_body": bivector, "momentum_space": bivector, "position": vector, "velocity": vector}
     found = {name: make(np.ascontiguousarray(parts[name])) for name, make in grades.items() if name in parts}
     rotor = Rotor._from_rows(np.ascontiguousarray(quaternions * [1.0, -1.0, -1.0, -1.0]))

@@ -43,8 +43,8 @@ def require_own(path: Path) -> None:
 def is_own(path: Path) -> bool:
     """Whether polhode wrote a file, by its content; an empty file counts as such.
 
-    NetCDF and Parquet files have the attribute `source`, CSV files the header, PNGs and pages the program's
-    name. Libraries of the form must be installed.
+    NetCDF and Parquet files have the attribute `source`, fits this key, CSV files the header, figures and
+    pages the program's name. Libraries of the form must be installed.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD)
@@ -70,6 +70,13 @@ def is_own(path: Path) -> bool:
             return head.startswith(b"Written by polhode ")
         case ".png":
             return head.startswith(b"\x89PNG") and b"tEXtSoftware\0Polhode" in head
+        case ".svg":
+            return b"<cc:Agent>\n      <dc:title>Polhode</dc:title>" in head
+        case ".pdf":
+            # Matplotlib writes the facts of a document at the end of the file.
+            return head.startswith(b"%PDF") and b"/Creator (Polhode)" in path.read_bytes()
+        case ".json":
+            return head.startswith(b'{\n  "source": "polhode ')
         case ".html" | ".htm":
             return b'<meta name="generator" content="Polhode">' in head
         case _:

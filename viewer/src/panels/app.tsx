@@ -1,7 +1,8 @@
 import { type ReadonlySignal, useSignal } from "@preact/signals";
 import { Component, type ComponentChildren } from "preact";
-import { useEffect, useMemo } from "preact/hooks";
+import { useEffect, useMemo, useRef } from "preact/hooks";
 import { AlgebraPage } from "../algebra/page.tsx";
+import { useAttention } from "../lessons/attend.ts";
 import { LessonList, LessonPanel } from "../lessons/panel.tsx";
 import { Lessons } from "../lessons/lessons.ts";
 import { type Model, words } from "../model/model.ts";
@@ -38,10 +39,13 @@ export function App({ model, palette, compact, wide }: Props) {
   useEffect(() => () => controls.dispose(), [controls]);
   const lessons = useMemo(() => new Lessons(model), [model]);
   useEffect(() => () => lessons.dispose(), [lessons]);
+  const app = useRef<HTMLDivElement>(null);
+  useAttention(app, lessons);
   const folds = useMemo<Folds>(() => new Map(), []);
   const motion = model.page.value === "motion";
   return (
     <div
+      ref={app}
       class={`app${compact ? " compact" : ""}${dragged.value ? " dragged" : ""}`}
       onDragOver={(event) => {
         event.preventDefault();

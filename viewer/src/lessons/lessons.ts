@@ -10,6 +10,7 @@ import { joined, lessonOf } from "./parse.ts";
 import { changed, settingsOf, withValues } from "./settings.ts";
 
 const HEADING = [".lesson h2"];
+const PRESSED = [".lesson .last"];
 const VERDICT = [".lesson .verdict"];
 
 /** The lesson of the page: its step, and the answers that were given. It sets what the picture shows. */
@@ -94,6 +95,7 @@ export class Lessons {
   }
 
   private begin(given: LessonFile | null): void {
+    this.turn += 1;
     this.opened = null;
     this.answers.value = new Map();
     this.lesson.value = null;
@@ -117,6 +119,7 @@ export class Lessons {
 
   private async apply(step: Step, set: Settings): Promise<void> {
     const { model } = this;
+    this.turnTo(step.subject);
     if (set.fields !== undefined || set.values) {
       const full = { ...set, fields: { ...step.set.fields, ...set.fields } };
       if (step.subject.kind === "lines") {
@@ -135,7 +138,7 @@ export class Lessons {
   /** Shows the subject of a step with the settings of the step, and everything else as in a first view. */
   private async present(subject: Subject, set: Settings, place: string): Promise<void> {
     const { model } = this;
-    model.page.value = subject.kind === "scene" ? "motion" : "algebra";
+    this.turnTo(subject);
     if (subject.kind === "lines") {
       model.lines.value = withValues(subject.lines, set.values ?? {});
       model.values.value = [];
@@ -144,6 +147,14 @@ export class Lessons {
     if (!(await this.openScene(subject, set, place))) return;
     this.look({ camera: "oblique", playing: true, ...set }, SHOWN);
     model.caption.value = set.caption ?? null;
+  }
+
+  /** Turns to the page that a step is about, and back to what was pressed there. */
+  private turnTo(subject: Subject): void {
+    const { page } = this.model;
+    const about = subject.kind === "scene" ? "motion" : "algebra";
+    if (page.value !== about) this.next ??= PRESSED;
+    page.value = about;
   }
 
   /** Opens the scene of a step, unless it is shown already. Returns whether it is valid and still asked for. */

@@ -59,7 +59,7 @@ export function App({ model, palette, compact, wide }: Props) {
         if (files.length > 0) void openFiles(model, files);
       }}
     >
-      <Header model={model} compact={compact} />
+      <Header model={model} compact={compact} lesson={lessons.lesson.value} />
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
         <Boundary key={model.page.value}>
           {motion ? (
@@ -80,7 +80,10 @@ export function App({ model, palette, compact, wide }: Props) {
 function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds: Folds }) {
   const { model, palette, compact, controls, lessons, folds } = props;
   const known = model.about.value !== null;
+  // Without a motion, the text of an invalid scene.
+  const editable = known || model.draft.value !== null;
   const learning = lessons.step !== null;
+  const formulas = !known && lessons.step?.subject.kind === "lines";
   // In a lesson its text comes first.
   const wide = props.wide && !learning;
   const varied = !compact && controls.about.value !== null;
@@ -99,11 +102,11 @@ function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds
     [varied, "body", "Body", false, <BodyPanel controls={controls} />],
     [varied, "laws", "Torques", false, <LawsPanel controls={controls} />],
     [true, "view", "View", false, <ViewPanel model={model} />],
-    [!compact, "text", "Scene", !known, <Editor model={model} />],
+    [!compact && editable, "text", "Scene", !known && !learning, <Editor model={model} />],
   ];
   return (
     <main class="motion">
-      <Picture model={model} palette={palette} />
+      <Picture model={model} palette={palette} formulas={formulas} />
       <Playback model={model} />
       <aside class="panels" aria-label="Values and controls">
         {learning && <LessonPanel lessons={lessons} />}

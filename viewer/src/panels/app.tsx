@@ -165,10 +165,12 @@ class Boundary extends Component<{ children: ComponentChildren }, { problem: str
   render() {
     if (this.state.problem === null) return this.props.children;
     return (
-      <div class="notice" role="alert">
-        <p>This page cannot be shown.</p>
-        <pre>{this.state.problem}</pre>
-      </div>
+      <main class="notice">
+        <div role="alert">
+          <p>This page cannot be shown.</p>
+          <pre>{this.state.problem}</pre>
+        </div>
+      </main>
     );
   }
 }

@@ -369,3 +369,87 @@ def test_lessons_are_dropped_on_the_page(opened, tmp_path):
     page = opened({"format": 1})
     page.page.locator("#file").set_input_files(LESSONS[0])
     page.page.locator(f".lesson[data-lesson={LESSONS[0].stem}]").wait_for()
+
+
+# --- the focus, and what is in view
+
+PHONE = {"viewport": {"width": 390, "height": 740}, "is_mobile": True, "has_touch": True}
+# The focused element if it is in view and not under the picture.
+READ = f"""() => {{
+    const root = {VIEWER}.shadowRoot;
+    const at = root.activeElement;
+    if (!at) return null;
+    const {{ left, top, bottom }} = at.getBoundingClientRect();
+    const over = root.elementFromPoint(left + 5, (top + bottom) / 2);
+    return top >= 0 && bottom <= innerHeight && at.contains(over) ? at.textContent : null;
+}}"""
+
+
+def awaits_reader(page, text):
+    """Wait until the focused element, in view, begins with a text."""
+    page.until(f"(({READ})() ?? '').startsWith(begin)", begin=text)
+
+
+def test_what_is_read_next_has_the_focus_and_is_in_view(opened):
+    page = opened({"format": 1}, **PHONE)
+    for name, asks in (("book-thrown-three-ways", True), ("cross-products-to-bivectors", False)):
+        text = (ROOT / f"examples/lessons/{name}.md").read_text()
+        titles = re.findall(r"^## (.*)$", text, re.MULTILINE)
+        page.page.locator(f".lessons [data-lesson={name}]").press("Enter")
+        awaits_reader(page, titles[0])
+        page.page.locator("#lesson-next").press("Enter")
+        awaits_reader(page, titles[1])
+        if asks:
+            page.page.locator(".guess").nth(0).press("Enter")
+            awaits_reader(page, "Not so.")
+            page.page.locator("#lesson-close").press("Enter")
+            awaits_reader(page, re.search(r"^title: (.*)$", text, re.MULTILINE)[1])
+
+
+def test_a_page_of_a_lesson_leaves_the_focus_when_it_is_loaded(lesson):
+    page = lesson(LESSONS[0])
+    page.drawn()
+    assert page.page.evaluate(f"{VIEWER}.shadowRoot.activeElement") is None
+
+
+# --- the lesson and the rest of the page
+
+
+def test_another_scene_closes_the_lesson(lesson):
+    page = lesson(LESSONS[0])
+    page.page.locator("#preset").select_option("toutatis.toml")
+    page.page.locator(".lesson").wait_for(state="detached")
+    assert read(page, "model.about.value.title") == "4179 Toutatis"
+    page.page.locator("#file").set_input_files(LESSONS[0])
+    page.page.locator(".lesson").wait_for()
+    page.page.locator("#file").set_input_files(ROOT / "examples/gyroscope.toml")
+    page.page.locator(".lesson").wait_for(state="detached")
+    page.until("model.about.value.top !== null")
+
+
+@pytest.mark.parametrize("name", ["why-l-stays-and-omega-wanders", "half-angles"])
+def test_phrases_turn_to_the_page_of_their_step(name, lesson):
+    page = lesson(ROOT / f"examples/lessons/{name}.md")
+    while page.page.locator("a.drive").count() == 0:
+        page.page.locator("#lesson-next").click()
+    own = read(page, "model.page.value")
+    page.page.locator(f"#tab-{'algebra' if own == 'motion' else 'motion'}").click()
+    link = page.page.locator("a.drive").first
+    text = link.text_content()
+    link.press("Enter")
+    page.until("model.page.value === own", own=own)
+    awaits_reader(page, text)
+
+
+def test_a_lesson_without_a_motion_says_so(lesson):
+    page = lesson(ROOT / "examples/lessons/half-angles.md")
+    page.page.locator("#tab-motion").click()
+    page.page.get_by_text("This step of the lesson has no motion.").wait_for()
+    assert page.page.locator("h1").text_content() == "Half angles: rotors by two mirrors"
+    assert page.page.locator("#panel-text").count() == 0
+
+
+def test_the_scene_of_a_lesson_is_folded(lesson):
+    page = lesson(LESSONS[0])
+    page.page.locator("#panel-text").wait_for(state="attached")
+    assert page.page.locator("#panel-text[open]").count() == 0

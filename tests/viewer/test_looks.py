@@ -198,3 +198,47 @@ def test_time_per_frame_of_a_long_trace(opened, record_property):
     took, points = float(stage.get_attribute("data-frame-ms")), int(stage.get_attribute("data-points"))
     assert points >= 10_000
     record_property(f"JavaScript of a frame with {points} points of paths", f"{took:.2f} ms")
+
+
+WATCH = """
+    window.drawn = [];
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function (text, ...more) {
+        window.drawn.push(text);
+        return fillText.call(this, text, ...more);
+    };
+"""
+
+
+@pytest.mark.parametrize(
+    ("shown", "drawn"),
+    [("momentum", {"L"}), ("omega", {"Ω"}), ("omega momentum", {"L", "Ω"}), ("", {"L", "Ω"})],
+)
+def test_arrows_stand_for_the_bivectors_that_are_shown(shown, drawn, opened, new_page, tmp_path):
+    view = {"shown": {name: name in shown.split() for name in ("omega", "momentum")} | {"axial": True}}
+    opened({"format": 1, "scene": (ROOT / "examples/feynman-plate.toml").read_text(), "view": view})
+    page = new_page()
+    page.page.add_init_script(WATCH)
+    page.open(next(tmp_path.glob("*.html")))
+    page.drawn()
+    assert set(page.page.evaluate("window.drawn")) & {"L", "Ω"} == drawn
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_ratios_of_moments_have_no_units(known, opened):
+    mass = "mass = 2\n" if known else ""
+    scene = f"[body]\nmoments = [1, 2, 2.5]\n{mass}[initial]\nspin = {{ vector = [1, 2, 3] }}\n"
+    page = opened({"format": 1, "scene": scene + "[run]\nduration = 1\n"})
+    page.page.locator("#panel-motion").evaluate("panel => panel.open = true")
+    page.page.locator(".facts").wait_for()
+    text = page.page.locator(".panels").inner_text()
+    units = [unit for unit in ("kg m²/s", "J", "kg m²\n") if unit in text]
+    assert units == (["kg m²/s", "J", "kg m²\n"] if known else [])
+
+
+def test_the_algebra_page_is_in_a_landmark(opened):
+    page = opened({"format": 1, "page": "algebra"})
+    outside = page.page.evaluate(
+        f"""() => [...{VIEWER}.shadowRoot.querySelector("#page").children].map((one) => one.localName)"""
+    )
+    assert outside == ["main"]

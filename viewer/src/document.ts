@@ -102,7 +102,7 @@ export interface Shown {
   omega: boolean;
   /** L as an oriented disc. */
   momentum: boolean;
-  /** The axial vectors of Ω and L as arrows. */
+  /** The axial vectors of the discs that are shown as arrows; of both without discs. */
   axial: boolean;
   /** Poinsot's construction: the inertia ellipsoid on the invariable plane. */
   poinsot: boolean;

@@ -49,6 +49,11 @@ export interface Surface {
   tints: Uint32Array;
 }
 
+/** Whether the mass is known. Moments without a mass are often ratios: then L and E have no units. */
+export function hasMass({ body }: About): boolean {
+  return body.mass !== null;
+}
+
 /** A uniform solid: its kind, and its dimensions in m by their names in scenes. */
 export type Solid = { kind: string; [dimension: string]: string | number | Triple };
 

@@ -9,6 +9,10 @@ import { sceneNamed } from "./library.ts";
 import { joined, lessonOf } from "./parse.ts";
 import { changed, settingsOf, withValues } from "./settings.ts";
 
+const HEADING = [".lesson h2"];
+const PRESSED = [".lesson .last"];
+const VERDICT = [".lesson .verdict"];
+
 /** The lesson of the page: its step, and the answers that were given. It sets what the picture shows. */
 export class Lessons {
   readonly lesson = signal<Lesson | null>(null);
@@ -18,6 +22,10 @@ export class Lessons {
   readonly answers = signal<ReadonlyMap<number, number>>(new Map());
   /** Whether a lesson was left: then the list of lessons is open. */
   readonly left = signal(false);
+  /** The phrase of this step that was pressed last. */
+  readonly last = signal<string | null>(null);
+  /** Selectors of what is read next, the first one that is on the page; it gets the focus. */
+  next: readonly string[] | null = null;
   readonly dispose: () => void;
   /** The scene that was opened last, before anything changed it. */
   private opened: string | null = null;
@@ -31,6 +39,8 @@ export class Lessons {
       const given = model.lesson.value;
       untracked(() => this.begin(given));
     });
+    // A page does not take the focus when it is loaded.
+    this.next = null;
   }
 
   get step(): Step | null {
@@ -42,6 +52,8 @@ export class Lessons {
     const step = this.lesson.value?.steps[index];
     if (!step) return;
     this.turn += 1;
+    this.last.value = null;
+    this.next = HEADING;
     this.index.value = index;
     const answered = step.question && this.answers.value.has(index);
     const set = answered ? joined(step.set, step.question!.set) : step.set;
@@ -52,6 +64,7 @@ export class Lessons {
   act(target: string): void {
     const step = this.step;
     if (!step) return;
+    this.last.value = target;
     try {
       this.then(step, settingsOf(target, step.subject, this.model.core));
     } catch (error) {
@@ -64,18 +77,25 @@ export class Lessons {
   answer(choice: number): void {
     const question = this.step?.question;
     if (!question || this.answers.value.has(this.index.value)) return;
+    this.next = VERDICT;
+    this.last.value = null;
     this.answers.value = new Map(this.answers.value).set(this.index.value, choice);
     this.then(this.step!, question.set);
   }
 
   close(): void {
+    const id = this.lesson.value?.name.replace(/\.md$/u, "") ?? "";
+    // Without the list of lessons, that of the figures of the algebra page.
+    const places = [`.lessons [data-lesson="${CSS.escape(id)}"]`, "#panel-lessons summary", "#figure"];
     batch(() => {
+      this.next = places;
       this.left.value = true;
       this.model.lesson.value = null;
     });
   }
 
   private begin(given: LessonFile | null): void {
+    this.turn += 1;
     this.opened = null;
     this.answers.value = new Map();
     this.lesson.value = null;
@@ -99,6 +119,7 @@ export class Lessons {
 
   private async apply(step: Step, set: Settings): Promise<void> {
     const { model } = this;
+    this.turnTo(step.subject);
     if (set.fields !== undefined || set.values) {
       const full = { ...set, fields: { ...step.set.fields, ...set.fields } };
       if (step.subject.kind === "lines") {
@@ -117,7 +138,7 @@ export class Lessons {
   /** Shows the subject of a step with the settings of the step, and everything else as in a first view. */
   private async present(subject: Subject, set: Settings, place: string): Promise<void> {
     const { model } = this;
-    model.page.value = subject.kind === "scene" ? "motion" : "algebra";
+    this.turnTo(subject);
     if (subject.kind === "lines") {
       model.lines.value = withValues(subject.lines, set.values ?? {});
       model.values.value = [];
@@ -126,6 +147,14 @@ export class Lessons {
     if (!(await this.openScene(subject, set, place))) return;
     this.look({ camera: "oblique", playing: true, ...set }, SHOWN);
     model.caption.value = set.caption ?? null;
+  }
+
+  /** Turns to the page that a step is about, and back to what was pressed there. */
+  private turnTo(subject: Subject): void {
+    const { page } = this.model;
+    const about = subject.kind === "scene" ? "motion" : "algebra";
+    if (page.value !== about) this.next ??= PRESSED;
+    page.value = about;
   }
 
   /** Opens the scene of a step, unless it is shown already. Returns whether it is valid and still asked for. */

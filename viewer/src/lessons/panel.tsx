@@ -1,5 +1,3 @@
-import { useSignal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
 import { IconButton } from "../inputs/button.tsx";
 import type { Question } from "./lesson.ts";
 import type { Lessons } from "./lessons.ts";
@@ -27,23 +25,9 @@ export function LessonPanel({ lessons }: { lessons: Lessons }) {
   const lesson = lessons.lesson.value;
   const step = lessons.step;
   const index = lessons.index.value;
-  const heading = useRef<HTMLHeadingElement>(null);
-  const last = useSignal<string | null>(null);
-  const shown = useRef(index);
-  useEffect(() => {
-    last.value = null;
-    // A new step is read from its heading, by screen readers too.
-    if (shown.current !== index) {
-      heading.current?.focus({ preventScroll: true });
-      heading.current?.scrollIntoView({ block: "nearest" });
-    }
-    shown.current = index;
-  }, [index, lesson]);
   if (!lesson || !step) return null;
-  const act = (target: string): void => {
-    last.value = target;
-    lessons.act(target);
-  };
+  const last = lessons.last.value;
+  const act = (target: string): void => lessons.act(target);
   const { question } = step;
   const choice = lessons.answers.value.get(index);
   const following = LESSONS[LESSONS.findIndex(({ file }) => file.name === lesson.name) + 1];
@@ -71,20 +55,18 @@ export function LessonPanel({ lessons }: { lessons: Lessons }) {
           onClick={() => lessons.close()}
         />
       </div>
-      <h2 ref={heading} tabIndex={-1}>
-        {step.title}
-      </h2>
+      <h2 tabIndex={-1}>{step.title}</h2>
       <div class="prose">
-        <Prose tokens={step.text} last={last.value} act={act} />
+        <Prose tokens={step.text} last={last} act={act} />
         {question && <Choices question={question} choice={choice} choose={(k) => lessons.answer(k)} />}
-        <div aria-live="polite">
-          {question && choice !== undefined && (
-            <>
-              <p class="verdict">{question.choices[choice]!.right ? "That is right." : "Not so."}</p>
-              <Prose tokens={question.answer} last={last.value} act={act} />
-            </>
-          )}
-        </div>
+        {question && choice !== undefined && (
+          <>
+            <p class="verdict" tabIndex={-1}>
+              {question.choices[choice]!.right ? "That is right." : "Not so."}
+            </p>
+            <Prose tokens={question.answer} last={last} act={act} />
+          </>
+        )}
       </div>
       <nav aria-label="Steps of the lesson">
         <button id="lesson-back" disabled={index === 0} onClick={() => lessons.go(index - 1)}>

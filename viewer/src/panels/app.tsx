@@ -1,7 +1,8 @@
 import { type ReadonlySignal, useSignal } from "@preact/signals";
 import { Component, type ComponentChildren } from "preact";
-import { useEffect, useMemo } from "preact/hooks";
+import { useEffect, useMemo, useRef } from "preact/hooks";
 import { AlgebraPage } from "../algebra/page.tsx";
+import { useAttention } from "../lessons/attend.ts";
 import { LessonList, LessonPanel } from "../lessons/panel.tsx";
 import { Lessons } from "../lessons/lessons.ts";
 import { type Model, words } from "../model/model.ts";
@@ -38,10 +39,13 @@ export function App({ model, palette, compact, wide }: Props) {
   useEffect(() => () => controls.dispose(), [controls]);
   const lessons = useMemo(() => new Lessons(model), [model]);
   useEffect(() => () => lessons.dispose(), [lessons]);
+  const app = useRef<HTMLDivElement>(null);
+  useAttention(app, lessons);
   const folds = useMemo<Folds>(() => new Map(), []);
   const motion = model.page.value === "motion";
   return (
     <div
+      ref={app}
       class={`app${compact ? " compact" : ""}${dragged.value ? " dragged" : ""}`}
       onDragOver={(event) => {
         event.preventDefault();
@@ -55,7 +59,7 @@ export function App({ model, palette, compact, wide }: Props) {
         if (files.length > 0) void openFiles(model, files);
       }}
     >
-      <Header model={model} compact={compact} />
+      <Header model={model} compact={compact} lesson={lessons.lesson.value} />
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
         <Boundary key={model.page.value}>
           {motion ? (
@@ -76,7 +80,10 @@ export function App({ model, palette, compact, wide }: Props) {
 function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds: Folds }) {
   const { model, palette, compact, controls, lessons, folds } = props;
   const known = model.about.value !== null;
+  // Without a motion, the text of an invalid scene.
+  const editable = known || model.draft.value !== null;
   const learning = lessons.step !== null;
+  const formulas = !known && lessons.step?.subject.kind === "lines";
   // In a lesson its text comes first.
   const wide = props.wide && !learning;
   const varied = !compact && controls.about.value !== null;
@@ -95,11 +102,11 @@ function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds
     [varied, "body", "Body", false, <BodyPanel controls={controls} />],
     [varied, "laws", "Torques", false, <LawsPanel controls={controls} />],
     [true, "view", "View", false, <ViewPanel model={model} />],
-    [!compact, "text", "Scene", !known, <Editor model={model} />],
+    [!compact && editable, "text", "Scene", !known && !learning, <Editor model={model} />],
   ];
   return (
     <main class="motion">
-      <Picture model={model} palette={palette} />
+      <Picture model={model} palette={palette} formulas={formulas} />
       <Playback model={model} />
       <aside class="panels" aria-label="Values and controls">
         {learning && <LessonPanel lessons={lessons} />}
@@ -158,10 +165,12 @@ class Boundary extends Component<{ children: ComponentChildren }, { problem: str
   render() {
     if (this.state.problem === null) return this.props.children;
     return (
-      <div class="notice" role="alert">
-        <p>This page cannot be shown.</p>
-        <pre>{this.state.problem}</pre>
-      </div>
+      <main class="notice">
+        <div role="alert">
+          <p>This page cannot be shown.</p>
+          <pre>{this.state.problem}</pre>
+        </div>
+      </main>
     );
   }
 }

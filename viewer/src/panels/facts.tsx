@@ -1,5 +1,5 @@
 import type { ComponentChildren } from "preact";
-import type { About, LawEntry, Triple } from "../core/core.ts";
+import { type About, hasMass, type LawEntry, type Triple } from "../core/core.ts";
 import { significant, small } from "../format/numbers.ts";
 import { DEGREE, duration } from "../format/units.ts";
 import type { Model } from "../model/model.ts";
@@ -22,7 +22,10 @@ export function Facts({ model }: { model: Model }) {
     }),
     ...(free ? freeFacts(free) : []),
     ...(top ? topFacts(top) : []),
-    ["Moments", `${list(body.moments)} kg m²${about.held ? " about the fixed point" : ""}`],
+    [
+      "Moments",
+      `${list(body.moments)}${hasMass(about) ? " kg m²" : ""}${about.held ? " about the fixed point" : ""}`,
+    ],
     ["Mass", body.mass !== null && `${significant(body.mass, 5)} kg`],
     ["Bodies", about.ensemble?.toLocaleString("en")],
     ["Method", methodOf(about)],

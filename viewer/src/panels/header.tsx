@@ -1,6 +1,7 @@
 import { useRef } from "preact/hooks";
 import { Icon, IconButton } from "../inputs/button.tsx";
 import { Choices } from "../inputs/fields.tsx";
+import type { Lesson } from "../lessons/lesson.ts";
 import type { Model } from "../model/model.ts";
 import { openPreset, PRESETS } from "../presets/index.ts";
 import { KEYS } from "./keys.ts";
@@ -9,11 +10,12 @@ import { ACCEPTED, openFiles } from "./open.ts";
 const PAGES = ["motion", "algebra"] as const;
 
 /** The title, the list of scenes, the tabs and help. */
-export function Header({ model, compact }: { model: Model; compact: boolean }) {
+export function Header(props: { model: Model; compact: boolean; lesson: Lesson | null }) {
+  const { model, compact, lesson } = props;
   const motion = model.page.value === "motion";
   return (
     <header>
-      <h1>{motion ? (model.about.value?.title ?? "Polhode") : "Algebra"}</h1>
+      <h1>{motion ? (model.about.value?.title ?? lesson?.title ?? "Polhode") : "Algebra"}</h1>
       {!compact && motion && <Scenes model={model} />}
       <Tabs model={model} />
       <Help />
@@ -63,12 +65,13 @@ function Scenes({ model }: { model: Model }) {
         value={chosen?.name ?? null}
         options={PRESETS.map(({ name, title }) => [name, title])}
         other="Scenes…"
-        onChange={(name) =>
+        onChange={(name) => {
+          model.lesson.value = null;
           void openPreset(
             model,
             PRESETS.find((preset) => preset.name === name)!,
-          )
-        }
+          );
+        }}
       />
       <IconButton
         id="open"

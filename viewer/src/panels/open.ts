@@ -41,6 +41,8 @@ export async function openFiles(model: Model, files: readonly File[]): Promise<v
     } else if (hasSuffix(scene, ".json")) {
       await model.show(parsed(text, scene.name));
     } else {
+      // The text of a lesson is about its own scenes.
+      model.lesson.value = null;
       model.page.value = "motion";
       await model.open(text, { name: scene.name, files: others });
     }

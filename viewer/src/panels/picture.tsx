@@ -10,7 +10,13 @@ import { Stage } from "../stage/stage.ts";
 import { LONGEST_STEP } from "../stage/viewport.ts";
 
 /** The picture, its caption, and error messages. */
-export function Picture({ model, palette }: { model: Model; palette: ReadonlySignal<Palette> }) {
+export function Picture(props: {
+  model: Model;
+  palette: ReadonlySignal<Palette>;
+  /** Whether there is no motion because a lesson is about formulas. */
+  formulas: boolean;
+}) {
+  const { model, palette, formulas } = props;
   const place = useRef<HTMLDivElement>(null);
   const missing = useSignal<string | null>(null);
   useEffect(() => {
@@ -32,6 +38,11 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
         <div class="stage" ref={place} {...marking(model)} />
         {beside && <Energy model={model} palette={palette} />}
         {missing.value !== null && <p class="missing">{missing.value}</p>}
+        {formulas && missing.value === null && (
+          <p class="missing">
+            This step of the lesson has no motion. Its formulas are on the page “Algebra”.
+          </p>
+        )}
         <Solving model={model} />
         <Strobe model={model} />
         <ErrorMessage model={model} />

@@ -1,6 +1,6 @@
 import { useComputed } from "@preact/signals";
 import type { ComponentChildren } from "preact";
-import { sizeAt, State } from "../core/core.ts";
+import { hasMass, sizeAt, State } from "../core/core.ts";
 import { PLANES, type Scale, scaled, scaleFor, significant, small } from "../format/numbers.ts";
 import type { Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
@@ -26,6 +26,7 @@ export function Readout({ model }: { model: Model }) {
   };
   const omega = sizeAt(first, State.omegaBody);
   const momentum = sizeAt(first, State.momentumSpace);
+  const ofMass = (unit: string) => (hasMass(about) ? unit : "");
   const drifts = new Map(about.conserved.map(({ name, drift }) => [name, drift]));
   return (
     <>
@@ -35,7 +36,14 @@ export function Readout({ model }: { model: Model }) {
         </Quantity>
         {bivector("B", State.omegaBody, omega, "rad/s", "angular velocity, body axes", "omega")}
         {bivector("S", State.omegaSpace, omega, "rad/s", "angular velocity, space axes", "omega")}
-        {bivector("", State.momentumSpace, momentum, "kg m²/s", "angular momentum, space axes", "momentum")}
+        {bivector(
+          "",
+          State.momentumSpace,
+          momentum,
+          ofMass("kg m²/s"),
+          "angular momentum, space axes",
+          "momentum",
+        )}
       </dl>
       <dl class="readout pair">
         <Quantity
@@ -44,7 +52,7 @@ export function Readout({ model }: { model: Model }) {
               |<Symbol name="L" />|
             </span>
           }
-          unit="kg m²/s"
+          unit={ofMass("kg m²/s")}
         >
           <Value
             value={sizeAt(row, State.momentumSpace)}
@@ -52,7 +60,7 @@ export function Readout({ model }: { model: Model }) {
             drift={drifts.get("angular_momentum")}
           />
         </Quantity>
-        <Quantity symbol={<Symbol name="E" />} unit="J">
+        <Quantity symbol={<Symbol name="E" />} unit={ofMass("J")}>
           <Value value={row[State.energy]!} start={first[State.energy]!} drift={drifts.get("energy")} />
         </Quantity>
       </dl>

@@ -1,5 +1,6 @@
 import { Group, Vector3 } from "three";
 import { quantity } from "../format/numbers.ts";
+import { hasMass } from "../core/core.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { AXES } from "./rotor.ts";
 import { aim, circle, Shapes } from "./shapes.ts";
@@ -42,8 +43,7 @@ export function disc({ figure, palette, screen, labels, calm }: Setting, style: 
   const reference = figure[bivector];
   // Inside the sphere with the path of the axis of a top.
   const standard = (figure.about.held ? 0.7 : 1) * style.radius;
-  // Moments without a mass are often ratios: then L has no unit.
-  const valued = bivector === "omega" || figure.about.body.mass !== null;
+  const valued = bivector === "omega" || hasMass(figure.about);
   // The arrow of ω ends on polhode and herpolhode, that of L outside its disc.
   const stretch = bivector === "omega" ? figure.rate : 1.6 / figure.momentum;
 
@@ -71,7 +71,9 @@ export function disc({ figure, palette, screen, labels, calm }: Setting, style: 
       const axial = instant[bivector];
       const size = axial.length();
       disc.visible = shown[bivector] && size > 1e-9 * reference;
-      axis.object.visible = shown.axial && size > 0;
+      // Of what is shown as a disc; without discs, arrows stand for both.
+      const arrows = shown[bivector] || !(shown.omega || shown.momentum);
+      axis.object.visible = shown.axial && arrows && size > 0;
       label.hidden = !(disc.visible || axis.object.visible);
       if (label.hidden) return;
       const end = axial.clone().multiplyScalar(stretch);

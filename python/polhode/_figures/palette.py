@@ -1,7 +1,7 @@
 """Colours and labels of the figures."""
 
-# The axes have colours of Okabe and Ito's palette, safe for colour-blind readers; Ω and L have others, and the
-# paths of Ω have that of Ω. The same as in viewer/src/palette.ts.
+# The axes have colours of Okabe and Ito's palette, safe for colour-blind readers; Ω and L have others, and
+# the paths of Ω have that of Ω. The same as in viewer/src/palette.ts.
 BLUE, ORANGE, GREEN, BLACK = "#0072B2", "#D55E00", "#009E73", "#222222"
 AXES = (BLUE, ORANGE, GREEN)
 OMEGA = POLHODE = HERPOLHODE = "#B07A00"

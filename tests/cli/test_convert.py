@@ -34,9 +34,24 @@ def test_every_format_to_every_other(a, b, convert, tmp_path):
     assert found.time.tolist() == MOTION.time.tolist()
     assert np.array_equal(found.rotor.components, MOTION.rotor.components)
     np.testing.assert_allclose(found.omega_body.components, MOTION.omega_body.components, rtol=4e-16)
-    # A file of ours is replaced without --force, unless a table lacks the columns by which it is known.
-    if b != "csv" or a != "aem":
-        assert convert(f"a.{a}", f"b.{b}", *(AEM if b == "aem" and a != "aem" else [])).returncode == 0
+    # A file of ours is replaced without --force.
+    assert convert(f"a.{a}", f"b.{b}", *(AEM if b == "aem" and a != "aem" else [])).returncode == 0
+
+
+def test_a_table_of_attitudes_is_not_taken_for_one_of_ours(convert, tmp_path):
+    """It has the columns that a converted AEM has; other programs read both alike."""
+    MOTION.save("a.nc")
+    assert convert("a.nc", "a.aem", *AEM).returncode == 0
+    assert convert("a.aem", "b.csv").returncode == 0
+    text = (tmp_path / "b.csv").read_text()
+    assert text.startswith('"time",attitude_w,attitude_x,attitude_y,attitude_z')
+    columns = pytest.importorskip("pandas").read_csv("b.csv").columns
+    assert list(columns) == text.partition("\n")[0].replace('"', "").split(",")
+    (tmp_path / "b.csv").write_text(text.replace('"', ""))
+    done = convert("a.aem", "b.csv")
+    assert done.returncode == 1
+    assert "b.csv exists and was not written by polhode" in done.stderr
+    assert convert("b.csv", "c.nc").returncode == 0
 
 
 def test_the_command_reads_what_the_command_wrote(tmp_path, scene):

@@ -41,6 +41,9 @@ _GIF_FPS = 50.0
 # Number of frames from which the palette of a GIF is made.
 _SAMPLED = 6
 
+# Comment in a film, by which `polhode._report.output.is_own` knows it.
+_COMMENT = "Polhode"
+
 Progress = Callable[[float], object]
 
 
@@ -217,7 +220,7 @@ def _save_mp4(target: Path, frames: Iterator[bytes], fps: float) -> None:
     """Pass the frames to ffmpeg, which runs in its own session: only this function ends it, not a Ctrl-C."""
     given = ["-f", "image2pipe", "-c:v", "png", "-framerate", f"{fps:.9g}", "-i", "-"]
     coded = ["-an", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"]
-    same = ["-fflags", "+bitexact", "-flags:v", "+bitexact"]
+    same = ["-fflags", "+bitexact", "-flags:v", "+bitexact", "-metadata", f"comment={_COMMENT}"]
     process = subprocess.Popen(
         [ffmpeg(), "-y", "-loglevel", "error", *given, *coded, *same, "-f", "mp4", str(target)],
         stdin=subprocess.PIPE,
@@ -253,5 +256,11 @@ def _save_gif(target: Path, sampled: list[bytes], frames: Iterator[bytes], durat
     palette.putpalette([255, 255, 255, *colours[: 3 * 255]])
     pictures = (opened(frame).quantize(palette=palette, dither=image.Dither.NONE) for frame in frames)
     next(pictures).save(
-        target, format="GIF", save_all=True, append_images=pictures, duration=durations, loop=0
+        target,
+        format="GIF",
+        save_all=True,
+        append_images=pictures,
+        duration=durations,
+        loop=0,
+        comment=_COMMENT,
     )

@@ -246,7 +246,8 @@ def _columns(history: AttitudeHistory) -> dict[str, Array]:
 def _csv(history: AttitudeHistory) -> bytes:
     columns = {"time": history.time, **_columns(history)}
     rows = np.stack(list(columns.values()), axis=-1).tolist()
-    return "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows), ""]).encode()
+    names = [table.PARTIAL, *list(columns)[1:]]
+    return "\n".join([",".join(names), *(",".join(map(repr, row)) for row in rows), ""]).encode()
 
 
 def _parquet(history: AttitudeHistory) -> bytes:

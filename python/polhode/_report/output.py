@@ -43,8 +43,8 @@ def require_own(path: Path) -> None:
 def is_own(path: Path) -> bool:
     """Whether polhode wrote a file, by its content; an empty file counts as such.
 
-    NetCDF and Parquet files have the attribute `source`, fits this key, CSV files the header, figures and
-    pages the program's name. Libraries of the form must be installed.
+    NetCDF and Parquet files have the attribute `source`, fits this key, CSV files the header, figures, films
+    and pages the program's name. Libraries of the form must be installed.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD)
@@ -58,8 +58,7 @@ def is_own(path: Path) -> bool:
         case ".bc":
             return head.startswith(b"DAF/CK ") and head[16:76].startswith(b"polhode ")
         case ".csv":
-            line = head.splitlines()[0].decode(errors="replace").partition(",wheel_speed_0")[0]
-            return line in (table.header(False), table.header(True))
+            return table.is_own_header(head.splitlines()[0].decode(errors="replace"))
         case ".aem":
             return head.startswith(b"CCSDS_AEM_VERS") and b"\nCOMMENT Written by polhode " in head
         case ".glb" | ".gltf":
@@ -75,6 +74,11 @@ def is_own(path: Path) -> bool:
         case ".pdf":
             # Matplotlib writes the facts of a document at the end of the file.
             return head.startswith(b"%PDF") and b"/Creator (Polhode)" in path.read_bytes()
+        case ".gif":
+            # A comment block: its label, the length of the text, the text and the end.
+            return head.startswith(b"GIF8") and b"\x21\xfe\x07Polhode\0" in head
+        case ".mp4":
+            return _comment_of_mp4(path).endswith(b"Polhode")
         case ".json":
             return head.startswith(b'{\n  "source": "polhode ')
         case ".html" | ".htm":
@@ -97,3 +101,27 @@ def _source_of_parquet(path: Path) -> str:
         return str(json.loads(schema.metadata[b"PANDAS_ATTRS"])["source"])
     except (OSError, KeyError, TypeError, ValueError):
         return ""
+
+
+def _comment_of_mp4(path: Path) -> bytes:
+    """Return the comment of an MP4 with its header, or nothing.
+
+    The file is a sequence of boxes of a length and a name, some of which hold others. The comment is in
+    the boxes below.
+    """
+    with path.open("rb") as file:
+        end = path.stat().st_size
+        for name in (b"moov", b"udta", b"meta", b"ilst", b"\xa9cmt", b"data"):
+            while True:
+                start = file.tell()
+                head = file.read(8)
+                size = int.from_bytes(head[:4], "big")
+                if len(head) < 8 or size < 8 or start + size > end:
+                    return b""
+                if head[4:] == name:
+                    break
+                file.seek(start + size)
+            end = start + size
+            if name == b"meta":
+                file.read(4)  # version and flags precede its boxes
+        return file.read(min(end - file.tell(), _HEAD))

@@ -35,6 +35,10 @@ def _units() -> dict[str, str]:
 # Unit of each column; the index is `time` in s, of a batch `body` and `time`.
 UNITS = _units()
 
+# Name of the first column of a CSV file without some of the columns. Readers of CSV files drop the quotes;
+# they distinguish a file of Polhode from a table of measured attitudes with the same columns.
+PARTIAL = '"time"'
+
 
 def units_of(trajectory: Trajectory) -> dict[str, str]:
     """Return the unit of each column of a motion; the speeds of reaction wheels follow the others."""
@@ -77,6 +81,15 @@ def _plain(x: Any) -> Any:
 def header(many: bool) -> str:
     """Return the first line of a CSV file, of one body or of a batch, without wheels."""
     return ",".join([*(["body"] if many else []), "time", *UNITS])
+
+
+def is_own_header(line: str) -> bool:
+    """Whether the first line of a CSV file is one of Polhode's: of a motion, or of a part of its columns."""
+    names = line.partition(",wheel_speed_0")[0]
+    if names in (header(False), header(True)):
+        return True
+    first, *others = names.split(",")
+    return first == PARTIAL and {*others} <= {*UNITS}
 
 
 def csv(trajectory: Trajectory) -> bytes:

@@ -18,6 +18,7 @@ from command_line import EXAMPLES, polhode
 pytest.importorskip("matplotlib")
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from polhode._cli.main import main
 from polhode._figures import handout as _handout
 from polhode._figures import phase_portrait, spheres
 from polhode._figures import tilt as _tilt
@@ -578,6 +579,19 @@ def test_the_command_refuses(arguments, code, message, scene):
     assert done.returncode == code, done.stderr
     assert message in done.stderr
     assert [path.name for path in scene.parent.iterdir()] == ["small.toml"]
+
+
+@pytest.mark.parametrize("form", ["svg", "pdf", "png"])
+def test_the_command_keeps_figures_of_others(form, tmp_path, capsys):
+    path = tmp_path / f"a.{form}"
+    path.write_bytes({"svg": b"<svg/>", "pdf": b"%PDF-1.4", "png": b"\x89PNG\r\n\x1a\n"}[form])
+    before = path.read_bytes()
+    assert main(["figure", "3", "-o", str(path)]) == 1
+    assert f"{path} exists and was not written by polhode" in capsys.readouterr().err
+    assert path.read_bytes() == before
+    assert main(["figure", "3", "-o", str(path), "--force"]) == 0
+    # Now it is polhode's.
+    assert main(["figure", "3", "-o", str(path)]) == 0
 
 
 def test_ensembles_are_refused(tmp_path):

@@ -22,6 +22,7 @@ pytest.importorskip("PIL")
 from PIL import Image
 
 from polhode._figures.film import Plan, frame_times, stroboscopic
+from polhode._report.output import is_own
 
 with_ffmpeg = pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is not installed")
 
@@ -235,7 +236,34 @@ def test_an_old_film_survives_a_failure(tmp_path, monkeypatch, painted):
     assert {path.name for path in tmp_path.iterdir()} <= {"bin", "old.mp4", "old.gif"}
 
 
+@pytest.mark.usefixtures("painted")
+@pytest.mark.parametrize("name", ["a.gif", pytest.param("a.mp4", marks=with_ffmpeg)])
+def test_a_film_is_known_by_its_comment(name, tmp_path):
+    """The same film, copied by another program without its comment, is not."""
+    own, foreign = tmp_path / name, tmp_path / f"foreign-{name}"
+    motion().film(own, seconds=0.4, size=(64, 36))
+    assert is_own(own)
+    content = own.read_bytes()
+    assert content.count(b"Polhode") == 1
+    for other in (content.replace(b"Polhode", b"Camera!"), content[:40], content[40:], b"x", b"x Polhode"):
+        foreign.write_bytes(other)
+        assert not is_own(foreign)
+
+
 # --- the command
+
+
+@pytest.mark.parametrize("name", ["a.gif", pytest.param("a.mp4", marks=with_ffmpeg)])
+def test_the_command_keeps_films_of_others(name, scene):
+    """It refuses them before the scene is run."""
+    (scene.parent / name).write_bytes(b"GIF89a of a holiday")
+    done = polhode("film", scene.name, "-o", name, cwd=scene.parent)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == (
+        f"polhode: error: {name} exists and was not written by polhode: choose another name, or overwrite it "
+        "with --force\n"
+    )
+    assert (scene.parent / name).read_bytes() == b"GIF89a of a holiday"
 
 
 @pytest.mark.parametrize(
@@ -288,7 +316,7 @@ def test_ctrl_c_leaves_the_old_film(name, scene, tmp_path):
     studios.require_browser()
     target = tmp_path / name
     target.write_bytes(b"old")
-    command = [POLHODE, "film", scene, "-o", target, "--seconds", "4000", "--size", "64x36"]
+    command = [POLHODE, "film", scene, "-o", target, "--seconds", "4000", "--size", "64x36", "--force"]
     with processes.start(command, start_new_session=True) as process:
         while len(list(tmp_path.iterdir())) < 3:
             assert process.poll() is None

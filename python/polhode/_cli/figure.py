@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli.common import add_command, file_name, progress
+from polhode._cli.common import add_command, add_force, check_written, file_name, progress
 
 if TYPE_CHECKING:
     from polhode._mechanics.trajectory import Trajectory
@@ -60,6 +60,7 @@ def add(commands: Any) -> None:
 
 def _add_output(parser: argparse.ArgumentParser, what: str, names: str) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", type=file_name(what), required=True, help=names)
+    add_force(parser)
 
 
 def _add_view(parser: argparse.ArgumentParser) -> None:
@@ -73,11 +74,10 @@ def _figure(options: argparse.Namespace) -> int:
     if not of_handout and options.scene is None:
         error(f"figure {options.what} needs a scene: polhode figure {options.what} SCENE.toml -o FILE")
     from polhode._support.extras import optional
-    from polhode._support.files import check_target
 
     optional("matplotlib", "plot", "a figure")
     path = Path(options.output)
-    check_target(path)
+    check_written([path], options.force)
     from polhode._figures.handout import handout_figure
     from polhode._figures.registry import check, figure, write
     from polhode._figures.style import Sheet, width_of
@@ -98,6 +98,7 @@ def _film(options: argparse.Namespace) -> int:
 
     path = Path(options.output)
     planned(path, options.seconds, options.fps, options.size, options.view)
+    check_written([path], options.force)
     trajectory = _motion(options.scene)
     with progress(path.name) as report:
         trajectory.film(

@@ -148,7 +148,8 @@ def test_an_ensemble_is_written_as_netcdf_only(form, scene, tmp_path):
     done = polhode("run", scene, "-o", f"out.{form}", cwd=tmp_path)
     assert done.returncode == 1
     assert done.stdout == ""
-    assert "has an ensemble of 3 bodies, which is written as netCDF; use -o out.nc" in done.stderr
+    assert "has an ensemble of 3 bodies, which is written as netCDF or" in done.stderr
+    assert "use -o out.nc or -o out.zarr" in done.stderr
     assert list(tmp_path.iterdir()) == [scene]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
 from functools import partial
 from pathlib import Path
@@ -122,8 +123,8 @@ def _convert_motion(options: argparse.Namespace) -> int:
     target = _target(options)
     try:
         motion = load(options.source, **{name: x for name, x in given.items() if name in takes["read"]})
-    except FileError as error:
-        raise UnreadableError(_with_flags(str(error))) from None
+    except (FileError, OSError) as error:
+        raise _unreadable(error) from None
     try:
         write(motion, target, **shape, **{name: x for name, x in given.items() if name in takes["write"]})
     except ValueError as error:
@@ -150,12 +151,21 @@ def _convert_bodies(options: argparse.Namespace) -> int:
     scene = common.read_scene(options.source) if of_source == "toml" else None
     try:
         lines = bodies.convert(options.source, target, scene, **given)
-    except DocumentError as error:
-        raise UnreadableError(str(error)) from None
+    except (DocumentError, FileNotFoundError, IsADirectoryError) as error:
+        raise _unreadable(error) from None
     except ValueError as error:
         raise ValueError(_with_flags(str(error))) from None
     print("\n".join(["Written", f"  {target}", *lines]))
     return common.OK
+
+
+def _unreadable(error: Exception) -> UnreadableError:
+    """Return the error of a file that cannot be read, with the options of the command."""
+    if not isinstance(error, OSError):
+        return UnreadableError(_with_flags(str(error)))
+    if error.strerror and error.filename:
+        return UnreadableError(f"{os.fsdecode(error.filename)}: error: {error.strerror.lower()}")
+    return UnreadableError(f"polhode: error: {error}")
 
 
 def _given(options: argparse.Namespace, takes: set[str], where: str) -> dict[str, Any]:

@@ -234,9 +234,9 @@ def _repl(_: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    store.check_usage(options)
     if options.status is not None:
         return store.status(options)
-    store.check_usage(options)
     scene = read_scene(options.scene)
     if store.is_store(options.output):
         return store.run(scene, options)
@@ -320,7 +320,8 @@ def _checked_targets(options: argparse.Namespace, scene: Scene) -> list[Path]:
     if scene.ensemble is not None and form != "nc":
         raise ValueError(
             f"{output}: this scene has an ensemble of {scene.ensemble.number} bodies, which is written as "
-            f"netCDF; use -o {output.with_suffix('.nc')}"
+            f"netCDF or, of any size, as a Zarr store; use -o {output.with_suffix('.nc')} or "
+            f"-o {output.with_suffix('.zarr')}"
         )
     require_libraries(form)
     figures: tuple[str, ...] = ()

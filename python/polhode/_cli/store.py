@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from polhode._cli import common
 from polhode._cli.common import file_name
 from polhode._support.extras import progress_bar
+from polhode._support.files import UnreadableError
 
 if TYPE_CHECKING:
     from polhode._report.ensemble.store import EnsembleStore
@@ -74,7 +75,10 @@ def add(run: argparse.ArgumentParser) -> None:
 
 
 def check_usage(options: argparse.Namespace) -> None:
-    """Report a usage error if the scene is missing or options need a store."""
+    """Report a usage error if the scene is missing, or options need a store or do not apply to its status."""
+    if options.status is not None:
+        _check_status(options)
+        return
     if options.scene is None:
         options.parser.error("the following arguments are required: SCENE.toml")
     if not is_store(options.output):
@@ -83,25 +87,47 @@ def check_usage(options: argparse.Namespace) -> None:
                 options.parser.error(f"--{name} needs a store: -o FILE.zarr")
 
 
+def _check_status(options: argparse.Namespace) -> None:
+    """Report a usage error for any option with --status but those of what is printed."""
+    if options.scene is not None:
+        options.parser.error(f"--status takes a store and no scene: leave out {options.scene}")
+    names = ("output", "html", "force", "resume", "bodies", "cluster", "threads")
+    given = [f"--{name}" for name in names if getattr(options, name)]
+    if not options.figures:
+        given.append("--no-figures")
+    if given:
+        options.parser.error(f"--status computes nothing: leave out {', '.join(given)}")
+
+
 def run(scene: Scene, options: argparse.Namespace) -> int:
     """Fill the store of a scene, and print its state."""
     from polhode._report.ensemble.fill import fill, require_ensemble
+    from polhode._report.ensemble.store import OtherRunError
 
     path = Path(options.output)
     require_ensemble(scene, path, options.bodies)
     if options.html is not None:
         raise ValueError("--html shows the motions of a run, which a store does not load: leave it out")
-    with _progress(scene, options.bodies, options.quiet) as report:
-        store = fill(
-            scene,
-            path,
-            resume=options.resume,
-            bodies=options.bodies,
-            cluster=options.cluster,
-            replace=options.force and not options.resume and options.bodies is None,
-            progress=report,
-            threads=options.threads,
-        )
+    # Other processes may fill the same store.
+    keeps = next((f"--{name}" for name in ("resume", "bodies") if getattr(options, name)), None)
+    try:
+        with _progress(scene, options.bodies, options.quiet) as report:
+            store = fill(
+                scene,
+                path,
+                resume=options.resume,
+                bodies=options.bodies,
+                cluster=options.cluster,
+                replace=options.force and keeps is None,
+                progress=report,
+                threads=options.threads,
+            )
+    except OtherRunError as error:
+        if options.force and keeps is not None:
+            raise ValueError(
+                f"{error}; --force does not replace a store with {keeps}: delete {path} first"
+            ) from None
+        raise
     result = outcome(store)
     if options.json:
         print(json.dumps(result, indent=2, allow_nan=False))
@@ -115,9 +141,12 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
 
 def status(options: argparse.Namespace) -> int:
     """Verify a store and print its state."""
-    from polhode._report.ensemble.store import EnsembleStore
+    from polhode._report.ensemble.store import EnsembleStore, StoreError
 
-    store = EnsembleStore.open(Path(options.status))
+    try:
+        store = EnsembleStore.open(Path(options.status))
+    except (FileNotFoundError, StoreError) as error:
+        raise UnreadableError(f"polhode: error: {error}") from None
     states = [store.state(index) for index in range(store.blocks)]
     counts = {name: states.count(name) for name in ("done", "missing", "corrupt")}
     complete = counts["done"] == store.blocks and store.shares

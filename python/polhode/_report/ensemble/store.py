@@ -57,6 +57,21 @@ class StoreError(ValueError):
     """A store cannot be used for a run."""
 
 
+class OtherRunError(StoreError):
+    """A store was begun by another run."""
+
+
+def _not_a_store(path: Path, error: Exception) -> str:
+    """Return why a path could not be opened as a store."""
+    if not path.is_dir():
+        return "is a file, and the store of an ensemble is a folder FILE.zarr"
+    if isinstance(error, FileNotFoundError):
+        return f"is not a store of an ensemble that polhode wrote: it has no file {OWN}/run.json"
+    if isinstance(error, OSError):
+        return f"cannot be read: {(error.strerror or str(error)).lower()}"
+    return f"is not a store of an ensemble that polhode wrote: {error}"
+
+
 class EnsembleStore:
     """The Zarr store of an ensemble at a path; see `create` and `open`.
 
@@ -93,7 +108,7 @@ class EnsembleStore:
         try:
             return EnsembleStore(path, sealed(path / OWN / "run.json"))
         except (OSError, ValueError, KeyError) as error:
-            raise StoreError(f"{path} is not a store of an ensemble that polhode wrote: {error}") from None
+            raise StoreError(f"{path} {_not_a_store(path, error)}") from None
 
     @staticmethod
     def create(path: Path, scene: Scene) -> EnsembleStore:
@@ -122,12 +137,12 @@ class EnsembleStore:
         return store
 
     def require(self, scene: Scene) -> None:
-        """Raise a StoreError if another scene, or another version, has begun the store."""
+        """Raise an OtherRunError if another scene, or another version, has begun the store."""
         for name, value in identity_of(scene).items():
             if name in _IDENTITY and self.identity.get(name) != value:
                 shown = name in ("version", "seed", "number", "block")
                 values = f": {self.identity.get(name)}, here {value}" if shown else ""
-                raise StoreError(
+                raise OtherRunError(
                     f"{self.path} was begun with another {_IDENTITY[name]}{values}; "
                     "continue it as it was begun, or choose another store"
                 )

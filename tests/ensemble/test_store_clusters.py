@@ -8,9 +8,10 @@ import time
 
 import pytest
 
+import polhode as ph
 import processes
 from command_line import POLHODE, polhode
-from stores import content, status
+from stores import TEXT, content, status
 
 pytest.importorskip("zarr")
 pytest.importorskip("xarray")
@@ -126,6 +127,33 @@ def test_addresses_of_no_cluster(cluster, message, folder, tmp_path):
     assert done.returncode == 1
     assert message in done.stderr
     assert (tmp_path / "a.zarr").exists() == cluster.startswith("tcp")
+
+
+@pytest.mark.slow
+def test_a_killed_cluster_resumes_reduced_outputs(tmp_path):
+    """All programs are killed; the quantiles of the resumed store are those of all blocks."""
+    (tmp_path / "a.toml").write_text(f'{TEXT}keep = ["last", "extrema", "quantiles"]\n')
+    ph.Scene.read(tmp_path / "a.toml").run(store=tmp_path / "serial.zarr", threads=1).close()
+    serial, store = content(tmp_path / "serial.zarr"), tmp_path / "a.zarr"
+    with (
+        scheduler(tmp_path) as (process, file),
+        worker(tmp_path, file) as first,
+        worker(tmp_path, file) as second,
+        run(tmp_path, store, file) as client,
+    ):
+        assert first.stdout.readline() == "block\n"
+        # Each worker has a second block in flight, after 0.2 s or more for its first.
+        assert first.stdout.readline() == "block\n"
+        for program in (process, first, second, client):
+            program.kill()
+            program.wait()
+    found = status(store)
+    assert (found["corrupt"], found["running"]) == (0, [])
+    assert found["done"] > 0
+    with scheduler(tmp_path) as (_, file), worker(tmp_path, file), run(tmp_path, store, file) as client:
+        _, errors = client.communicate(timeout=120)
+    assert client.returncode == 0, errors
+    assert content(store) == serial
 
 
 CHANCES = [pytest.param(seed, marks=pytest.mark.slow) for seed in range(5)]

@@ -147,7 +147,9 @@ def test_the_command(kernels, tmp_path, capsys):
     a, b, c = (str(tmp_path / name) for name in ("a.nc", "b.bc", "c.csv"))
     names = ["--epoch", EPOCH, "--body-frame", "CURLEW_BODY", "--reference-frame", "J2000"]
     assert main(["convert", a, b, *names]) == 1
-    assert "a CK needs --kernel= the paths" in capsys.readouterr().err
+    assert "clock and frame kernels of its spacecraft; give --kernel FILE for each" in capsys.readouterr().err
+    assert main(["convert", a, b, "--kernel", "none.tls", *names]) == 3
+    assert capsys.readouterr().err == "polhode: error: none.tls: no such kernel\n"
     assert main(["convert", a, b, *given, *names]) == 0
     assert main(["convert", a, b, *given, *names]) == 0  # a file of ours is replaced
     assert main(["convert", b, c, *given, "--epoch", EPOCH]) == 0
@@ -161,7 +163,11 @@ def test_the_command(kernels, tmp_path, capsys):
         ({"body_frame": None}, "body_frame is not known; give body_frame="),
         ({"body_frame": "NOBODY"}, "the kernels have no frame 'NOBODY'"),
         ({"body_frame": "IAU_EARTH"}, "must be a frame of class 3 for a CK, got 'IAU_EARTH' of class 2"),
-        ({"reference_frame": "NOWHERE"}, "SPICE: "),
+        ({"reference_frame": "NOWHERE"}, "no frame 'NOWHERE'; .* or another reference_frame="),
+        (
+            {"epoch": "2025-01-01T00:00:00"},
+            "clock -999 of the kernels does not cover 2025-01-01T00:00:00 to 2025-01-01T00:00:10 UTC",
+        ),
         ({"epoch": "yesterday"}, "an epoch must be"),
         ({"time_system": "GPS"}, "time_system of a CK must be UTC, TT or TDB"),
     ],

@@ -125,8 +125,12 @@ def _convert_motion(options: argparse.Namespace) -> int:
         motion = load(options.source, **{name: x for name, x in given.items() if name in takes["read"]})
     except (FileError, OSError) as error:
         raise _unreadable(error) from None
+    except ValueError as error:
+        raise ValueError(_with_flags(str(error))) from None
     try:
         write(motion, target, **shape, **{name: x for name, x in given.items() if name in takes["write"]})
+    except FileNotFoundError as error:  # a kernel
+        raise _unreadable(error) from None
     except ValueError as error:
         raise ValueError(_with_flags(str(error))) from None
     print(f"Written\n  {target}")
@@ -200,6 +204,7 @@ def _shape(name: str) -> dict[str, Any]:
 def _with_flags(message: str) -> str:
     """Return a message with the options of the command for the arguments of Python."""
     message = message.replace("surface=(vertices, triangles)", "--scene=FILE.toml")
+    message = message.replace("kernels=[FILE, ...]", "--kernel FILE for each")
     names = "|".join({*_READING, *_WRITING, *_OF_BODIES})
     return re.sub(rf"\b({names})=", lambda found: f"{_flag(found[1])}=", message)
 

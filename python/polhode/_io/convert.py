@@ -79,7 +79,9 @@ def write(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[str], **
 
 def _with_kernels(options: dict[str, Any]) -> dict[str, Any]:
     if not options.get("kernels"):
-        raise ValueError("a CK needs kernels= the paths of its leapseconds, clock and frame kernels")
+        raise ValueError(
+            "a CK needs the leapseconds, clock and frame kernels of its spacecraft; give kernels=[FILE, ...]"
+        )
     return options
 
 

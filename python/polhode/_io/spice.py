@@ -87,12 +87,11 @@ def write_ck(
     system = str(time_system or history.attributes.get("time_system", "UTC"))
     with _loaded(kernels) as spice, tempfile.TemporaryDirectory() as folder:
         number = _instrument(spice, str(known["body_frame"]))
+        _require_frame(spice, str(known["reference_frame"]), "reference_frame")
         start = _of_epoch(spice, str(known["epoch"]), system)
         clock = spice.ckmeta(number, "SCLK")
         start_tt = spice.unitim(start, "ET", "TDT")
-        ticks = np.array(
-            [spice.sce2c(clock, spice.unitim(start_tt + t, "TDT", "ET")) for t in history.time.tolist()]
-        )
+        ticks = _ticks(spice, clock, [spice.unitim(start_tt + t, "TDT", "ET") for t in history.time.tolist()])
         if (np.diff(ticks) <= 0).any():
             k = int(np.argmax(np.diff(ticks) <= 0))
             raise ValueError(f"output times {k} and {k + 1} are the same for the clock; give fewer of them")
@@ -217,13 +216,33 @@ def _of_epoch(spice: Any, epoch: str, system: str) -> float:
     return float(spice.str2et(f"{text} {_SYSTEMS[system]}"))
 
 
+def _ticks(spice: Any, clock: int, seconds: list[float]) -> Array:
+    """Return the ticks of a clock at times in s of TDB since J2000."""
+    try:
+        return np.array([spice.sce2c(clock, x) for x in seconds])
+    except spice.SpiceyError as error:
+        if error.short != "SPICE(VALUEOUTOFRANGE)":
+            raise
+        ends = " to ".join(
+            str(spice.timout(x, "YYYY-MM-DDTHR:MN:SC ::UTC")) for x in (seconds[0], seconds[-1])
+        )
+        raise ValueError(
+            f"the clock {clock} of the kernels does not cover {first} to {last} UTC; "
+            "give another epoch= or clock kernel"
+        ) from None
+
+
+def _require_frame(spice: Any, frame: str, name: str) -> int:
+    """Return the code of a frame."""
+    code = int(spice.namfrm(frame))
+    if code == 0:
+        raise ValueError(f"the kernels have no frame {frame!r}; give the frame kernel, or another {name}=")
+    return code
+
+
 def _instrument(spice: Any, frame: str) -> int:
     """Return the number of the instrument whose attitude is that of a frame."""
-    code = spice.namfrm(frame)
-    if code == 0:
-        raise ValueError(
-            f"the kernels have no frame {frame!r}; give the frame kernel, or another body_frame="
-        )
+    code = _require_frame(spice, frame, "body_frame")
     _, kind, number = spice.frinfo(code)
     if kind != _CK_CLASS:
         raise ValueError(f"body_frame must be a frame of class 3 for a CK, got {frame!r} of class {kind}")

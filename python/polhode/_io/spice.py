@@ -223,9 +223,7 @@ def _ticks(spice: Any, clock: int, seconds: list[float]) -> Array:
     except spice.SpiceyError as error:
         if error.short != "SPICE(VALUEOUTOFRANGE)":
             raise
-        ends = " to ".join(
-            str(spice.timout(x, "YYYY-MM-DDTHR:MN:SC ::UTC")) for x in (seconds[0], seconds[-1])
-        )
+        first, last = (spice.timout(x, "YYYY-MM-DDTHR:MN:SC ::UTC") for x in (seconds[0], seconds[-1]))
         raise ValueError(
             f"the clock {clock} of the kernels does not cover {first} to {last} UTC; "
             "give another epoch= or clock kernel"

@@ -1,12 +1,14 @@
 """``polhode fit``: data from CSV files, units, columns, errors with their places."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import polhode as ph
 from polhode._cli import main
+from polhode._fit.table import read_tables
 
 pytest.importorskip("scipy")
 
@@ -130,7 +132,10 @@ def test_errors_of_both_kinds(both, rates, tmp_path, capsys):
     lines[2] = lines[2].replace(",,,,", ",1,,,")
     (tmp_path / "both.csv").write_text("\n".join(lines))
     assert main.main(["fit", both, *SIGMAS]) == 3
-    assert f"both.csv:3:{len(lines[2].rstrip(',')) + 2}: error: '' is not a finite" in capsys.readouterr().err
+    assert (
+        f"both.csv:3:{len(lines[2].rstrip(',')) + 2}: error: the field is empty; remove"
+        in capsys.readouterr().err
+    )
     for options, message in (
         (SIGMAS[:-2], "need --sigma, of the rates, and --sigma-attitude"),
         ([*SIGMAS, "--free", "damping"], "give them with --torque SCENE.toml"),
@@ -186,6 +191,26 @@ def test_quaternions_by_names(tmp_path, capsys):
     np.testing.assert_allclose(json.loads(capsys.readouterr().out)["moments"], RATIOS, atol=1e-6)
 
 
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_quoted_names_and_other_separators(separator, rates, tmp_path, capsys):
+    """As programs on phones and spreadsheets write them."""
+    names = '"Time (s)","Gyroscope, x","Gyroscope y (rad/s)","Gyroscope z (rad/s)"'
+    text = Path(rates).read_text()
+    (tmp_path / "a.csv").write_text(text.replace(",", separator))
+    (tmp_path / "b.csv").write_text(text.replace("t,wx,wy,wz", names))
+    given = ["--columns", "Time (s),x,Gyroscope y (rad/s),Gyroscope z (rad/s)"]
+    assert main.main(["fit", str(tmp_path / "b.csv"), *UNITS, *given]) == 3
+    assert "no column 'x' among Time (s), Gyroscope, x, Gyroscope y" in capsys.readouterr().err
+    found = read_tables(tmp_path / "a.csv", None)["rates"]
+    same = read_tables(
+        tmp_path / "b.csv", ("Time (s)", "Gyroscope, x", *names.replace('"', "").split(",")[3:])
+    )
+    plain = read_tables(Path(rates), None)["rates"]
+    for table in (found, same["rates"]):
+        np.testing.assert_array_equal(table.times, plain.times)
+        np.testing.assert_array_equal(table.values, plain.values)
+
+
 LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
 
 
@@ -195,7 +220,14 @@ LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
         (LINES + "2, 1,x2,3\n", ":4:6: error: 'x2' is not a finite number"),
         (LINES + "2,1,2,  nan\n", ":4:9: error: 'nan' is not a finite number"),
         (LINES + "# a comment\n\n2,1,2\n", ":6:1: error: 3 fields, but 4 columns are named"),
+        (LINES + "2,,2,3\n", ":4:3: error: the field is empty; remove the row"),
+        (
+            LINES.replace(",", ";") + "2;1,5;2;3\n",
+            ":4:3: error: '1,5' is not a finite number; write a decimal",
+        ),
         (LINES + "1,1,2,3\n", ":4:1: error: times must increase, but 1 follows 1; remove samples"),
+        (LINES + "0.5,1,2,3\n", ":4:1: error: times must increase, but 0.5 follows 1; sort the rows by time"),
+        ("0,1,2,3\n1,1,2,3\n", ":1:1: error: the first line has numbers; it must have the names"),
         ("t,wx,wy\n0,1,2\n", ":1:1: error: the columns t, wx, wy have neither rates t,wx,wy,wz nor"),
         ("t,wx,wx,wy,wz\n", ":1:1: error: 2 columns are named 'wx'"),
         ("\n\n", ": error: the file is empty"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,7 @@ RATES, QUATERNION = ("t", "wx", "wy", "wz"), ("t", "qw", "qx", "qy", "qz")
 BOTH = RATES + QUATERNION[1:]
 # Number of names, of a time and its values, for each kind of data.
 KINDS = {len(RATES): ("rates",), len(QUATERNION): ("attitude",), len(BOTH): ("rates", "attitude")}
+SEPARATORS = (",", ";", "\t")
 # Least number of rows of each kind.
 FEWEST = 3
 
@@ -31,8 +33,9 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     """Return the tables ``"rates"``, ``"attitude"`` or both, from the columns of these names.
 
     Names are those of `RATES`, `QUATERNION` or `BOTH`, or as many others; None for these. The first line has
-    the names of the columns, separated by commas as the numbers below. Empty lines and lines that begin with
-    # are skipped. In a file of both kinds a row may have empty fields for one of them.
+    the names of the columns, which may be quoted, separated as the numbers below: by commas, or else by
+    semicolons or tabs. Empty lines and lines that begin with # are skipped. In a file of both kinds a row may
+    have empty fields for one of them.
 
     Raises
     ------
@@ -46,11 +49,18 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     except OSError as error:
         raise UnreadableError(f"{path}: error: {(error.strerror or str(error)).lower()}") from None
     except UnicodeDecodeError as error:
-        raise UnreadableError(f"{path}: error: not UTF-8 text from byte {error.start} on") from None
+        raise UnreadableError(
+            f"{path}: error: not UTF-8 text from byte {error.start} on; save the data as CSV in UTF-8"
+        ) from None
     rows = [(k, x) for k, x in enumerate(lines, 1) if x.strip() and not x.lstrip().startswith("#")]
     if not rows:
         raise UnreadableError(f"{path}: error: the file is empty; its first line has names of columns")
-    header = [x.strip() for x in rows[0][1].split(",")]
+    separator = next((x for x in SEPARATORS if x in rows[0][1]), SEPARATORS[0])
+    header = [x.strip() for x in next(csv.reader([rows[0][1]], delimiter=separator, skipinitialspace=True))]
+    if all(_is_number(x) for x in header):
+        raise UnreadableError(
+            f"{path}:{rows[0][0]}:1: error: the first line has numbers; it must have the names of the columns"
+        )
     names = names or _default(path, rows[0][0], header)
     for name in names:
         if header.count(name) != 1:
@@ -64,7 +74,7 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     columns = dict(zip(kinds, (places[1:4], places[4:]) if len(kinds) > 1 else (places[1:],), strict=True))
     found: dict[str, list[tuple[int, list[float]]]] = {kind: [] for kind in kinds}
     for line, text in rows[1:]:
-        fields = text.split(",")
+        fields = text.split(separator)
         if len(fields) != len(header):
             raise UnreadableError(
                 f"{path}:{line}:1: error: {len(fields)} fields, but {len(header)} columns are named"
@@ -102,9 +112,9 @@ def _numbers(path: Path, line: int, fields: list[str], places: list[int]) -> lis
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise UnreadableError(
-                f"{path}:{line}:{_column(fields, place)}: error: {field!r} is not a finite number"
-            )
+            problem = f"{field!r} is not a finite number" if field else "the field is empty"
+            remedy = "write a decimal point" if _is_number(field.replace(",", ".")) else "remove the row"
+            raise UnreadableError(f"{path}:{line}:{_column(fields, place)}: error: {problem}; {remedy}")
         numbers.append(value)
     if len(places) == len(QUATERNION) and not any(numbers[1:]):
         raise UnreadableError(
@@ -112,6 +122,13 @@ def _numbers(path: Path, line: int, fields: list[str], places: list[int]) -> lis
             "which is not a rotation; remove the row"
         )
     return numbers
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _column(fields: list[str], place: int) -> int:
@@ -130,7 +147,8 @@ def _check_order(path: Path, lines: list[int], times: Array) -> None:
     rising = np.diff(times) > 0
     if not rising.all():
         k = int(np.argmin(rising))
+        remedy = "remove samples that repeat" if times[k + 1] == times[k] else "sort the rows by time"
         raise UnreadableError(
             f"{path}:{lines[k + 1]}:1: error: times must increase, but {times[k + 1]:.12g} follows "
-            f"{times[k]:.12g}; remove samples that repeat"
+            f"{times[k]:.12g}; {remedy}"
         )

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
-from command_line import polhode
+from command_line import SCENE, polhode
 from motions import ASYMMETRIC, START
 
 MOTION = ph.simulate(ASYMMETRIC, START, np.linspace(0, 1, 5), ph.torque.heavy([0.3, 0, 2]))
@@ -101,6 +101,8 @@ def test_what_is_missing_is_asked_for_by_option(convert, tmp_path):
         (("none.urdf", "b.xml"), 3, "none.urdf: no such file"),
         (("none.stl", "b.urdf", "--mass", "1"), 3, "none.stl: no such file"),
         (("bad.csv", "b.nc"), 3, "bad.csv:1:1: error: column 'q' is not known"),
+        (("mine.zarr", "b.csv"), 3, "mine.zarr: error: a file, and a Zarr store is a folder"),
+        (("a.nc", "b.glb", "--scene", "a.toml"), 1, "a.toml gives no mesh, solid or mass; add one to its"),
         (("a.nc", "foreign.csv"), 1, "foreign.csv exists and was not written by polhode"),
         (("a.nc", "none/b.csv"), 1, "no such directory"),
     ],
@@ -109,6 +111,8 @@ def test_wrong_uses(arguments, code, expected, convert, tmp_path):
     MOTION.save("a.nc")
     (tmp_path / "bad.csv").write_text("time,q\n0,1\n")
     (tmp_path / "foreign.csv").write_text("mine")
+    (tmp_path / "mine.zarr").write_text("mine")
+    (tmp_path / "a.toml").write_text(SCENE)
     done = convert(*arguments)
     assert done.returncode == code
     assert expected in done.stderr

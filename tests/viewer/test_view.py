@@ -218,7 +218,9 @@ def test_a_file_of_a_run_is_shown(tmp_path):
 def test_files_that_cannot_be_shown_are_bad_input(tmp_path, capsys):
     (tmp_path / "bad.toml").write_text(SCENE.replace("duration", "durration"))
     (tmp_path / "bad.nc").write_bytes(b"noise")
+    (tmp_path / "a.csv").write_text("time")
     for name, part in (
+        ("a.csv", f"convert it first: polhode convert {tmp_path / 'a.csv'} FILE.nc"),
         ("bad.toml", "bad.toml:7:1: error: unknown field `durration`"),
         ("absent.toml", "absent.toml: error: no such file"),
         ("bad.nc", "bad.nc cannot be read as a netCDF file"),

@@ -198,7 +198,9 @@ def _shape(name: str) -> dict[str, Any]:
         if not scene.held:
             vertices = vertices - np.asarray(scene.body.center_of_mass.components)
         return {"surface": (vertices, triangles)}
-    return {"mass": scene.body.mass} if scene.has_mass else {}
+    if scene.has_mass:
+        return {"mass": scene.body.mass}
+    raise ValueError(f"{name} gives no mesh, solid or mass; add one to its table [body]")
 
 
 def _with_flags(message: str) -> str:

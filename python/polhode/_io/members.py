@@ -83,6 +83,8 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
     name = os.fsdecode(path)
     if not os.path.lexists(path):
         raise FileNotFoundError(f"{name}: no such store")
+    if not os.path.isdir(path):
+        raise FileError(f"{name}: error: a file, and a Zarr store is a folder")
     library = zarr()
     if EnsembleStore.exists(Path(path)) and body is not None:
         _require_done(EnsembleStore.open(Path(path)), body)

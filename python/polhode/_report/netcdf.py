@@ -290,7 +290,10 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
         # The library raises any of these for a damaged file.
         raise OSError(f"{path} cannot be read as a netCDF file: {error}") from error
     if many:
-        raise ValueError(f"{path} holds a batch of bodies; read it with xarray.open_dataset")
+        raise ValueError(
+            f"{path} holds a batch of bodies; read it with xarray.open_dataset, or take one body: "
+            f"polhode convert {path} one.nc --body 0"
+        )
     return fields, attributes
 
 

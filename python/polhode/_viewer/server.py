@@ -61,9 +61,18 @@ def motion_page(trajectory: Trajectory) -> bytes:
 Bar = Callable[[str], AbstractContextManager[Callable[[int, float], object] | None]]
 
 
+# Suffixes of motions in files that the viewer does not read.
+_CONVERTED = (".csv", ".parquet", ".zarr", ".aem", ".bc")
+
+
 def run(options: argparse.Namespace, bar: Bar) -> int:
     """Serve a file until Ctrl-C, which ends it with a KeyboardInterrupt."""
     path = Path(options.file)
+    if path.suffix.lower() in _CONVERTED and path.exists():
+        raise UnreadableError(
+            f"{path}: error: scenes, lessons and netCDF files of one motion are shown; convert it first: "
+            f"polhode convert {path} FILE.nc"
+        )
     script = bundle_path().read_bytes()
     source = Source(path)
     with bar(path.name) as report:

@@ -1,21 +1,25 @@
 """Stores filled by Dask clusters of processes, which are killed."""
 
 import contextlib
+import pickle
 import random
 import signal
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 
 import polhode as ph
 import processes
 from command_line import POLHODE, polhode
+from polhode._report.ensemble.cluster import _task
+from polhode._report.ensemble.store import StoreError
 from stores import TEXT, content, status
 
 pytest.importorskip("zarr")
 pytest.importorskip("xarray")
-pytest.importorskip("distributed")
+distributed = pytest.importorskip("distributed")
 
 
 # A worker that takes its time for each block, and reports it; the second argument is its version of polhode.
@@ -111,6 +115,22 @@ def test_a_worker_of_another_version_is_refused(folder, serial, tmp_path):
     assert ", here 9.9.9; continue it as it was begun" in errors
     assert status(store)["missing"] == 4
     assert resumed(folder, store) == serial
+
+
+def test_a_cluster_needs_a_scene_file(tmp_path):
+    done = polhode("run", "-", "-o", "a.zarr", "--cluster", "local:1", cwd=tmp_path, input=TEXT)
+    assert done.returncode == 1
+    assert "workers of a cluster read the scene from its file, and " in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_error_of_a_worker_without_the_scene_can_be_sent(serial, folder, tmp_path, monkeypatch):
+    """Dask pickles an error with its context."""
+    monkeypatch.setattr(distributed, "get_worker", lambda: SimpleNamespace(address="tcp://far:1"))
+    with pytest.raises(StoreError, match=r"worker tcp://far:1: .*none.toml: error: no such file") as caught:
+        _task(str(folder / "serial.zarr"), str(tmp_path / "none.toml"), [0.0, 1.0], 0, 1)
+    assert caught.value.__context__ is None
+    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
 
 
 @pytest.mark.parametrize(

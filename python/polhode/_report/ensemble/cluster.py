@@ -116,12 +116,16 @@ def compute_on(
 def _task(store: str, scene: str, times: Any, index: int, threads: int) -> None:
     """Compute a block in a worker."""
     place = optional("distributed", "cluster", "a run on a cluster").get_worker().address
+    problem = None
     try:
         given = _scene(scene, np.asarray(times).tobytes())
         opened = EnsembleStore.open(Path(store))
         opened.require(given)
     except (ValueError, OSError) as error:
-        raise StoreError(f"worker {place}: {error}") from None
+        problem = str(error)
+    if problem is not None:
+        # Not in the handler: Dask sends the context of an error too, and a SceneError cannot be pickled.
+        raise StoreError(f"worker {place}: {problem}")
     compute_block(opened, given, index, None, threads)
 
 

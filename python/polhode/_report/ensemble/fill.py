@@ -42,6 +42,10 @@ def fill(
     """
     if cluster is not None:
         check_address(cluster)
+        if not scene.path.is_file():
+            raise ValueError(
+                f"workers of a cluster read the scene from its file, and {scene.path} does not exist: save it"
+            )
     store = _opened(scene, Path(path), resume or bodies is not None, replace, bodies)
     blocks = store.blocks_of(bodies)
     try:

@@ -1,5 +1,6 @@
 """Errors of the command: places in scenes, exit codes, and files left behind."""
 
+import errno
 import json
 import os
 import re
@@ -97,6 +98,25 @@ def test_paths_that_are_not_files(tmp_path):
     folder = polhode("run", tmp_path)
     assert folder.returncode == 3
     assert "is a directory" in folder.stderr
+
+
+def test_errors_of_the_system_name_the_file_and_the_reason(command, scene, tmp_path, monkeypatch):
+    (tmp_path / "a.csv").write_text("mine")
+
+    def denied(*_, **__):
+        raise PermissionError(errno.EACCES, "Permission denied", "a.csv")
+
+    monkeypatch.setattr("polhode._report.output.is_own", denied)
+    done = command("run", str(scene), "-o", "a.csv", "--no-figures")
+    assert (done.returncode, done.stderr) == (1, "polhode: error: a.csv: permission denied\n")
+
+
+def test_files_that_must_not_be_read(command, tmp_path, monkeypatch):
+    """The system of a superuser may read them."""
+    (tmp_path / "a.nc").write_bytes(b"\x89HDF")
+    monkeypatch.setattr("os.access", lambda path, mode: mode != os.R_OK)
+    done = command("convert", "a.nc", "b.aem")
+    assert (done.returncode, done.stderr) == (3, "polhode: error: a.nc: no permission to read it\n")
 
 
 def test_a_missing_mesh_is_named(tmp_path):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import re
 from functools import partial
 from pathlib import Path
@@ -13,7 +12,7 @@ import numpy as np
 
 from polhode._cli import common
 from polhode._cli.common import add_command, add_force, check_written, positive, whole_number
-from polhode._support.files import UnreadableError
+from polhode._support.files import UnreadableError, words_of
 
 # Options that a reader takes, and those of the written file; each is given to the format that has it.
 _READING = (
@@ -167,9 +166,7 @@ def _unreadable(error: Exception) -> UnreadableError:
     """Return the error of a file that cannot be read, with the options of the command."""
     if not isinstance(error, OSError):
         return UnreadableError(_with_flags(str(error)))
-    if error.strerror and error.filename:
-        return UnreadableError(f"{os.fsdecode(error.filename)}: error: {error.strerror.lower()}")
-    return UnreadableError(f"polhode: error: {error}")
+    return UnreadableError(f"polhode: error: {words_of(error)}")
 
 
 def _given(options: argparse.Namespace, takes: set[str], where: str) -> dict[str, Any]:

@@ -27,7 +27,7 @@ from polhode._cli.common import (
     whole_number,
 )
 from polhode._native import SceneError, __version__
-from polhode._support.files import UnreadableError
+from polhode._support.files import UnreadableError, words_of
 
 if TYPE_CHECKING:
     from polhode._scene.scene import Scene
@@ -51,7 +51,7 @@ def main(arguments: list[str] | None = None) -> int:
     except BrokenPipeError:
         code = common.FAILED  # the reader of the output has closed it
     except (OSError, ValueError, ImportError, MemoryError) as error:
-        code = _complain(f"polhode: error: {error or 'out of memory'}", common.FAILED)
+        code = _complain(f"polhode: error: {words_of(error) or 'out of memory'}", common.FAILED)
     _drop_output()
     return code
 

@@ -48,7 +48,7 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
     """
     name = os.fsdecode(path)
     library = optional("h5py", "io", "a netCDF file")
-    if os.path.isfile(path):
+    if os.path.isfile(path) and os.access(path, os.R_OK):
         try:
             with library.File(path, "r") as file:
                 if "body" in file:

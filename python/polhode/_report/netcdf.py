@@ -280,6 +280,8 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
         raise FileNotFoundError(f"{path}: no such file")
     if not os.path.isfile(path):
         raise OSError(f"{path}: not a regular file")
+    if not os.access(path, os.R_OK):
+        raise PermissionError(f"{os.fsdecode(path)}: no permission to read it")
     try:
         with library.File(path, "r") as file:
             attributes = {name: _attribute(x) for name, x in file.attrs.items()}

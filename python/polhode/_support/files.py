@@ -13,6 +13,13 @@ class UnreadableError(Exception):
     """A file given to the command cannot be read or shown; the message gives the reason."""
 
 
+def words_of(error: Exception) -> str:
+    """Return the message of an error; of one of the system its file and reason, without the number."""
+    if isinstance(error, OSError) and error.strerror and error.filename is not None:
+        return f"{os.fsdecode(error.filename)}: {error.strerror.lower()}"
+    return str(error)
+
+
 def write_atomically(contents: Mapping[Path, bytes | Path]) -> None:
     """Write files atomically: each path holds either its old content or all of the new.
 

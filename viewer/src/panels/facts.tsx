@@ -2,6 +2,7 @@ import type { ComponentChildren } from "preact";
 import { type About, hasMass, type LawEntry, type Triple } from "../core/core.ts";
 import { significant, small } from "../format/numbers.ts";
 import { DEGREE, duration } from "../format/units.ts";
+import { axisNames, ordered } from "../model/axes.ts";
 import type { Model } from "../model/model.ts";
 import { HOLDING } from "../vary/laws.ts";
 
@@ -24,7 +25,7 @@ export function Facts({ model }: { model: Model }) {
     ...(top ? topFacts(top) : []),
     [
       "Moments",
-      `${list(body.moments)}${hasMass(about) ? " kg m²" : ""}${about.held ? " about the fixed point" : ""}`,
+      `${namedMoments(body.moments)}${hasMass(about) ? ", kg m²" : ""}${about.held ? ", about the fixed point" : ""}`,
     ],
     ["Mass", body.mass !== null && `${significant(body.mass, 5)} kg`],
     ["Bodies", about.ensemble?.toLocaleString("en")],
@@ -88,8 +89,16 @@ export function regimeOf(about: About | null): string {
 
 /** The principal axis that Ω circles. */
 function circled(moments: Triple, axis: 1 | 2 | 3): string {
-  const which = moments[axis - 1] === Math.max(...moments) ? "largest" : "smallest";
-  return `: Ω circles axis ${axis}, which has the ${which} moment`;
+  const name = axisNames(moments)[axis - 1]!;
+  return name.includes("axis") ? `: Ω circles the ${name}` : `: Ω circles the axis of the ${name} moment`;
+}
+
+/** The principal moments from the smallest to the largest, each with the name of its axis. */
+function namedMoments(moments: Triple): string {
+  const names = axisNames(moments);
+  const alike = (a: number, b: number) => names[a] === names[b] && names[a] !== "";
+  const listed = ordered(moments).filter((k, at, all) => at === 0 || !alike(k, all[at - 1]!));
+  return listed.map((k) => `${significant(moments[k]!, 5)} (${names[k]})`).join(", ");
 }
 
 function list(numbers: readonly number[]): string {

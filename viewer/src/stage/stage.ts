@@ -1,15 +1,16 @@
 import type { ReadonlySignal } from "@preact/signals";
 import { Group, Vector2, Vector3 } from "three";
-import { State } from "../core/core.ts";
+import { type About, State } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
 import type { CameraName, Shown } from "../document.ts";
+import { namedAxes } from "../model/axes.ts";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { body } from "./body.ts";
 import { crowd } from "./crowd.ts";
 import { disc, MOMENTUM, OMEGA } from "./disc.ts";
 import { figureOf } from "./figure.ts";
-import { frame } from "./frames.ts";
+import { frame, principal } from "./frames.ts";
 import { gravity } from "./gravity.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Paths } from "./paths.ts";
@@ -155,6 +156,7 @@ export class Stage extends Viewport {
     const parts = [
       body(setting),
       frame(setting, "body"),
+      principal(setting),
       frame(setting, "space"),
       disc(setting, OMEGA),
       disc(setting, MOMENTUM),
@@ -204,7 +206,7 @@ export class Stage extends Viewport {
     const about = this.motion?.about;
     const things: [boolean, string][] = [
       [shown.body, "the body"],
-      [shown.bodyFrame, "its axes f1, f2, f3"],
+      [shown.bodyFrame, bodyAxes(about)],
       [shown.spaceFrame, "the axes e1, e2, e3 of space"],
       [shown.omega, "the angular velocity Ω as an oriented disc"],
       [shown.momentum, "the angular momentum L as an oriented disc"],
@@ -219,4 +221,12 @@ export class Stage extends Viewport {
     const bodies = about?.ensemble ? ` One of ${about.ensemble} bodies.` : "";
     return `${about?.title ?? "A rigid body in motion"}.${bodies} Drawn: ${drawn.join(", ") || "nothing"}. The keys I, J, K and L turn the view, + and − zoom, F fits it.`;
   }
+}
+
+/** The axes of the body in words. */
+function bodyAxes(about: About | undefined): string {
+  const axes = about && namedAxes(about.body);
+  return axes?.own
+    ? `its axes ${axes.names.map((name, k) => `f${k + 1} (${name})`).join(", ")}`
+    : "its axes f1, f2, f3, and its principal axes";
 }

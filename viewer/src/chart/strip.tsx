@@ -40,6 +40,7 @@ export function Strip(props: { model: Model; about: About; first: ReadonlySignal
         >
           <Icon name={open.value ? "down" : "right"} />
           <i class="symbol">ω</i>
+          {!open.value && " over time"}
         </button>
         {open.value && <Names model={model} about={about} hovered={hovered} />}
       </div>

@@ -24,6 +24,7 @@ export function frame({ figure, palette, screen, labels }: Setting, of: "body" |
     return { axis, label };
   });
   return {
+    layer: body ? "bodyFrame" : "spaceFrame",
     ...(body ? { inBody: arrows } : { inSpace: arrows }),
     update({ attitude }, shown) {
       arrows.visible = body ? shown.bodyFrame : shown.spaceFrame;
@@ -53,6 +54,7 @@ export function principal({ figure, palette, screen, labels }: Setting): Part | 
     return { to, label: labels.add(names[k]!, palette.text, { rank: 3 }) };
   });
   return {
+    layer: "bodyFrame",
     inBody: lines,
     update({ attitude }, shown) {
       lines.visible = shown.bodyFrame;

@@ -1,6 +1,7 @@
 import { useComputed, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { Shown } from "../document.ts";
+import { idOf } from "../glossary/glossary.ts";
 import { Icon } from "../inputs/button.tsx";
 import type { Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
@@ -61,6 +62,7 @@ export function Legend({ model }: { model: Model }) {
             class="entry"
             data-layer={layer}
             data-term={term}
+            aria-describedby={term && idOf(term)}
             aria-pressed={shown[layer]}
             onPointerEnter={() => point(layer)}
             onPointerLeave={() => point(null)}

@@ -2,6 +2,7 @@ import type { ComponentChildren } from "preact";
 import { type About, hasMass, type LawEntry, type Triple } from "../core/core.ts";
 import { significant, small } from "../format/numbers.ts";
 import { DEGREE, duration } from "../format/units.ts";
+import { Defined, Term } from "../glossary/term.tsx";
 import { axisNames, ordered } from "../model/axes.ts";
 import type { Model } from "../model/model.ts";
 import { HOLDING } from "../vary/laws.ts";
@@ -16,7 +17,7 @@ export function Facts({ model }: { model: Model }) {
   const regime = regimeOf(about);
   const circles = free && free.period !== null && circled(body.moments, free.axis);
   const facts: Fact[] = [
-    ["Regime", regime && [regime, circles], "regime"],
+    ["Regime", regime && <Defined text={`${regime}${circles || ""}`} />, "regime"],
     ...about.laws.map(({ name, text }): Fact => {
       const shown = about.heavy && HOLDING.has(name) ? `m g l = (${list(about.heavy)}) N m` : shortened(text);
       return [labelOf(name, model.core.laws), <code>{shown}</code>];
@@ -38,7 +39,13 @@ export function Facts({ model }: { model: Model }) {
           ([name, value, id], k) =>
             value && (
               <div class="fact" key={k}>
-                <dt>{name}</dt>
+                <dt>
+                  {name === "Moments" ? (
+                    <Term term="principal moments" text={name} />
+                  ) : (
+                    <Defined text={name} />
+                  )}
+                </dt>
                 <dd id={id}>{value}</dd>
               </div>
             ),
@@ -129,7 +136,9 @@ function Conserved({ about }: { about: About }) {
     <table class="conserved">
       <thead>
         <tr>
-          <th scope="col">Conserved</th>
+          <th scope="col">
+            <Term term="conserved" text="Conserved" />
+          </th>
           <th scope="col">Value, SI</th>
           <th scope="col">Drift</th>
         </tr>
@@ -137,7 +146,9 @@ function Conserved({ about }: { about: About }) {
       <tbody>
         {[...rows, { name: "|R| − 1", value: "0", drift: about.norm_drift }].map(({ name, value, drift }) => (
           <tr key={name}>
-            <th scope="row">{name}</th>
+            <th scope="row">
+              <Defined text={name} />
+            </th>
             <td class="digits">{value}</td>
             <td class="digits">{small(drift)}</td>
           </tr>

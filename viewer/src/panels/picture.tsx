@@ -2,6 +2,7 @@ import { type ReadonlySignal, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { sizeAt, State } from "../core/core.ts";
 import { typed } from "../format/numbers.ts";
+import { Defined } from "../glossary/term.tsx";
 import { Legend } from "../legend/legend.tsx";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
@@ -51,7 +52,11 @@ export function Picture(props: {
         </div>
         <ErrorMessage model={model} />
       </div>
-      {caption !== null && <p class="caption">{caption}</p>}
+      {caption !== null && (
+        <p class="caption">
+          <Defined text={caption} />
+        </p>
+      )}
     </section>
   );
 }

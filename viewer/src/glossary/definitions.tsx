@@ -117,7 +117,7 @@ function follow(app: HTMLElement, set: (shown: Shown | null) => void, isOpen: ()
       "click",
       (event: MouseEvent) => {
         const target = termOf(event);
-        if (target?.classList.contains("term"))
+        if (target?.classList.contains("defined"))
           target === current && event.detail > 1 ? close() : open(target);
         else if (!(event.target as Element).closest(".definition")) close();
       },
@@ -127,7 +127,7 @@ function follow(app: HTMLElement, set: (shown: Shown | null) => void, isOpen: ()
       (event: KeyboardEvent) => {
         const target = termOf(event);
         if (event.key === "Escape" && isOpen()) close();
-        else if (target?.classList.contains("term") && (event.key === "Enter" || event.key === " "))
+        else if (target?.classList.contains("defined") && (event.key === "Enter" || event.key === " "))
           target === current ? close() : open(target);
         else return;
         event.preventDefault();

@@ -14,7 +14,7 @@ export function Defined({ text }: { text: string }) {
 /** A term with its definition; it is broken across lines, which a button is not. */
 export function Term({ term, text = term }: { term: string; text?: string }) {
   return (
-    <span role="button" tabIndex={0} class="term" data-term={term} aria-describedby={idOf(term)}>
+    <span role="button" tabIndex={0} class="defined" data-term={term} aria-describedby={idOf(term)}>
       {text}
     </span>
   );

@@ -9,8 +9,9 @@ import { statesOf, type Steps } from "../stage/steps.ts";
 /** States per turn of the body, and per column at most: beyond that the chart shows where ω is, not how it gets there. */
 const PER_TURN = 14;
 const PER_COLUMN = 24;
-/** The golden ratio spreads the times within columns evenly, and differently in each, so that no pattern appears. */
+/** Irrational steps spread the times within columns, and differently in each: equal steps may agree with the motion. */
 const GOLDEN = (Math.sqrt(5) - 1) / 2;
+const ROOT = Math.SQRT2;
 
 /** The least and the largest ω along each of the named axes, rad/s, in columns of equal duration. */
 export interface Envelope {
@@ -48,7 +49,7 @@ export function* sampled(
   const [first, last] = span(about);
   for (let pass = 0; pass < passes; pass++) {
     const times = Float64Array.from({ length: columns }, (_, k) => {
-      const part = passes === 1 ? 0.5 : (0.5 + pass / passes + k * GOLDEN) % 1;
+      const part = passes === 1 ? 0.5 : (0.5 + pass * GOLDEN + k * ROOT) % 1;
       return Math.min(Math.max(from + (length * (k + part)) / columns, first), last);
     });
     const rows = yield* statesOf(motion, times);

@@ -40,7 +40,7 @@ export function Definitions({ app }: { app: RefObject<HTMLElement | null> }) {
     <>
       {definition && (
         <div
-          role="tooltip"
+          aria-hidden="true"
           class="definition"
           style={{
             left: `${left}px`,
@@ -126,8 +126,7 @@ function follow(app: HTMLElement, set: (shown: Shown | null) => void, isOpen: ()
       "keydown",
       (event: KeyboardEvent) => {
         const target = termOf(event);
-        if (event.key === "Escape" && isOpen()) close();
-        else if (target?.classList.contains("defined") && (event.key === "Enter" || event.key === " "))
+        if (target?.classList.contains("defined") && (event.key === "Enter" || event.key === " "))
           target === current ? close() : open(target);
         else return;
         event.preventDefault();
@@ -136,9 +135,17 @@ function follow(app: HTMLElement, set: (shown: Shown | null) => void, isOpen: ()
   ];
   for (const [name, listen] of listeners) app.addEventListener(name, listen as EventListener);
   app.addEventListener("scroll", close, true);
+  // Also while the focus is elsewhere; what the key does otherwise waits for the next time.
+  const escape = (event: KeyboardEvent): void => {
+    if (event.key !== "Escape" || !isOpen()) return;
+    event.preventDefault();
+    close();
+  };
+  document.addEventListener("keydown", escape, true);
   return () => {
     clearTimeout(timer);
     for (const [name, listen] of listeners) app.removeEventListener(name, listen as EventListener);
     app.removeEventListener("scroll", close, true);
+    document.removeEventListener("keydown", escape, true);
   };
 }

@@ -77,6 +77,12 @@ def test_definitions_open_on_tap(opened):
     box = page.page.locator(".definition").bounding_box()
     assert box["x"] >= 0
     assert box["x"] + box["width"] <= 390
+    term.tap()
+    page.drawn()
+    assert definition(page) is None
+    term.tap()
+    page.drawn()
+    assert definition(page) is not None
     page.page.locator("h1").tap()
     page.drawn()
     assert definition(page) is None

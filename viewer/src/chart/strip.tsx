@@ -129,6 +129,8 @@ function useEnvelope(model: Model, first: ReadonlySignal<number>, place: { curre
     });
     let frame = 0;
     const go = (): void => {
+      // A motion that was replaced is closed at once.
+      if (model.motion.peek() !== motion) return;
       frame = advance(work, FRAME) ? 0 : requestAnimationFrame(go);
     };
     frame = requestAnimationFrame(go);

@@ -115,10 +115,11 @@ function follow(app: HTMLElement, set: (shown: Shown | null) => void, isOpen: ()
     ["focusout", close],
     [
       "click",
-      (event: MouseEvent) => {
+      (event: PointerEvent) => {
         const target = termOf(event);
+        // Under a mouse it is open already.
         if (target?.classList.contains("defined"))
-          target === current && event.detail > 1 ? close() : open(target);
+          target === current && event.pointerType === "touch" ? close() : open(target);
         else if (!(event.target as Element).closest(".definition")) close();
       },
     ],

@@ -102,6 +102,10 @@ export interface Shown {
   omega: boolean;
   /** L as an oriented disc. */
   momentum: boolean;
+  /** The torque as an oriented disc. */
+  torque: boolean;
+  /** What the laws depend on: field, dipole, directions to the planet and the sun, wheel, thrusts. */
+  sources: boolean;
   /** The axial vectors of the discs that are shown as arrows; of both without discs. */
   axial: boolean;
   /** Poinsot's construction: the inertia ellipsoid on the invariable plane. */

@@ -12,6 +12,7 @@ export interface Palette {
   axes: [string, string, string];
   omega: string;
   momentum: string;
+  torque: string;
   trace: string;
   polhode: string;
   herpolhode: string;
@@ -27,6 +28,7 @@ export const LIGHT: Palette = {
   axes: ["#0072B2", "#D55E00", "#009E73"],
   omega: "#B07A00",
   momentum: "#7B3F98",
+  torque: "#A6192E",
   trace: "#CC79A7",
   polhode: "#B07A00",
   herpolhode: "#B07A00",
@@ -42,6 +44,7 @@ export const DARK: Palette = {
   axes: ["#56B4E9", "#F0803C", "#2FC99A"],
   omega: "#F0C75E",
   momentum: "#C79BE0",
+  torque: "#FF7B7B",
   trace: "#E59CC4",
   polhode: "#F0C75E",
   herpolhode: "#F0C75E",

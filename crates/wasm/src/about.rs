@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 /// The facts of a motion as a JSON object.
 pub fn about(of: &Opened) -> Value {
     let (scene, certificate) = (&of.scene, &of.motion.certificate);
-    let setup = scene.setup(&of.body, &of.laws);
+    let setup = &of.setup;
     let conserved = certificate.drifts.iter();
     let conserved =
         conserved.map(|(kept, value, drift)| facts! { name: kept.name(), value: *value, drift: *drift });

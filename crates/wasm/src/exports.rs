@@ -8,6 +8,7 @@
 #![allow(unsafe_code)]
 
 use crate::about::{about, solid as solid_json};
+use crate::acting::acting as acting_json;
 use crate::formulas;
 use crate::laws;
 use crate::merged::merged;
@@ -210,6 +211,15 @@ pub extern "C" fn states(handle: usize) -> i32 {
             Loaded::Recorded(recorded, _) => recorded.states(&times)?,
         };
         Ok((0, bytes(rows.into_iter().flatten())))
+    })
+}
+
+/// Takes the first eight numbers of a row of states; replies with what acts on the body in that state, as JSON.
+#[unsafe(no_mangle)]
+pub extern "C" fn acting(handle: usize) -> i32 {
+    reply_with(|state, rooms| {
+        let found = acting_json(state.computed(handle)?, numbers(&rooms)?)?;
+        Ok((0, found.to_string().into_bytes()))
     })
 }
 

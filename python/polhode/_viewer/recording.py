@@ -156,6 +156,9 @@ def _about(
         ],
         "norm_drift": proof.norm_drift,
         "ensemble": None,
+        "events": [
+            {"name": event.name, "time": float(time)} for event in trajectory.events for time in event.time
+        ],
     }
 
 

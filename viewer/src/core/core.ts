@@ -124,6 +124,23 @@ export interface About {
   } | null;
   /** Number of bodies of an ensemble; null for one body. */
   ensemble: number | null;
+  /** Events of a recorded motion, with their times in s. */
+  events?: { name: string; time: number }[];
+}
+
+/** What acts on the body in a state. */
+export interface Acting {
+  /** Axial vector of the torque in space, N m. */
+  torque: Triple;
+  /** Vectors that the laws depend on, in space or in body axes. Without a unit, `along` is a direction. */
+  sources: {
+    kind: "planet" | "field" | "dipole" | "sun" | "wheel";
+    in_space: boolean;
+    along: Triple;
+    unit: string;
+  }[];
+  /** Forces of thrusters, N, and where they act, m, in body axes. */
+  thrusts: { along: Triple; at: Triple }[];
 }
 
 /** The result of a line of formulas. */

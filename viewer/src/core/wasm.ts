@@ -1,5 +1,6 @@
 import {
   type About,
+  type Acting,
   BODIES,
   type Files,
   type LawEntry,
@@ -7,6 +8,7 @@ import {
   Problem,
   type Quadruple,
   type Solid,
+  State,
   type Surface,
   type Triple,
 } from "./core.ts";
@@ -21,6 +23,7 @@ interface Exports {
   record(): number;
   close(handle: number): void;
   about_motion(handle: number): number;
+  acting(handle: number): number;
   states(handle: number): number;
   surface(handle: number): number;
   extents(handle: number): number;
@@ -192,7 +195,7 @@ export class Core {
     return new TextDecoder().decode(this.bytes());
   }
 
-  private json<T>(): T {
+  json<T>(): T {
     return JSON.parse(this.text()) as T;
   }
 }
@@ -215,6 +218,12 @@ export class Motion {
   states(times: ArrayLike<number>): Float64Array {
     this.core.call(() => this.core.exports.states(this.handle), Float64Array.from(times));
     return this.core.floats();
+  }
+
+  /** What acts on the body in the state of a row; a Problem for a recorded motion. */
+  acting(row: Float64Array): Acting {
+    this.core.call(() => this.core.exports.acting(this.handle), row.slice(0, State.omegaSpace));
+    return this.core.json();
   }
 
   /**

@@ -1,5 +1,6 @@
 import { useSignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
+import { idOf, split } from "../glossary/glossary.ts";
 import { typed } from "../format/numbers.ts";
 import type { Unit } from "../format/units.ts";
 import { accepted, POSITIONS, positionOf, type Range, valueAt } from "./range.ts";
@@ -126,12 +127,13 @@ export function Select<T extends string | number>(props: {
   );
 }
 
-/** A box to check. */
+/** A check box; the definition of the first term in its label is shown with it. */
 export function Check(props: { id: string; label: string; checked: boolean; onChange: () => void }) {
   const { label, ...box } = props;
+  const term = split(label).find((piece) => piece.term !== null)?.term ?? undefined;
   return (
-    <label class="check">
-      <input type="checkbox" {...box} />
+    <label class="check" data-term={term}>
+      <input type="checkbox" aria-describedby={term && idOf(term)} {...box} />
       {label}
     </label>
   );

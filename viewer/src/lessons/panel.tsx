@@ -118,7 +118,7 @@ function Choices(props: {
               {mark === " right" ? "✓" : mark === " wrong" ? "✗" : ""}
             </span>
             <span>
-              <Prose tokens={tokens} last={null} act={() => {}} />
+              <Prose tokens={tokens} last={null} act={() => {}} plain />
             </span>
           </button>
         );

@@ -1,5 +1,6 @@
 import type { Token, Tokens } from "marked";
 import type { ComponentChildren } from "preact";
+import { Defined } from "../glossary/term.tsx";
 import { drives } from "./lesson.ts";
 
 /** The text of a lesson. `act` does what an underlined phrase says; `last` is the phrase that was pressed last. */
@@ -7,11 +8,16 @@ export function Prose(props: {
   tokens: readonly Token[];
   last: string | null;
   act: (target: string) => void;
+  /** Whether terms have no definitions, as inside links and buttons. */
+  plain?: boolean;
 }) {
-  const { tokens, last, act } = props;
+  const { tokens, last, act, plain = false } = props;
   const inside = (token: Token): ComponentChildren => {
-    const { tokens: parts, text } = token as Tokens.Generic;
-    return parts ? <Prose tokens={parts} last={last} act={act} /> : unescaped(String(text ?? ""));
+    const { tokens: parts, text, type } = token as Tokens.Generic;
+    const bare = plain || type === "link";
+    if (parts) return <Prose tokens={parts} last={last} act={act} plain={bare} />;
+    const written = unescaped(String(text ?? ""));
+    return type === "text" && !bare ? <Defined text={written} /> : written;
   };
   return <>{tokens.map((token) => drawn(token, inside(token), props))}</>;
 }

@@ -13,6 +13,8 @@ export const SHOWN: Shown = {
   spaceFrame: true,
   omega: true,
   momentum: true,
+  torque: true,
+  sources: true,
   axial: false,
   poinsot: false,
   polhode: true,
@@ -58,6 +60,8 @@ export class Model {
   readonly opened = signal<About | null>(null);
   /** Whether the tip of Ω is marked, in the picture in space and on the energy ellipsoid. */
   readonly marked = signal(false);
+  /** The layer that the legend points at. */
+  readonly pointed = signal<keyof Shown | null>(null);
   /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
   /** The lesson that the page shows. */

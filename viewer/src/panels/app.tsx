@@ -2,6 +2,7 @@ import { type ReadonlySignal, useSignal } from "@preact/signals";
 import { Component, type ComponentChildren } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { AlgebraPage } from "../algebra/page.tsx";
+import { Definitions } from "../glossary/definitions.tsx";
 import { useAttention } from "../lessons/attend.ts";
 import { LessonList, LessonPanel } from "../lessons/panel.tsx";
 import { Lessons } from "../lessons/lessons.ts";
@@ -73,6 +74,7 @@ export function App({ model, palette, compact, wide }: Props) {
           )}
         </Boundary>
       </div>
+      <Definitions app={app} />
     </div>
   );
 }

@@ -2,6 +2,8 @@ import type { ComponentChildren } from "preact";
 import { type About, hasMass, type LawEntry, type Triple } from "../core/core.ts";
 import { significant, small } from "../format/numbers.ts";
 import { DEGREE, duration } from "../format/units.ts";
+import { Defined, Term } from "../glossary/term.tsx";
+import { axisNames, ordered } from "../model/axes.ts";
 import type { Model } from "../model/model.ts";
 import { HOLDING } from "../vary/laws.ts";
 
@@ -15,7 +17,7 @@ export function Facts({ model }: { model: Model }) {
   const regime = regimeOf(about);
   const circles = free && free.period !== null && circled(body.moments, free.axis);
   const facts: Fact[] = [
-    ["Regime", regime && [regime, circles], "regime"],
+    ["Regime", regime && <Defined text={`${regime}${circles || ""}`} />, "regime"],
     ...about.laws.map(({ name, text }): Fact => {
       const shown = about.heavy && HOLDING.has(name) ? `m g l = (${list(about.heavy)}) N m` : shortened(text);
       return [labelOf(name, model.core.laws), <code>{shown}</code>];
@@ -24,7 +26,7 @@ export function Facts({ model }: { model: Model }) {
     ...(top ? topFacts(top) : []),
     [
       "Moments",
-      `${list(body.moments)}${hasMass(about) ? " kg m²" : ""}${about.held ? " about the fixed point" : ""}`,
+      `${namedMoments(body.moments)}${hasMass(about) ? ", kg m²" : ""}${about.held ? ", about the fixed point" : ""}`,
     ],
     ["Mass", body.mass !== null && `${significant(body.mass, 5)} kg`],
     ["Bodies", about.ensemble?.toLocaleString("en")],
@@ -37,7 +39,13 @@ export function Facts({ model }: { model: Model }) {
           ([name, value, id], k) =>
             value && (
               <div class="fact" key={k}>
-                <dt>{name}</dt>
+                <dt>
+                  {name === "Moments" ? (
+                    <Term term="principal moments" text={name} />
+                  ) : (
+                    <Defined text={name} />
+                  )}
+                </dt>
                 <dd id={id}>{value}</dd>
               </div>
             ),
@@ -88,8 +96,16 @@ export function regimeOf(about: About | null): string {
 
 /** The principal axis that Ω circles. */
 function circled(moments: Triple, axis: 1 | 2 | 3): string {
-  const which = moments[axis - 1] === Math.max(...moments) ? "largest" : "smallest";
-  return `: Ω circles axis ${axis}, which has the ${which} moment`;
+  const name = axisNames(moments)[axis - 1]!;
+  return name.includes("axis") ? `: Ω circles the ${name}` : `: Ω circles the axis of the ${name} moment`;
+}
+
+/** The principal moments from the smallest to the largest, each with the name of its axis. */
+function namedMoments(moments: Triple): string {
+  const names = axisNames(moments);
+  const alike = (a: number, b: number) => names[a] === names[b] && names[a] !== "";
+  const listed = ordered(moments).filter((k, at, all) => at === 0 || !alike(k, all[at - 1]!));
+  return listed.map((k) => `${significant(moments[k]!, 5)} (${names[k]})`).join(", ");
 }
 
 function list(numbers: readonly number[]): string {
@@ -120,7 +136,9 @@ function Conserved({ about }: { about: About }) {
     <table class="conserved">
       <thead>
         <tr>
-          <th scope="col">Conserved</th>
+          <th scope="col">
+            <Term term="conserved" text="Conserved" />
+          </th>
           <th scope="col">Value, SI</th>
           <th scope="col">Drift</th>
         </tr>
@@ -128,7 +146,9 @@ function Conserved({ about }: { about: About }) {
       <tbody>
         {[...rows, { name: "|R| − 1", value: "0", drift: about.norm_drift }].map(({ name, value, drift }) => (
           <tr key={name}>
-            <th scope="row">{name}</th>
+            <th scope="row">
+              <Defined text={name} />
+            </th>
             <td class="digits">{value}</td>
             <td class="digits">{small(drift)}</td>
           </tr>

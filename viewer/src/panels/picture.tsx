@@ -2,6 +2,8 @@ import { type ReadonlySignal, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { sizeAt, State } from "../core/core.ts";
 import { typed } from "../format/numbers.ts";
+import { Defined } from "../glossary/term.tsx";
+import { Legend } from "../legend/legend.tsx";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { EnergyView, hasEnergyView } from "../stage/energy.ts";
@@ -43,11 +45,18 @@ export function Picture(props: {
             This step of the lesson has no motion. Its formulas are on the page “Algebra”.
           </p>
         )}
-        <Solving model={model} />
-        <Strobe model={model} />
+        <div class="foot">
+          <Solving model={model} />
+          <Strobe model={model} />
+          {missing.value === null && model.motion.value && <Legend model={model} />}
+        </div>
         <ErrorMessage model={model} />
       </div>
-      {caption !== null && <p class="caption">{caption}</p>}
+      {caption !== null && (
+        <p class="caption">
+          <Defined text={caption} />
+        </p>
+      )}
     </section>
   );
 }

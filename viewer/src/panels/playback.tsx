@@ -1,4 +1,6 @@
+import { type ReadonlySignal, useComputed } from "@preact/signals";
 import { useRef } from "preact/hooks";
+import { Strip } from "../chart/strip.tsx";
 import type { About } from "../core/core.ts";
 import { typed } from "../format/numbers.ts";
 import { duration, timeUnit } from "../format/units.ts";
@@ -16,6 +18,7 @@ const STEPS: [id: string, label: string, press: string, icon: IconName, act: (mo
 
 /** Play, step, speed and time. */
 export function Playback({ model }: { model: Model }) {
+  const first = useFirst(model);
   const about = model.about.value;
   if (!about) return null;
   const playing = model.playing.value;
@@ -35,25 +38,36 @@ export function Playback({ model }: { model: Model }) {
             <IconButton key={id} id={id} label={label} press={press} icon={icon} onClick={() => act(model)} />
           ))}
         </div>
-        <TimeSlider model={model} about={about} />
+        <TimeSlider model={model} about={about} first={first} />
         <TimeField model={model} about={about} />
         <span class={about.exact ? "badge exact" : "badge"} title={methodOf(about)} id="method">
           {about.exact ? "exact" : about.method === "recorded" ? "recorded" : "stepped"}
         </span>
         <Speed model={model} />
       </div>
+      <Strip model={model} about={about} first={first} />
     </section>
   );
 }
 
-/** A slider over one duration. Beyond the end of a motion that is known there, it covers the next duration. */
-function TimeSlider({ model, about }: { model: Model; about: About }) {
-  const start = about.start.time;
-  const first = useRef(start);
+/** The first time on the slider and the chart. Beyond the end of a motion that is known there, they cover the next duration. */
+function useFirst(model: Model): ReadonlySignal<number> {
+  const first = useRef<number | null>(null);
+  return useComputed(() => {
+    const about = model.about.value;
+    const [time, start, length] = [model.time.value, about?.start.time ?? 0, about?.duration ?? 1];
+    first.current ??= start;
+    if (time < first.current || time > first.current + length)
+      first.current = start + Math.floor((time - start) / length) * length;
+    return first.current;
+  });
+}
+
+/** A slider over one duration. */
+function TimeSlider(props: { model: Model; about: About; first: ReadonlySignal<number> }) {
+  const { model, about } = props;
   const time = model.time.value;
-  const length = about.duration;
-  if (time < first.current || time > first.current + length)
-    first.current = start + Math.floor((time - start) / length) * length;
+  const first = props.first.value;
   return (
     <input
       id="time"
@@ -61,8 +75,8 @@ function TimeSlider({ model, about }: { model: Model; about: About }) {
       type="range"
       aria-label="Time"
       aria-valuetext={duration(time)}
-      min={first.current}
-      max={first.current + length}
+      min={first}
+      max={first + about.duration}
       step="any"
       value={time}
       onInput={(event) => model.seek(event.currentTarget.valueAsNumber)}

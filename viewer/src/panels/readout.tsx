@@ -2,6 +2,7 @@ import { useComputed } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { hasMass, sizeAt, State } from "../core/core.ts";
 import { PLANES, type Scale, scaled, scaleFor, significant, small } from "../format/numbers.ts";
+import { Defined } from "../glossary/term.tsx";
 import type { Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
 
@@ -121,7 +122,7 @@ function Quantity(props: {
     <div class="quantity">
       <dt>
         {props.mark && <span class={`mark ${props.mark}`} aria-hidden="true" />}
-        {props.symbol} <span class="note">{props.note}</span>
+        {props.symbol} <span class="note">{props.note && <Defined text={props.note} />}</span>
         <span class="unit">{props.unit}</span>
       </dt>
       <dd>{props.children}</dd>

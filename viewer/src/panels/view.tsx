@@ -9,6 +9,8 @@ const THINGS: [keyof Shown, string][] = [
   ["spaceFrame", "Space axes e₁ e₂ e₃"],
   ["omega", "Ω as a disc"],
   ["momentum", "L as a disc"],
+  ["torque", "Torque as a disc"],
+  ["sources", "Fields, wheels, thrusts"],
   ["axial", "Axial vectors as arrows"],
   ["trace", "Path of an axis"],
   ["polhode", "Polhode"],

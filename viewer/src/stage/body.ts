@@ -12,6 +12,7 @@ export function body({ figure, palette }: Setting): Part {
   const materials = tints.map((color) => new MeshLambertMaterial({ color }));
   const inBody = new Group().add(new Mesh(faces, materials), new LineSegments(edges, ink(palette.text)));
   return {
+    layer: "body",
     inBody,
     update(_, shown) {
       inBody.visible = shown.body;

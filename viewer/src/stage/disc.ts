@@ -1,13 +1,14 @@
 import { Group, Vector3 } from "three";
 import { quantity } from "../format/numbers.ts";
 import { hasMass } from "../core/core.ts";
+import { ofLayer } from "./emphasis.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { AXES } from "./rotor.ts";
 import { aim, circle, Shapes } from "./shapes.ts";
 
 /** The style of a bivector; `radius` is that of its disc at the start. */
 export interface DiscStyle {
-  bivector: "omega" | "momentum";
+  bivector: "omega" | "momentum" | "torque";
   symbol: string;
   unit: string;
   radius: number;
@@ -30,6 +31,15 @@ export const MOMENTUM: DiscStyle = {
   label: [-1, -0.45],
 };
 
+/** Its radius is that of the largest torque. */
+export const TORQUE: DiscStyle = {
+  bivector: "torque",
+  symbol: "T",
+  unit: "N m",
+  radius: 0.85,
+  label: [0.5, 1],
+};
+
 const HEADS = 3;
 /** Turns per second of the arrowheads on the rim. */
 const PACE = 0.08;
@@ -45,7 +55,7 @@ export function disc({ figure, palette, screen, labels, calm }: Setting, style: 
   const standard = (figure.about.held ? 0.7 : 1) * style.radius;
   const valued = bivector === "omega" || hasMass(figure.about);
   // The arrow of ω ends on polhode and herpolhode, that of L outside its disc.
-  const stretch = bivector === "omega" ? figure.rate : 1.6 / figure.momentum;
+  const stretch = bivector === "omega" ? figure.rate : (bivector === "torque" ? 1.2 : 1.6) / reference;
 
   const sheet = new Shapes(screen, palette[bivector]);
   sheet.face(circle(AXES[2], 1), 0.09, 3);
@@ -66,13 +76,14 @@ export function disc({ figure, palette, screen, labels, calm }: Setting, style: 
     label.at.projectOnPlane(axial).setLength(radius);
   };
   return {
-    inSpace: new Group().add(disc, axis.object),
+    layer: bivector,
+    inSpace: new Group().add(disc, ofLayer("axial", axis.object)),
     update(instant, shown) {
       const axial = instant[bivector];
       const size = axial.length();
       disc.visible = shown[bivector] && size > 1e-9 * reference;
       // Of what is shown as a disc; without discs, arrows stand for both.
-      const arrows = shown[bivector] || !(shown.omega || shown.momentum);
+      const arrows = shown[bivector] || (bivector !== "torque" && !(shown.omega || shown.momentum));
       axis.object.visible = shown.axial && arrows && size > 0;
       label.hidden = !(disc.visible || axis.object.visible);
       if (label.hidden) return;

@@ -5,8 +5,9 @@ import type { Motion } from "../core/wasm.ts";
 import type { Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
 import type { Palette } from "../palette.ts";
+import { axisNames, ordered } from "../model/axes.ts";
 import { REACH } from "./figure.ts";
-import { type Curve, neighbours, ordered, separatrix, through } from "./polhodes.ts";
+import { type Curve, neighbours, separatrix, through } from "./polhodes.ts";
 import { AXES, quaternion, vector } from "./rotor.ts";
 import { Shapes } from "./shapes.ts";
 import { Viewport } from "./viewport.ts";
@@ -107,8 +108,7 @@ export class EnergyView extends Viewport {
 
   /** The principal axes with the names of their moments. */
   private axes({ body: { moments, frame } }: About, palette: Palette): Group {
-    const names = ["smallest", "middle", "largest"];
-    const order = ordered(moments);
+    const names = axisNames(moments);
     const arrows = new Group();
     const turn = quaternion(frame);
     AXES.forEach((axis, k) => {
@@ -120,7 +120,7 @@ export class EnergyView extends Viewport {
       const shapes = new Shapes(this.screen, colour);
       shapes.arrow(to, { width: 1.8, behind: 0.35 });
       arrows.add(shapes.object);
-      const label = this.labels.add(names[order.indexOf(k)]!, colour, { rank: 1 });
+      const label = this.labels.add(names[k]!, colour, { rank: 1 });
       label.at.copy(to);
     });
     return arrows;

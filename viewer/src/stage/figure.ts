@@ -1,5 +1,14 @@
 import { Vector3 } from "three";
-import { type About, ROW, sizeAt, State, type Surface, type Triple } from "../core/core.ts";
+import {
+  type About,
+  type Acting,
+  Problem,
+  ROW,
+  sizeAt,
+  State,
+  type Surface,
+  type Triple,
+} from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
 import { span } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
@@ -27,6 +36,11 @@ export interface Figure {
   /** |Ω| and |L| at the start, or their largest values if the body starts at rest. */
   omega: number;
   momentum: number;
+  /** Drawn units for 1 m. */
+  scale: number;
+  /** What acts on the body at the start, null if that is not known, and the largest torque, N m. */
+  acting: Acting | null;
+  torque: number;
 }
 
 export function figureOf(motion: Motion): Figure {
@@ -38,9 +52,13 @@ export function figureOf(motion: Motion): Figure {
   const arm = about.held ? armOf(about) : new Vector3();
   const surface = surfaceFrom(motion, arm);
   const size = Math.max(largest(surface.vertices, 0, 3), arm.length()) || 1;
+  const acting = actingOn(motion, start);
   return {
     motion,
     about,
+    scale: 1 / size,
+    acting,
+    torque: largestTorque(motion),
     surface: { ...surface, vertices: surface.vertices.map((x) => x / size) },
     centre: arm.clone().divideScalar(size),
     traced: arm.length() > 0 ? arm.clone().normalize() : nearestAxis(vector(rows, State.omegaBody)),
@@ -76,6 +94,28 @@ function some(motion: Motion): Float64Array {
   const from = Math.max(first, motion.about.start.time);
   const to = Math.min(last, from + motion.about.duration);
   return motion.states(Array.from({ length: 65 }, (_, k) => from + ((to - from) * k) / 64));
+}
+
+/** What acts on the body in a state; null if that is not known, as for a recorded motion. */
+export function actingOn(motion: Motion, row: Float64Array): Acting | null {
+  if (motion.about.method === "recorded") return null;
+  try {
+    return motion.acting(row);
+  } catch (error) {
+    if (error instanceof Problem) return null;
+    throw error;
+  }
+}
+
+/** The largest torque over the duration of a motion, N m; zero without laws and thrusts. */
+export function largestTorque(motion: Motion): number {
+  const start = actingOn(motion, firstRow(motion));
+  if (!start || motion.about.laws.length + start.thrusts.length === 0) return 0;
+  const rows = some(motion);
+  const sizes = Array.from({ length: rows.length / ROW }, (_, k) =>
+    sizeAt(actingOn(motion, rows.subarray(ROW * k, ROW * (k + 1)))?.torque ?? [0, 0, 0], 0),
+  );
+  return Math.max(...sizes);
 }
 
 /** The largest size of the vectors at an offset in rows. */

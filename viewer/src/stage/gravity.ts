@@ -32,6 +32,7 @@ export function gravity({ figure, palette, screen, labels }: Setting): Part | nu
   for (const axis of [AXES[0], AXES[1]]) sphere.line(circle(axis, REACH), thin, true);
   const inSpace = new Group().add(new Mesh(cone, material), weight.object, sphere.object);
   return {
+    layer: "gravity",
     inSpace,
     inBody,
     update({ attitude }, shown) {

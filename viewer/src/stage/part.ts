@@ -1,4 +1,5 @@
 import type { Object3D, Quaternion, Vector3 } from "three";
+import type { Acting } from "../core/core.ts";
 import type { Shown } from "../document.ts";
 import type { Palette } from "../palette.ts";
 import type { Figure } from "./figure.ts";
@@ -26,6 +27,10 @@ export interface Instant {
   omega: Vector3;
   /** kg m²/s. */
   momentum: Vector3;
+  /** N m; zero if it is not known. */
+  torque: Vector3;
+  /** What acts on the body; null if that is not known or nothing does. */
+  acting: Acting | null;
   /** 2T = Ω·L, J: twice the kinetic energy of a body without wheels. */
   doubleKinetic: number;
   /** The screen's right and up in space axes. */
@@ -39,6 +44,8 @@ export interface Instant {
 
 /** A part of the picture of one motion in one palette, which follows the state. */
 export interface Part {
+  /** The layer that it belongs to. */
+  readonly layer?: keyof Shown;
   /** Objects in space axes, and in body axes. */
   readonly inSpace?: Object3D;
   readonly inBody?: Object3D;

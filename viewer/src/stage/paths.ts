@@ -2,6 +2,7 @@ import { Group, type Vector3 } from "three";
 import { ROW, State } from "../core/core.ts";
 import type { Shown } from "../document.ts";
 import { span } from "../model/model.ts";
+import { ofLayer } from "./emphasis.ts";
 import { type Figure, REACH } from "./figure.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Ribbon } from "./ribbon.ts";
@@ -119,7 +120,7 @@ export class Paths implements Part {
       width,
       behind: name === "trace" ? 0.3 : 0.35,
     });
-    (name === "polhode" ? this.inBody : this.inSpace).add(ribbon.object);
+    (name === "polhode" ? this.inBody : this.inSpace).add(ofLayer(name, ribbon.object));
     return { name, ribbon, tail, points };
   }
 

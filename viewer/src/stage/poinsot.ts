@@ -40,6 +40,7 @@ export function poinsot({ figure, palette, screen }: Setting): Part | null {
   const inBody = new Group().add(ellipsoid);
   const inSpace = new Group().add(plane.object, contact);
   return {
+    layer: "poinsot",
     inBody,
     inSpace,
     update({ omega, momentum, doubleKinetic }, shown) {

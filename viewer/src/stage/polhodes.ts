@@ -1,5 +1,6 @@
 import { Vector3 } from "three";
 import type { Triple } from "../core/core.ts";
+import { ordered } from "../model/axes.ts";
 
 /**
  * Curves of constant |L| on the energy ellipsoid, in principal axes. In the coordinates u_k = ω_k √(i_k/2T) the ellipsoid
@@ -15,11 +16,6 @@ const EQUAL = 1e-9;
 
 /** A closed curve of unit vectors u. */
 export type Curve = Vector3[];
-
-/** The indices of the axes from the smallest moment to the largest. */
-export function ordered(moments: Triple): Triple {
-  return [0, 1, 2].sort((a, b) => moments[a]! - moments[b]!) as Triple;
-}
 
 /** The polhodes near that of a body, evenly spread between the poles and the separatrix. */
 export function neighbours(moments: Triple): Curve[] {

@@ -1,15 +1,18 @@
 import type { ReadonlySignal } from "@preact/signals";
 import { Group, Vector2, Vector3 } from "three";
-import { State } from "../core/core.ts";
+import { type About, State } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
 import type { CameraName, Shown } from "../document.ts";
+import { namedAxes } from "../model/axes.ts";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
+import { acting } from "./acting.ts";
 import { body } from "./body.ts";
 import { crowd } from "./crowd.ts";
-import { disc, MOMENTUM, OMEGA } from "./disc.ts";
-import { figureOf } from "./figure.ts";
-import { frame } from "./frames.ts";
+import { disc, MOMENTUM, OMEGA, TORQUE } from "./disc.ts";
+import { emphasize, ofLayer } from "./emphasis.ts";
+import { actingOn, figureOf } from "./figure.ts";
+import { frame, principal } from "./frames.ts";
 import { gravity } from "./gravity.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Paths } from "./paths.ts";
@@ -49,6 +52,9 @@ export class Stage extends Viewport {
   private fitting = false;
   private played = 0;
   private whole = false;
+  /** Whether laws or thrusts act on the body, and the layer that was emphasized. */
+  private acts = false;
+  private emphasized: keyof Shown | null = null;
 
   constructor(
     host: HTMLElement,
@@ -64,8 +70,9 @@ export class Stage extends Viewport {
       const turn = model.turned.value;
       if (turn && turn !== turned) this.viewpoint.turn(turn);
       turned = turn;
-      const { motion, row, shown, marked, camera, playing } = model;
-      for (const watched of [motion, row, shown, marked, camera, playing, palette]) void watched.value;
+      const { motion, row, shown, marked, pointed, camera, playing } = model;
+      for (const watched of [motion, row, shown, marked, pointed, camera, playing, palette])
+        void watched.value;
     });
   }
 
@@ -126,6 +133,9 @@ export class Stage extends Viewport {
       const instant = this.instant(row);
       this.turning.quaternion.copy(instant.attitude);
       for (const part of this.parts) part.update(instant, shown);
+      const pointed = model.pointed.peek();
+      if (pointed !== null || this.emphasized !== null) emphasize(this.space, pointed);
+      this.emphasized = pointed;
       const description = this.description(shown);
       if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
@@ -143,6 +153,8 @@ export class Stage extends Viewport {
     this.paths = null;
     if (!motion) return;
     const figure = figureOf(motion);
+    this.acts = figure.acting !== null && figure.about.laws.length + figure.acting.thrusts.length > 0;
+    this.emphasized = null;
     const setting: Setting = {
       figure,
       palette,
@@ -155,9 +167,12 @@ export class Stage extends Viewport {
     const parts = [
       body(setting),
       frame(setting, "body"),
+      principal(setting),
       frame(setting, "space"),
       disc(setting, OMEGA),
       disc(setting, MOMENTUM),
+      figure.torque > 0 ? disc(setting, TORQUE) : null,
+      acting(setting),
       poinsot(setting),
       this.paths,
       tip(setting, () => this.model.marked.peek()),
@@ -167,7 +182,8 @@ export class Stage extends Viewport {
     this.parts = parts.filter((part) => part !== null);
     this.turning = new Group();
     this.space.add(this.turning);
-    for (const { inSpace, inBody } of this.parts) {
+    for (const { layer, inSpace, inBody } of this.parts) {
+      for (const object of [inSpace, inBody]) if (layer && object) ofLayer(layer, object);
       if (inSpace) this.space.add(inSpace);
       if (inBody) this.turning.add(inBody);
     }
@@ -187,12 +203,15 @@ export class Stage extends Viewport {
 
   private instant(row: Float64Array): Instant {
     const attitude = quaternion(row, State.rotor);
+    const acting = this.acts ? actingOn(this.motion!, row) : null;
     this.space.quaternion.identity().slerp(attitude.clone().invert(), this.viewpoint.withBody);
     return {
       time: row[State.time]!,
       attitude,
       omega: vector(row, State.omegaSpace),
       momentum: vector(row, State.momentumSpace),
+      torque: vector(acting?.torque ?? [0, 0, 0]),
+      acting,
       doubleKinetic: vector(row, State.omegaBody).dot(vector(row, State.momentumBody)),
       ...this.directions(),
       played: this.played,
@@ -204,7 +223,7 @@ export class Stage extends Viewport {
     const about = this.motion?.about;
     const things: [boolean, string][] = [
       [shown.body, "the body"],
-      [shown.bodyFrame, "its axes f1, f2, f3"],
+      [shown.bodyFrame, bodyAxes(about)],
       [shown.spaceFrame, "the axes e1, e2, e3 of space"],
       [shown.omega, "the angular velocity Ω as an oriented disc"],
       [shown.momentum, "the angular momentum L as an oriented disc"],
@@ -214,9 +233,18 @@ export class Stage extends Viewport {
       [shown.trace, "the path of an axis of the body"],
       [shown.energy, "the tip of Ω"],
       [shown.gravity && about?.held === true, "the pivot and the weight"],
+      [shown.torque && this.acts, "the torque as an oriented disc"],
     ];
     const drawn = things.filter(([seen]) => seen).map(([, thing]) => thing);
     const bodies = about?.ensemble ? ` One of ${about.ensemble} bodies.` : "";
     return `${about?.title ?? "A rigid body in motion"}.${bodies} Drawn: ${drawn.join(", ") || "nothing"}. The keys I, J, K and L turn the view, + and − zoom, F fits it.`;
   }
+}
+
+/** The axes of the body in words. */
+function bodyAxes(about: About | undefined): string {
+  const axes = about && namedAxes(about.body);
+  return axes?.own
+    ? `its axes ${axes.names.map((name, k) => `f${k + 1} (${name})`).join(", ")}`
+    : "its axes f1, f2, f3, and its principal axes";
 }

@@ -13,6 +13,7 @@ export function tip({ figure, palette, screen }: Setting, marked: () => boolean)
   const dot = new Mesh(new SphereGeometry(DOT, 24, 16), new MeshBasicMaterial({ color: palette.omega }));
   const inSpace = new Group().add(shapes.object, dot);
   return {
+    layer: "energy",
     inSpace,
     update({ omega }, shown) {
       inSpace.visible = shown.energy && omega.length() > 0;

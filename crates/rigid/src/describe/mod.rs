@@ -3,6 +3,7 @@
 //! The kind follows from the torques ([`Setup::kind`]), regime and periods of free motions and heavy symmetric tops from
 //! the start ([`Setup::facts`]), and the rest from the states at the output times ([`Setup::describe`]).
 
+pub mod acting;
 mod samples;
 
 use crate::exact::free::FreeMotion;

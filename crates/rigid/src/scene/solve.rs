@@ -59,6 +59,14 @@ impl Scene {
         })
     }
 
+    /// Thrusts: the force, and the point at which it acts, in body axes.
+    pub fn thrusts<'a>(&'a self, body: &'a Body) -> impl Iterator<Item = (Vector, Vector)> + 'a {
+        self.forces.iter().filter_map(|push| match push.force {
+            Force::Body(thrust) => Some((thrust, push.at.unwrap_or(body.center_of_mass))),
+            _ => None,
+        })
+    }
+
     /// The options. Both tolerances bound the same scaled difference, so the larger one applies.
     pub fn options(&self) -> Options {
         let choice = &self.run.choice;

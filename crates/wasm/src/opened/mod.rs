@@ -5,7 +5,7 @@ pub mod crowd;
 use crate::rows::{ROW, rows};
 use crowd::Crowd;
 use polhode_rigid::body::mesh::MeshError;
-use polhode_rigid::run::{Motion, Problem, Progress};
+use polhode_rigid::run::{Motion, Problem, Progress, Setup};
 use polhode_rigid::scene::Law;
 use polhode_rigid::{Body, Diagnostic, Scene, SimulateError, Surface, TriangleMesh};
 use std::cell::OnceCell;
@@ -26,6 +26,8 @@ pub struct Opened {
     pub body: Body,
     /// The torque laws.
     pub laws: Vec<Law>,
+    /// The rotation of the body: its start and all torques.
+    pub setup: Setup,
     /// The problem that was solved.
     pub problem: Problem,
     /// The motion.
@@ -62,7 +64,8 @@ impl Opened {
             }
             error => error.to_string(),
         })?;
-        Ok(Opened { scene, body, laws, problem, motion, surface, crowd: OnceCell::new() })
+        let setup = scene.setup(&body, &laws);
+        Ok(Opened { scene, body, laws, setup, problem, motion, surface, crowd: OnceCell::new() })
     }
 
     /// Rows of states at any times: within the horizon of an exact motion, else within the run.

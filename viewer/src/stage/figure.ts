@@ -16,6 +16,8 @@ export const REACH = 1.25;
 export interface Figure {
   motion: Motion;
   about: About;
+  /** The length of a drawn unit, m. */
+  size: number;
   /** The surface of the body in body axes from the drawn origin, in drawn units. */
   surface: Surface;
   /** The centre of mass from the drawn origin in body axes, in drawn units. */
@@ -41,6 +43,7 @@ export function figureOf(motion: Motion): Figure {
   return {
     motion,
     about,
+    size,
     surface: { ...surface, vertices: surface.vertices.map((x) => x / size) },
     centre: arm.clone().divideScalar(size),
     traced: arm.length() > 0 ? arm.clone().normalize() : nearestAxis(vector(rows, State.omegaBody)),

@@ -8,7 +8,7 @@ import type { Palette } from "../palette.ts";
 import { body } from "./body.ts";
 import { crowd } from "./crowd.ts";
 import { disc, MOMENTUM, OMEGA } from "./disc.ts";
-import { figureOf } from "./figure.ts";
+import { type Figure, figureOf } from "./figure.ts";
 import { frame } from "./frames.ts";
 import { gravity } from "./gravity.ts";
 import type { Instant, Part, Setting } from "./part.ts";
@@ -16,6 +16,7 @@ import { Paths } from "./paths.ts";
 import { poinsot } from "./poinsot.ts";
 import { quaternion, vector } from "./rotor.ts";
 import { tip } from "./tip.ts";
+import type { SpaceTools } from "./tools.ts";
 import { Viewport } from "./viewport.ts";
 
 /** Options of a captured picture; width and height are in pixels. */
@@ -49,13 +50,17 @@ export class Stage extends Viewport {
   private fitting = false;
   private played = 0;
   private whole = false;
+  private figure: Figure | null = null;
+  private readonly leave: () => void;
 
   constructor(
     host: HTMLElement,
     private readonly model: Model,
     private readonly palette: ReadonlySignal<Palette>,
+    private readonly tools: SpaceTools | null = null,
   ) {
     super(host);
+    this.leave = tools?.attach(host) ?? (() => {});
     let fitted = model.fitted.peek();
     let turned = model.turned.peek();
     this.watch(() => {
@@ -64,9 +69,15 @@ export class Stage extends Viewport {
       const turn = model.turned.value;
       if (turn && turn !== turned) this.viewpoint.turn(turn);
       turned = turn;
+      void tools?.changed.value;
       const { motion, row, shown, marked, camera, playing } = model;
       for (const watched of [motion, row, shown, marked, camera, playing, palette]) void watched.value;
     });
+  }
+
+  override dispose(): void {
+    this.leave();
+    super.dispose();
   }
 
   /** Returns to the preset of the model's camera. */
@@ -130,6 +141,7 @@ export class Stage extends Viewport {
       if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
     this.render(shown.labels && row !== null);
+    this.tools?.place(this.sight(row), this.figure);
     this.host.dataset.points = String(this.paths?.points ?? 0);
   }
 
@@ -140,9 +152,9 @@ export class Stage extends Viewport {
     [this.motion, this.painted, this.parts] = [motion, palette, []];
     this.replace(palette);
     this.say(null);
-    this.paths = null;
+    [this.paths, this.figure] = [null, null];
     if (!motion) return;
-    const figure = figureOf(motion);
+    const figure = (this.figure = figureOf(motion));
     const setting: Setting = {
       figure,
       palette,
@@ -163,6 +175,7 @@ export class Stage extends Viewport {
       tip(setting, () => this.model.marked.peek()),
       gravity(setting),
       crowd(setting),
+      ...(this.tools?.parts(setting) ?? []),
     ];
     this.parts = parts.filter((part) => part !== null);
     this.turning = new Group();
@@ -213,6 +226,7 @@ export class Stage extends Viewport {
       [shown.herpolhode, "the herpolhode"],
       [shown.trace, "the path of an axis of the body"],
       [shown.energy, "the tip of Ω"],
+      [shown.ghost && this.tools !== null, "a ghost that started 0.1° away"],
       [shown.gravity && about?.held === true, "the pivot and the weight"],
     ];
     const drawn = things.filter(([seen]) => seen).map(([, thing]) => thing);

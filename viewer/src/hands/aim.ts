@@ -49,7 +49,10 @@ export class Aim {
       momentum: palette.momentum,
       attitude: palette.text,
     };
-    for (const pull of this.pulls) if (sight) pull.place(sight, this.active, colours[pull.kind]);
+    for (const pull of this.pulls) {
+      if (sight) pull.place(sight, this.active, colours[pull.kind]);
+      else pull.hide();
+    }
   }
 
   part({ palette, screen }: Setting): Part {
@@ -108,6 +111,10 @@ class Pull implements Holding {
 
   attach(layer: HTMLElement): void {
     this.grip = new Grip(layer, `grip-${this.kind}`, NAMES[this.kind][0], this);
+  }
+
+  hide(): void {
+    this.grip?.hide();
   }
 
   place(sight: Sight, active: boolean, colour: string): void {

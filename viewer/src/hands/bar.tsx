@@ -20,7 +20,7 @@ export function HandsBar({ hands }: { hands: Hands }) {
   const shown = model.shown.value.ghost;
   return (
     <div class="hands">
-      <div class="buttons" role="toolbar" aria-label="Hands on the body">
+      <div class="buttons" role="group" aria-label="Hands on the body">
         <Action id="undo" icon="undo" title="Undo (Ctrl+Z)" off={!undoable.value} act={() => model.undo()}>
           Undo
         </Action>
@@ -72,7 +72,7 @@ function line({ doing, report, hint, tool }: Hands): string | null {
 function Apart({ hands }: { hands: Hands }) {
   const angle = hands.ghost.angle.value;
   return (
-    <output id="apart" class="digits">
+    <output id="apart" class="digits" aria-live="off">
       {angle === null ? "…" : `${(angle / DEGREE.size).toFixed(2)}°`}
       <span class="note"> apart</span>
     </output>

@@ -59,11 +59,14 @@ export class EnergyGrip implements EnergyTool, Holding {
   place(sight: Sight | null, globe: Matrix4): void {
     this.sight = sight;
     this.globe.copy(globe);
-    if (!sight || !this.grip) return;
+    if (!this.grip) return;
+    if (!sight) return this.grip.hide();
     const omega = this.held.peek() ?? vector(sight.row, State.omegaBody);
     const parts = omega.toArray().map((part) => significant(part, 3));
+    // Not the numbers of each frame while it plays.
+    const at = this.hands.model.playing.peek() ? "Ω" : `Ω = (${parts.join(", ")}) rad/s in the body`;
     this.grip.describe(
-      `Ω = (${parts.join(", ")}) rad/s in the body. Drag it, or move it with the arrow keys; the energy stays.`,
+      `${at}. Drag it, or move it with the arrow keys; the energy stays.`,
       this.palette().omega,
     );
     this.grip.place(this.on(omega, sight).applyMatrix4(globe), sight);

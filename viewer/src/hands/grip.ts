@@ -63,6 +63,10 @@ export class Grip {
     this.button.style.color = colour;
   }
 
+  hide(): void {
+    this.button.hidden = true;
+  }
+
   /** Moves it to a point of the world; null hides it. */
   place(point: Vector3 | null, sight: Sight): void {
     this.sight = sight;

@@ -64,7 +64,8 @@ export class Push {
 
   place(sight: Sight | null, figure: Figure | null): void {
     [this.sight, this.figure] = [sight, figure];
-    if (!sight || !figure || !this.grip) return;
+    if (!this.grip) return;
+    if (!sight || !figure) return this.grip.hide();
     const seen = this.active && this.dragging === null;
     const at = seen ? this.footOf(figure, sight).clone() : null;
     this.grip.place(
@@ -127,7 +128,9 @@ export class Push {
   }
 
   private down(event: PointerEvent, host: HTMLElement): void {
-    if (!this.active || event.button !== 0 || this.dragging !== null) return;
+    // A second finger zooms.
+    if (this.dragging !== null) return this.end(false);
+    if (!this.active || event.button !== 0) return;
     const foot = this.hit(this.pointer(event, host));
     if (!foot || !this.hands.grab()) return;
     // Not the camera's.
@@ -222,8 +225,10 @@ export class Push {
 
   /** The chosen foot, or the point of the body that is farthest to the upper right. */
   private footOf(figure: Figure, sight: Sight): Vector3 {
-    const same = this.foot && sameBody(this.foot.of, figure);
-    if (this.foot && same) return this.foot.at;
+    if (this.foot && sameBody(this.foot.of, figure)) {
+      this.foot.of = figure;
+      return this.foot.at;
+    }
     const way = linear(
       sight.space.clone().invert(),
       linear(sight.camera.matrixWorld, new Vector3(1, 0.6, 0.5)),

@@ -80,7 +80,7 @@ export class Push {
 
   part({ palette, screen }: Setting): Part {
     const shapes = new Shapes(screen, palette.text);
-    const shaft = shapes.arrow(new Vector3(), { width: 4 });
+    const shaft = shapes.arrow(new Vector3(), { width: 4, behind: 0.5 });
     shapes.ball(new Vector3(), 0.035);
     const inSpace = new Group().add(shapes.object);
     return {

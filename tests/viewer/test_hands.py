@@ -36,7 +36,9 @@ def hands(opened):
     """Opens a page with a scene at a time within its motion, with the energy ellipsoid beside."""
 
     def opened_at(scene=BOX, **view):
-        page = opened({"format": 1, "scene": scene, "view": {"shown": {"energy": True}, "time": TIME, **view}})
+        page = opened(
+            {"format": 1, "scene": scene, "view": {"shown": {"energy": True}, "time": TIME, **view}}
+        )
         page.drawn()
         return page
 
@@ -75,7 +77,7 @@ def assert_same(a, b, scale=None, tolerance=ROUNDING):
 
 
 def assert_follows(page, tmp_path):
-    """Assert that the page shows the motion of its scene in Python, which begins at the time of the change."""
+    """Assert that the page shows the motion that Python gives for its scene, from the change on."""
     followed = followed_text(page.scene(), tmp_path / "changed.toml")
     assert followed.motion.time[0] == TIME
     page.compare(followed)
@@ -99,7 +101,7 @@ def test_impulse_equals_that_of_python(name, core, tmp_path):
     assert found["energy"] == pytest.approx(kinetic[1] - kinetic[0], abs=ROUNDING * max(kinetic))
 
 
-@pytest.mark.parametrize("name", ["box", "damping", "lagrange"])
+@pytest.mark.parametrize("name", ["box", "damping", pytest.param("lagrange", marks=pytest.mark.slow)])
 def test_push_by_keys(name, hands, tmp_path):
     """The attitude stays, L changes as reported, and the motion goes on from the instant of the push."""
     page = hands(scene_of(name))
@@ -107,16 +109,16 @@ def test_push_by_keys(name, hands, tmp_path):
     page.page.locator("#push").click()
     page.drawn()
     press(page, "grip-push", "ArrowUp", "ArrowUp", "Shift+ArrowRight", "Alt+ArrowLeft")
-    foretold = page.page.locator("#hands-report").inner_text()
+    predicted = page.page.locator("#hands-report").inner_text()
     press(page, "grip-push", "Enter")
     after = page.state()
     assert after["time"] == TIME
     assert_same(after["rotor"], before["rotor"])
     change = np.linalg.norm(after["momentum_space"] - before["momentum_space"])
-    told = page.page.locator("#hands-report").inner_text()
+    reported = page.page.locator("#hands-report").inner_text()
     share = 100 * change / np.linalg.norm(before["momentum_space"])
     assert share > 1
-    for text in (foretold, told):
+    for text in (predicted, reported):
         # Three digits.
         assert float(re.search(r"([\d.]+) %", text)[1]) == pytest.approx(share, rel=5e-3)
     assert_follows(page, tmp_path)
@@ -144,9 +146,33 @@ def test_push_by_the_pointer(hands, tmp_path):
     assert page.scene() == scene
 
 
-def test_push_moves_a_body_that_flies(hands, tmp_path):
+def test_push_by_touch(opened):
+    """A finger draws the arrow, and the page does not scroll."""
+    phone = {"viewport": {"width": 390, "height": 844}, "is_mobile": True, "has_touch": True}
+    page = opened({"format": 1, "scene": BOX}, **phone)
+    page.page.locator("#push").tap()
+    page.drawn()
+    scene, box = page.scene(), page.page.locator(".stage").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    screen = page.page.context.new_cdp_session(page.page)
+    for k in range(6):
+        points = [{"x": x + 5 * k, "y": y - 9 * k}]
+        kind = "touchMove" if k else "touchStart"
+        screen.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    screen.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    settle(page)
+    assert page.scene() != scene
+    assert page.page.locator("#hands-report").inner_text().startswith("Push: L changes by")
+
+
+# By now a force has moved it, from rest.
+FALLING = SCENES["thrown"].replace("position = [0, 0, 1]\nvelocity = [1, 0, 2]\n", "")
+
+
+@pytest.mark.parametrize("scene", [SCENES["thrown"], FALLING], ids=["thrown", "falling"])
+def test_push_moves_a_body_that_flies(scene, hands, tmp_path):
     """The centre of mass gains J/m where it has a path of its own; its place stays."""
-    page = hands(SCENES["thrown"])
+    page = hands(scene)
     rows = f"async () => Array.from((await {VIEWER}.ready).row.value)"
     before = np.array(page.page.evaluate(rows))
     page.page.locator("#push").click()
@@ -265,6 +291,29 @@ def test_history_is_bounded(core):
     assert shown[-1] == ["51 again", True, True]
 
 
+def test_a_scene_set_by_python_can_be_undone(hands):
+    page = hands()
+    replace = f"async scene => (await {VIEWER}.ready).replace(scene)"
+    page.page.evaluate(replace, BOX.replace("5 cm", "6 cm"))
+    page.page.keyboard.press("Control+z")
+    page.until("model.scene.value === scene && !model.solving.value", scene=BOX)
+    assert page.data("time") == TIME
+
+
+def test_tools_are_reached_by_keys(hands):
+    """A key chooses a tool and its first handle, Esc puts it away."""
+    focused = f"{VIEWER}.shadowRoot.activeElement?.id"
+    page = hands()
+    page.page.locator("h1").click()
+    for key, tool, grip in (("u", "push", "grip-push"), ("a", "aim", "grip-omega")):
+        page.page.keyboard.press(key)
+        page.until(f"{focused} === grip", grip=grip)
+        page.page.keyboard.press("Escape")
+        page.until(f"{focused} === tool", tool=tool)
+        page.drawn()
+        assert page.page.locator(f"#{grip}").is_hidden()
+
+
 def test_another_scene_has_a_history_of_its_own(hands):
     page = hands()
     press(page, "grip-energy", "ArrowUp")
@@ -273,7 +322,7 @@ def test_another_scene_has_a_history_of_its_own(hands):
     assert page.page.locator("#undo").is_disabled()
 
 
-@pytest.mark.parametrize("name", ["box", "full inertia", "lagrange"])
+@pytest.mark.parametrize("name", ["full inertia", pytest.param("lagrange", marks=pytest.mark.slow)])
 def test_ghost_starts_a_tenth_of_a_degree_away(name, hands, tmp_path):
     text = scene_of(name)
     page = hands(text)

@@ -6,6 +6,8 @@ const TOOLS: [tool: Exclude<Tool, "none">, label: string, title: string][] = [
   ["push", "Push", "Push the body with an impulse (U)"],
   ["aim", "Aim", "Handles for Ω, L and the attitude (A)"],
 ];
+/** The grips that keys move first. */
+const FIRST = { push: "grip-push", aim: "grip-omega" } as const;
 const HINTS: Record<Tool, string | null> = {
   none: null,
   push: "Press on the body and drag: the arrow is an impulse J. Released, it adds r∧J to L; the attitude stays.",
@@ -40,7 +42,10 @@ export function HandsBar({ hands }: { hands: Hands }) {
             title={title}
             aria-pressed={hands.tool.value === tool && able}
             disabled={!able}
-            onClick={() => hands.choose(tool)}
+            onClick={(event) => {
+              hands.choose(tool);
+              if (event.detail === 0) focusOn(FIRST[tool], event.currentTarget);
+            }}
           >
             {label}
           </button>
@@ -60,6 +65,14 @@ export function HandsBar({ hands }: { hands: Hands }) {
         {line(hands)}
       </p>
     </div>
+  );
+}
+
+/** Moves the focus to a grip, which the next frame shows. */
+function focusOn(id: string, from: HTMLElement): void {
+  const root = from.getRootNode() as ParentNode;
+  requestAnimationFrame(() =>
+    requestAnimationFrame(() => root.querySelector<HTMLElement>(`#${id}:not([hidden])`)?.focus()),
   );
 }
 

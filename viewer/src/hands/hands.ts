@@ -75,16 +75,15 @@ export class Hands {
 
   /** Gives the body another state at the time of the grab; `what` names the change. */
   give(what: string, { omega, attitude, velocity }: Given): void {
-    const [row, now] = [this.before, this.controls.start.peek()];
-    if (!row || !now) return;
+    const row = this.before;
+    if (!row) return;
     const three = (at: number): Triple => [row[at]!, row[at + 1]!, row[at + 2]!];
     const rotor: Quadruple = attitude
       ? [attitude.w, -attitude.x, -attitude.y, -attitude.z]
       : [row[State.rotor]!, ...three(State.rotor + 1)];
-    const path = now.path && {
-      position: three(State.position),
-      velocity: velocity?.toArray() ?? three(State.velocity),
-    };
+    const path = this.moves(row)
+      ? { position: three(State.position), velocity: velocity?.toArray() ?? three(State.velocity) }
+      : null;
     const start = startAt(rotor, omega?.toArray() ?? three(State.omegaBody), path, row[State.time]!);
     batch(() => {
       this.controls.setStart(start);
@@ -98,9 +97,11 @@ export class Hands {
     this.resume = false;
   }
 
-  /** Whether the centre of mass has a path of its own. */
-  get moves(): boolean {
-    return (this.controls.start.peek()?.path ?? null) !== null;
+  /** Whether the centre of mass has a path of its own; by now, if forces have moved it since the start. */
+  moves(row: Float64Array): boolean {
+    if (this.model.about.peek()?.held) return false;
+    const known = this.controls.start.peek()?.path ?? null;
+    return known !== null || row.subarray(State.position, State.velocity + 3).some((part) => part !== 0);
   }
 
   /** In words, unless something else has changed the start or the body since. */

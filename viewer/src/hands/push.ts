@@ -177,7 +177,7 @@ export class Push {
     const { omega } = found.after;
     const { mass } = this.figure!.about.body;
     const velocity = vector(this.sight!.row, State.velocity);
-    const kicked = this.hands.moves && mass !== null && mass > 0;
+    const kicked = this.hands.moves(this.sight!.row) && mass !== null && mass > 0;
     this.hands.give(
       "Push",
       kicked ? { omega, velocity: velocity.addScaledVector(found.impulse, 1 / mass) } : { omega },
@@ -189,10 +189,8 @@ export class Push {
     if (!this.active || !sight || !figure || event.ctrlKey || event.metaKey) return;
     const way = ARROWS[event.key];
     const arrow = this.arrow.peek();
-    if (event.key === "Escape") {
-      if (arrow) this.arrow.value = null;
-      else this.hands.choose("push");
-    } else if (event.key === "Enter" || event.key === " ") {
+    if (event.key === "Escape" && arrow) this.arrow.value = null;
+    else if (event.key === "Enter" || event.key === " ") {
       if (arrow && this.hands.grab(true)) this.push();
       this.arrow.value = null;
     } else if (way) {

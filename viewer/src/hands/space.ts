@@ -31,6 +31,13 @@ export class SpaceHands implements SpaceTools {
 
   attach(host: HTMLElement): () => void {
     const layer = layerOf(host, "Handles in the picture");
+    layer.addEventListener("keydown", (event) => {
+      const tool = this.hands.tool.peek();
+      if (event.key !== "Escape" || event.defaultPrevented || tool === "none") return;
+      event.preventDefault();
+      this.hands.choose(tool);
+      (layer.getRootNode() as ParentNode).querySelector<HTMLElement>(`#${tool}`)?.focus();
+    });
     const leave = [
       this.aim.attach(layer),
       this.push.attach(host, layer),

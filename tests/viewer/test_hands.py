@@ -27,6 +27,11 @@ samples = 401
 TIME = 1.5
 
 
+def slow(value):
+    """A further variant, for the slow tests."""
+    return pytest.param(value, marks=pytest.mark.slow)
+
+
 def scene_of(name):
     return SCENES.get(name, BOX)
 
@@ -101,7 +106,7 @@ def test_impulse_equals_that_of_python(name, core, tmp_path):
     assert found["energy"] == pytest.approx(kinetic[1] - kinetic[0], abs=ROUNDING * max(kinetic))
 
 
-@pytest.mark.parametrize("name", ["box", "damping", pytest.param("lagrange", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["damping", *(slow(name) for name in ("box", "lagrange"))])
 def test_push_by_keys(name, hands, tmp_path):
     """The attitude stays, L changes as reported, and the motion goes on from the instant of the push."""
     page = hands(scene_of(name))
@@ -169,7 +174,7 @@ def test_push_by_touch(opened):
 FALLING = SCENES["thrown"].replace("position = [0, 0, 1]\nvelocity = [1, 0, 2]\n", "")
 
 
-@pytest.mark.parametrize("scene", [SCENES["thrown"], FALLING], ids=["thrown", "falling"])
+@pytest.mark.parametrize("scene", [slow(SCENES["thrown"]), FALLING], ids=["thrown", "falling"])
 def test_push_moves_a_body_that_flies(scene, hands, tmp_path):
     """The centre of mass gains J/m where it has a path of its own; its place stays."""
     page = hands(scene)
@@ -187,7 +192,7 @@ def test_push_moves_a_body_that_flies(scene, hands, tmp_path):
     assert_follows(page, tmp_path)
 
 
-@pytest.mark.parametrize("by", ["keys", "pointer"])
+@pytest.mark.parametrize("by", [slow("keys"), "pointer"])
 def test_omega_moves_over_the_energy_ellipsoid(by, hands, tmp_path):
     page = hands()
     before = page.state()
@@ -210,7 +215,7 @@ def test_omega_moves_over_the_energy_ellipsoid(by, hands, tmp_path):
 KEPT = {"omega": "omega_body", "momentum": "momentum_space"}
 
 
-@pytest.mark.parametrize("grip", ["omega", "momentum", "attitude"])
+@pytest.mark.parametrize("grip", ["momentum", *(slow(grip) for grip in ("omega", "attitude"))])
 def test_handles_aim_the_bivectors_and_the_attitude(grip, hands, tmp_path):
     page = hands()
     assert page.page.locator(f"#grip-{grip}").is_hidden()
@@ -322,7 +327,7 @@ def test_another_scene_has_a_history_of_its_own(hands):
     assert page.page.locator("#undo").is_disabled()
 
 
-@pytest.mark.parametrize("name", ["full inertia", pytest.param("lagrange", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["full inertia", slow("lagrange")])
 def test_ghost_starts_a_tenth_of_a_degree_away(name, hands, tmp_path):
     text = scene_of(name)
     page = hands(text)

@@ -116,6 +116,8 @@ export interface Shown {
   trace: boolean;
   /** The energy ellipsoid of a free body with its polhodes, in a second picture. */
   energy: boolean;
+  /** A second body whose Ω at the start is 0.1° from that of the first. */
+  ghost: boolean;
   /** Pivot, weight and the sphere of the locus, for tops. */
   gravity: boolean;
   labels: boolean;

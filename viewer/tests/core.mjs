@@ -67,6 +67,27 @@ const answers = {
       through: own.map((curve) => curve && plain(curve)),
     };
   },
+  pushed: async ({ time, at, impulse, ...scene }) => {
+    const { Vector3 } = await vite.ssrLoadModule("three");
+    const { pushed } = await vite.ssrLoadModule("/src/hands/impulse.ts");
+    return withMotion(scene, (motion) => {
+      const row = motion.states([time]);
+      const after = pushed(row, motion.about, new Vector3(...at), new Vector3(...impulse));
+      const [omega, momentum] = [after.omega.toArray(), after.momentum.toArray()];
+      return { row: Array.from(row), omega, momentum, energy: after.energy };
+    });
+  },
+  /** What the history shows after each of some calls of its methods. */
+  history: async ({ calls }) => {
+    const { History } = await vite.ssrLoadModule("/src/model/history.ts");
+    const history = new History();
+    return calls.map(([name, scene]) => {
+      if (name === "record") history.record({ scene }, history.stamp());
+      else if (name === "clear") history.clear({ scene });
+      else history[name]();
+      return [history.present?.scene ?? null, history.undoable.value, history.redoable.value];
+    });
+  },
   called: ({ name, given }) => core[name](...given),
 };
 

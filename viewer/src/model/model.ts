@@ -1,5 +1,6 @@
 import { batch, computed, signal } from "@preact/signals";
 import { type About, type Files, Problem, State } from "../core/core.ts";
+import { History, type Kept } from "./history.ts";
 import { defaultSpeed } from "./speed.ts";
 import { Solver } from "../core/solver.ts";
 import type { Core, Motion } from "../core/wasm.ts";
@@ -21,6 +22,7 @@ export const SHOWN: Shown = {
   herpolhode: false,
   trace: true,
   energy: false,
+  ghost: false,
   gravity: true,
   labels: true,
 };
@@ -29,6 +31,13 @@ export const SHOWN: Shown = {
 interface Opened {
   name: string;
   files: Files;
+}
+
+/** Holds values that the history keeps beside a scene: those of the controls. */
+export interface Keeper {
+  take(): unknown;
+  /** Sets the values that `take` returned, or, from null, those of the motion shown. */
+  give(kept: unknown): void;
 }
 
 /**
@@ -75,6 +84,10 @@ export class Model {
   /** The state at the time shown, a row of `State`. */
   readonly row = computed<Float64Array | null>(() => this.motion.value?.states([this.time.value]) ?? null);
 
+  /** The changes of the scene, which can be undone. */
+  readonly history = new History();
+
+  private keeper: Keeper | null = null;
   private name = "scene.toml";
   private files: Files = new Map();
   /** The scene as given, and as last opened. */
@@ -120,6 +133,7 @@ export class Model {
    * newer scene was opened in the meantime.
    */
   async open(scene: string, options: Opened | null = this.pending): Promise<boolean> {
+    const step = this.newStep();
     const { name, files } = options ?? { name: this.name, files: this.files };
     const motion = await this.solved(scene, name, files, true);
     if (motion === GIVEN_UP) return false;
@@ -133,11 +147,14 @@ export class Model {
       if (options) this.take(scene, options);
       this.begin(scene, motion.about.start.time);
     });
+    if (options) this.history.clear(this.kept());
+    else this.remember(step);
     return true;
   }
 
   /** Shows another scene at the present time and speed. */
   async replace(scene: string): Promise<void> {
+    const step = this.newStep();
     const motion = await this.solved(scene, this.name, this.files, true);
     if (motion === GIVEN_UP) return;
     if (motion === null) {
@@ -150,6 +167,7 @@ export class Model {
       this.begin(scene, motion.about.start.time);
       this.look({ time, speed });
     });
+    this.remember(step);
   }
 
   /** Opens the scene again with files that it refers to. */
@@ -179,13 +197,38 @@ export class Model {
    */
   async change(tables: string): Promise<void> {
     if (this.base === null || this.opening !== 0) return;
+    const step = this.history.stamp();
     try {
       const scene = this.core.merged(this.base, tables);
       const motion = await this.solved(scene, this.name, this.files, false);
-      if (motion && motion !== GIVEN_UP) this.become(motion, scene);
+      if (!motion || motion === GIVEN_UP) return;
+      this.become(motion, scene);
+      this.remember(step);
     } catch (error) {
       this.problem.value = words(error);
     }
+  }
+
+  /** Undoes the last change of the scene; the time does not change. */
+  undo(): Promise<void> {
+    return this.restore(this.history.back());
+  }
+
+  /** Makes the change again that was undone last. */
+  redo(): Promise<void> {
+    return this.restore(this.history.forth());
+  }
+
+  /** Lets the history keep values beside the scenes. */
+  keep(keeper: Keeper | null): void {
+    this.keeper = keeper;
+    const { present } = this.history;
+    if (present) present.controls ??= keeper?.take() ?? null;
+  }
+
+  /** The name of the scene, and the files that it refers to. */
+  get source(): Opened {
+    return { name: this.name, files: this.files };
   }
 
   /** Goes to a time, or the nearest one at which the motion is known. */
@@ -271,6 +314,35 @@ export class Model {
     }
   }
 
+  private newStep(): number {
+    this.history.begin();
+    return this.history.stamp();
+  }
+
+  /** Adds the scene shown to the history. */
+  private remember(step: number): void {
+    const kept = this.kept();
+    if (kept) this.history.record(kept, step);
+  }
+
+  private kept(): Kept | null {
+    const scene = this.scene.value;
+    if (scene === null) return null;
+    return { scene, base: this.base, opened: this.opened.value, controls: this.keeper?.take() ?? null };
+  }
+
+  private async restore(kept: Kept | null): Promise<void> {
+    if (!kept) return;
+    const motion = await this.solved(kept.scene, this.name, this.files, true);
+    if (!motion || motion === GIVEN_UP) return;
+    batch(() => {
+      this.become(motion, kept.scene);
+      [this.base, this.pending, this.draft.value] = [kept.base, null, null];
+      this.opened.value = kept.opened;
+    });
+    this.keeper?.give(kept.controls);
+  }
+
   private record(document: PageDocument, rows: Float64Array, files: Files): void {
     this.giveUp();
     const { scene, name = "scene.toml", recorded } = document;
@@ -279,6 +351,7 @@ export class Model {
     this.become(motion, scene ?? null);
     this.take(scene ?? null, { name, files });
     this.begin(scene ?? null, rows[State.time] ?? 0);
+    this.history.clear(this.kept());
   }
 
   /** Forgets the scenes that are being solved. */

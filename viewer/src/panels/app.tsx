@@ -3,6 +3,7 @@ import { Component, type ComponentChildren } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { AlgebraPage } from "../algebra/page.tsx";
 import { Definitions } from "../glossary/definitions.tsx";
+import { Hands } from "../hands/hands.ts";
 import { useAttention } from "../lessons/attend.ts";
 import { LessonList, LessonPanel } from "../lessons/panel.tsx";
 import { Lessons } from "../lessons/lessons.ts";
@@ -38,6 +39,8 @@ export function App({ model, palette, compact, wide }: Props) {
   // Kept while the algebra is shown.
   const controls = useMemo(() => new Controls(model), [model]);
   useEffect(() => () => controls.dispose(), [controls]);
+  const hands = useMemo(() => new Hands(model, controls), [model, controls]);
+  useEffect(() => () => hands.dispose(), [hands]);
   const lessons = useMemo(() => new Lessons(model), [model]);
   useEffect(() => () => lessons.dispose(), [lessons]);
   const app = useRef<HTMLDivElement>(null);
@@ -64,7 +67,7 @@ export function App({ model, palette, compact, wide }: Props) {
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
         <Boundary key={model.page.value}>
           {motion ? (
-            <MotionPage {...{ model, palette, compact, wide, controls, lessons, folds }} />
+            <MotionPage {...{ model, palette, compact, wide, controls, hands, lessons, folds }} />
           ) : (
             <AlgebraPage
               model={model}
@@ -79,8 +82,8 @@ export function App({ model, palette, compact, wide }: Props) {
   );
 }
 
-function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds: Folds }) {
-  const { model, palette, compact, controls, lessons, folds } = props;
+function MotionPage(props: Props & { controls: Controls; hands: Hands; lessons: Lessons; folds: Folds }) {
+  const { model, palette, compact, controls, hands, lessons, folds } = props;
   const known = model.about.value !== null;
   // Without a motion, the text of an invalid scene.
   const editable = known || model.draft.value !== null;
@@ -108,7 +111,7 @@ function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds
   ];
   return (
     <main class="motion">
-      <Picture model={model} palette={palette} formulas={formulas} />
+      <Picture model={model} palette={palette} hands={hands} formulas={formulas} compact={compact} />
       <Playback model={model} />
       <aside class="panels" aria-label="Values and controls">
         {learning && <LessonPanel lessons={lessons} />}

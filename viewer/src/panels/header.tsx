@@ -135,6 +135,11 @@ function Help() {
             Drag to rotate the picture; pinch or scroll to zoom. Drop a scene (.toml) anywhere to open it,
             together with the mesh that it names.
           </p>
+          <p class="note">
+            Drag the dot of Ω on the energy ellipsoid, push the body, or aim Ω, L and the attitude by their
+            handles. What you change at a time becomes the new start, at that time; what was before is
+            replaced, and Undo brings it back.
+          </p>
           <button id="help-close" onClick={() => dialog.current?.close()}>
             <Icon name="close" /> Close
           </button>

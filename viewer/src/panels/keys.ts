@@ -1,4 +1,5 @@
 import { CAMERAS } from "../document.ts";
+import { bindHistory } from "../hands/keys.ts";
 import type { Model } from "../model/model.ts";
 import { TURNS } from "../stage/camera.ts";
 
@@ -14,6 +15,10 @@ export const KEYS: [string, string][] = [
   ["F", "fit everything into the picture"],
   ["P", "show or hide Poinsot’s ellipsoid"],
   ["D", "light or dark colours"],
+  ["Ctrl+Z", "undo a change of the scene; with Shift, redo"],
+  ["U", "push the body: arrow keys aim, Enter pushes, Esc ends"],
+  ["A", "aim Ω, L and the attitude by handles; arrow keys move them, with Shift finely"],
+  ["G", "show or hide the ghost, which starts 0.1° away"],
   ["?", "this help"],
 ];
 
@@ -53,16 +58,23 @@ export function setSpeed(model: Model, speed: number): void {
  * on the page itself. Returns a function that unbinds them.
  */
 export function bindKeys(host: HTMLElement, model: Model): () => void {
-  const listen = (event: KeyboardEvent): void => {
+  const ours = (event: KeyboardEvent): boolean => {
     const inside = event.composedPath().includes(host);
     const onPage = event.target === document.body && document.querySelectorAll(host.localName).length === 1;
-    if (!inside && !(onPage && !host.hasAttribute("compact"))) return;
+    if (!inside && !(onPage && !host.hasAttribute("compact"))) return false;
+    return model.page.value === "motion" && !takesKeys(event);
+  };
+  const listen = (event: KeyboardEvent): void => {
+    if (!ours(event)) return;
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (model.page.value !== "motion" || takesKeys(event)) return;
     if (perform(event, host, model)) event.preventDefault();
   };
   document.addEventListener("keydown", listen);
-  return () => document.removeEventListener("keydown", listen);
+  const unbind = bindHistory(host, model, ours);
+  return () => {
+    document.removeEventListener("keydown", listen);
+    unbind();
+  };
 }
 
 /**
@@ -99,6 +111,9 @@ function perform(event: KeyboardEvent, host: HTMLElement, model: Model): boolean
     "]": () => changeSpeed(model, 1),
     f: () => model.fit(),
     p: () => model.toggle("poinsot"),
+    g: () => model.toggle("ghost"),
+    u: () => host.shadowRoot?.querySelector<HTMLElement>("#push")?.click(),
+    a: () => host.shadowRoot?.querySelector<HTMLElement>("#aim")?.click(),
     d: () => model.look({ theme: isDark(host) ? "light" : "dark" }),
     "?": () => host.shadowRoot?.querySelector<HTMLElement>("#help")?.click(),
   };

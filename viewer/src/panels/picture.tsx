@@ -4,6 +4,10 @@ import { sizeAt, State } from "../core/core.ts";
 import { typed } from "../format/numbers.ts";
 import { Defined } from "../glossary/term.tsx";
 import { Legend } from "../legend/legend.tsx";
+import { HandsBar } from "../hands/bar.tsx";
+import { EnergyGrip } from "../hands/energyGrip.ts";
+import type { Hands } from "../hands/hands.ts";
+import { SpaceHands } from "../hands/space.ts";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { EnergyView, hasEnergyView } from "../stage/energy.ts";
@@ -15,22 +19,24 @@ import { LONGEST_STEP } from "../stage/viewport.ts";
 export function Picture(props: {
   model: Model;
   palette: ReadonlySignal<Palette>;
+  hands: Hands;
+  compact: boolean;
   /** Whether there is no motion because a lesson is about formulas. */
   formulas: boolean;
 }) {
-  const { model, palette, formulas } = props;
+  const { model, palette, hands, compact, formulas } = props;
   const place = useRef<HTMLDivElement>(null);
   const missing = useSignal<string | null>(null);
   useEffect(() => {
     try {
-      const stage = new Stage(place.current!, model, palette);
+      const stage = new Stage(place.current!, model, palette, new SpaceHands(hands, () => palette.peek()));
       return () => stage.dispose();
     } catch (error) {
       missing.value = words(error);
       // Without a stage, which advances the time, a clock does.
       return runClock(model);
     }
-  }, [model, palette]);
+  }, [model, palette, hands]);
   const caption = model.caption.value ?? model.about.value?.caption ?? null;
   const beside = model.shown.value.energy && hasEnergyView(model.about.value) && missing.value === null;
   const looks = ["seen", model.solving.value && "old", beside && "two"].filter(Boolean).join(" ");
@@ -38,7 +44,7 @@ export function Picture(props: {
     <section class="picture" aria-label="Picture">
       <div class={looks}>
         <div class="stage" ref={place} {...marking(model)} />
-        {beside && <Energy model={model} palette={palette} />}
+        {beside && <Energy model={model} palette={palette} hands={hands} />}
         {missing.value !== null && <p class="missing">{missing.value}</p>}
         {formulas && missing.value === null && (
           <p class="missing">
@@ -57,6 +63,7 @@ export function Picture(props: {
           <Defined text={caption} />
         </p>
       )}
+      {!compact && model.about.value && <HandsBar hands={hands} />}
     </section>
   );
 }
@@ -71,19 +78,19 @@ function Solving({ model }: { model: Model }) {
 }
 
 /** The energy ellipsoid beside the picture in space, with the names of what is drawn. */
-function Energy({ model, palette }: { model: Model; palette: ReadonlySignal<Palette> }) {
+function Energy({ model, palette, hands }: { model: Model; palette: ReadonlySignal<Palette>; hands: Hands }) {
   const place = useRef<HTMLDivElement>(null);
   useEffect(() => {
-    const view = new EnergyView(place.current!, model, palette);
+    const view = new EnergyView(place.current!, model, palette, new EnergyGrip(hands, () => palette.peek()));
     return () => view.dispose();
-  }, [model, palette]);
+  }, [model, palette, hands]);
   return (
     <>
       <p class="where left">In space</p>
       <div class="energy" ref={place} {...marking(model)} />
       <p class="where">In the body</p>
       <ul class="legend">
-        <li class="dot">Ω, on its path</li>
+        <li class="dot">Ω, on its path: drag it</li>
         <li class="thin">paths of the same energy</li>
         {separatrix(model.about.value!.body.moments).length > 0 && <li class="dashed">separatrix</li>}
       </ul>

@@ -22,7 +22,7 @@ export function StartPanel({ controls }: { controls: Controls }) {
   const usual = Math.hypot(...about.start.omega_body) || (2 * Math.PI) / about.duration;
   const attitude = start.attitude ?? controls.model.core.attitude(rotor);
   const setSpin = (change: Partial<Spin>): void =>
-    controls.setStart({ ...start, spin: { ...spin, ...change } });
+    controls.setStart({ ...start, spin: { ...spin, ...change }, omega: null });
   const setAttitude = (change: Partial<Attitude>): void =>
     controls.setStart({ ...start, attitude: { ...attitude, ...change } });
   const angle = (id: string, label: string, value: number, range: Range, set: (value: number) => void) => (

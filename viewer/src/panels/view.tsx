@@ -17,6 +17,7 @@ const THINGS: [keyof Shown, string][] = [
   ["herpolhode", "Herpolhode"],
   ["poinsot", "Poinsot’s ellipsoid"],
   ["energy", "Energy ellipsoid, beside"],
+  ["ghost", "Ghost 0.1° away"],
   ["gravity", "Pivot and weight"],
 ];
 

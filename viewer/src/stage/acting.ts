@@ -81,7 +81,7 @@ export function acting(setting: Setting): Part | null {
       });
       thrusts.forEach((made, k) => {
         const { along, at } = found.thrusts[k]!;
-        made.group.position.copy(vector(at).sub(origin).multiplyScalar(figure.scale));
+        made.group.position.copy(vector(at).sub(origin).divideScalar(figure.size));
         show(made, vector(along));
         made.label.at.applyQuaternion(attitude);
       });

@@ -1,5 +1,5 @@
 import type { ReadonlySignal } from "@preact/signals";
-import { Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
+import { Group, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
 import { type About, State } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
 import type { Model } from "../model/model.ts";
@@ -10,6 +10,7 @@ import { REACH } from "./figure.ts";
 import { type Curve, neighbours, separatrix, through } from "./polhodes.ts";
 import { AXES, quaternion, vector } from "./rotor.ts";
 import { Shapes } from "./shapes.ts";
+import type { EnergyTool } from "./tools.ts";
 import { Viewport } from "./viewport.ts";
 
 /** Scale of the curves, so that they are drawn over the ellipsoid. */
@@ -28,16 +29,27 @@ export class EnergyView extends Viewport {
   private dot: Mesh | null = null;
   /** Drawn units for 1 rad/s. */
   private rate = 1;
+  /** From the unit sphere to the ellipsoid in body axes. */
+  private readonly globe = new Matrix4();
+  private readonly leave: () => void;
 
   constructor(
     host: HTMLElement,
     private readonly model: Model,
     private readonly palette: ReadonlySignal<Palette>,
+    private readonly tool: EnergyTool | null = null,
   ) {
     super(host);
+    this.leave = tool?.attach(host) ?? (() => {});
     this.watch(() => {
+      void tool?.held.value;
       for (const watched of [model.motion, model.row, model.marked, model.shown, palette]) void watched.value;
     });
+  }
+
+  override dispose(): void {
+    this.leave();
+    super.dispose();
   }
 
   override home(): void {
@@ -49,10 +61,13 @@ export class EnergyView extends Viewport {
     this.build();
     const row = this.model.row.peek();
     if (row && this.dot) {
-      this.dot.position.copy(vector(row, State.omegaBody)).multiplyScalar(this.rate * LIFTED);
+      const omega = this.tool?.held.peek() ?? vector(row, State.omegaBody);
+      this.dot.position.copy(omega).multiplyScalar(this.rate * LIFTED);
       this.dot.scale.setScalar(this.model.marked.peek() ? MARKED : 1);
     }
     this.render(this.model.shown.peek().labels);
+    const sight = this.sight(row);
+    this.tool?.place(this.dot && sight, sight ? sight.space.clone().multiply(this.globe) : this.globe);
   }
 
   /** Builds the ellipsoid of a new motion, or in other colours. */
@@ -72,6 +87,7 @@ export class EnergyView extends Viewport {
     const semiAxes = new Vector3(...moments.map((moment) => Math.sqrt(doubleKinetic / moment)));
     this.rate = REACH / Math.max(...semiAxes.toArray());
     semiAxes.multiplyScalar(this.rate);
+    this.globe.compose(new Vector3(), quaternion(frame), semiAxes);
 
     const body = new Group();
     quaternion(frame, 0, body.quaternion);

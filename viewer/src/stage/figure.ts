@@ -25,6 +25,8 @@ export const REACH = 1.25;
 export interface Figure {
   motion: Motion;
   about: About;
+  /** The length of a drawn unit, m. */
+  size: number;
   /** The surface of the body in body axes from the drawn origin, in drawn units. */
   surface: Surface;
   /** The centre of mass from the drawn origin in body axes, in drawn units. */
@@ -36,8 +38,6 @@ export interface Figure {
   /** |Ω| and |L| at the start, or their largest values if the body starts at rest. */
   omega: number;
   momentum: number;
-  /** Drawn units for 1 m. */
-  scale: number;
   /** What acts on the body at the start, null if that is not known, and the largest torque, N m. */
   acting: Acting | null;
   torque: number;
@@ -56,9 +56,9 @@ export function figureOf(motion: Motion): Figure {
   return {
     motion,
     about,
-    scale: 1 / size,
     acting,
     torque: largestTorque(motion),
+    size,
     surface: { ...surface, vertices: surface.vertices.map((x) => x / size) },
     centre: arm.clone().divideScalar(size),
     traced: arm.length() > 0 ? arm.clone().normalize() : nearestAxis(vector(rows, State.omegaBody)),

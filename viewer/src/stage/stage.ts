@@ -11,7 +11,7 @@ import { body } from "./body.ts";
 import { crowd } from "./crowd.ts";
 import { disc, MOMENTUM, OMEGA, TORQUE } from "./disc.ts";
 import { emphasize, ofLayer } from "./emphasis.ts";
-import { actingOn, figureOf } from "./figure.ts";
+import { actingOn, type Figure, figureOf } from "./figure.ts";
 import { frame, principal } from "./frames.ts";
 import { gravity } from "./gravity.ts";
 import type { Instant, Part, Setting } from "./part.ts";
@@ -19,6 +19,7 @@ import { Paths } from "./paths.ts";
 import { poinsot } from "./poinsot.ts";
 import { quaternion, vector } from "./rotor.ts";
 import { tip } from "./tip.ts";
+import type { SpaceTools } from "./tools.ts";
 import { Viewport } from "./viewport.ts";
 
 /** Options of a captured picture; width and height are in pixels. */
@@ -55,13 +56,17 @@ export class Stage extends Viewport {
   /** Whether laws or thrusts act on the body, and the layer that was emphasized. */
   private acts = false;
   private emphasized: keyof Shown | null = null;
+  private figure: Figure | null = null;
+  private readonly leave: () => void;
 
   constructor(
     host: HTMLElement,
     private readonly model: Model,
     private readonly palette: ReadonlySignal<Palette>,
+    private readonly tools: SpaceTools | null = null,
   ) {
     super(host);
+    this.leave = tools?.attach(host) ?? (() => {});
     let fitted = model.fitted.peek();
     let turned = model.turned.peek();
     this.watch(() => {
@@ -70,10 +75,16 @@ export class Stage extends Viewport {
       const turn = model.turned.value;
       if (turn && turn !== turned) this.viewpoint.turn(turn);
       turned = turn;
+      void tools?.changed.value;
       const { motion, row, shown, marked, pointed, camera, playing } = model;
       for (const watched of [motion, row, shown, marked, pointed, camera, playing, palette])
         void watched.value;
     });
+  }
+
+  override dispose(): void {
+    this.leave();
+    super.dispose();
   }
 
   /** Returns to the preset of the model's camera. */
@@ -140,6 +151,7 @@ export class Stage extends Viewport {
       if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
     this.render(shown.labels && row !== null);
+    this.tools?.place(this.sight(row), this.figure);
     this.host.dataset.points = String(this.paths?.points ?? 0);
   }
 
@@ -150,9 +162,9 @@ export class Stage extends Viewport {
     [this.motion, this.painted, this.parts] = [motion, palette, []];
     this.replace(palette);
     this.say(null);
-    this.paths = null;
+    [this.paths, this.figure] = [null, null];
     if (!motion) return;
-    const figure = figureOf(motion);
+    const figure = (this.figure = figureOf(motion));
     this.acts = figure.acting !== null && figure.about.laws.length + figure.acting.thrusts.length > 0;
     this.emphasized = null;
     const setting: Setting = {
@@ -178,6 +190,7 @@ export class Stage extends Viewport {
       tip(setting, () => this.model.marked.peek()),
       gravity(setting),
       crowd(setting),
+      ...(this.tools?.parts(setting) ?? []),
     ];
     this.parts = parts.filter((part) => part !== null);
     this.turning = new Group();
@@ -232,6 +245,7 @@ export class Stage extends Viewport {
       [shown.herpolhode, "the herpolhode"],
       [shown.trace, "the path of an axis of the body"],
       [shown.energy, "the tip of Ω"],
+      [shown.ghost && this.tools !== null, "a ghost that started 0.1° away"],
       [shown.gravity && about?.held === true, "the pivot and the weight"],
       [shown.torque && this.acts, "the torque as an oriented disc"],
     ];

@@ -17,6 +17,7 @@ import type { Palette } from "../palette.ts";
 import { Viewpoint } from "./camera.ts";
 import { Labels } from "./labels.ts";
 import type { Screen } from "./ribbon.ts";
+import type { Sight } from "./tools.ts";
 
 /** WebGL 2 is not available. */
 export class NoWebGL extends Error {
@@ -139,6 +140,13 @@ export abstract class Viewport {
       right: new Vector3(1, 0, 0).applyQuaternion(turn),
       up: new Vector3(0, 1, 0).applyQuaternion(turn),
     };
+  }
+
+  /** What tools need of the frame that was drawn; null without a state. */
+  protected sight(row: Float64Array | null): Sight | null {
+    if (!row) return null;
+    const { camera } = this.viewpoint;
+    return { camera, space: this.space.matrixWorld.clone(), size: this.screen.value, row };
   }
 
   protected render(labelled: boolean): void {

@@ -10,6 +10,15 @@ import { fields, table } from "./toml.ts";
 
 type Group = "body" | "start" | "laws" | "run";
 
+interface ControlValues {
+  body: BodyChoice | null;
+  start: StartChoice | null;
+  laws: LawsChoice;
+  duration: number;
+  /** What was changed. */
+  touched: Group[];
+}
+
 /**
  * The values of the controls. They start from the scene as it was opened; a control that is changed replaces its table
  * of the scene, at most once per frame.
@@ -36,10 +45,39 @@ export class Controls {
       const about = this.about.value;
       return about ? lawsFor(model.core.laws, about, this.momentum, this.size, this.byPivot.value) : [];
     });
-    this.unsubscribe = effect(() => {
+    const unsubscribe = effect(() => {
       const about = model.opened.value;
       if (about) this.begin(about);
     });
+    model.keep(this);
+    this.unsubscribe = () => {
+      unsubscribe();
+      model.keep(null);
+    };
+  }
+
+  /** All values, for the history. */
+  take(): ControlValues {
+    return {
+      body: this.body.value,
+      start: this.start.value,
+      laws: this.laws.value,
+      duration: this.duration.value,
+      touched: [...this.touched],
+    };
+  }
+
+  /** Sets the values that were taken; without them, those of the scene. */
+  give(kept: unknown): void {
+    const about = this.model.opened.peek();
+    if (about) this.begin(about);
+    if (!kept) return;
+    const { body, start, laws, duration, touched } = kept as ControlValues;
+    batch(() => {
+      [this.body.value, this.start.value, this.laws.value] = [body, start, laws];
+      this.duration.value = duration;
+    });
+    for (const group of touched) this.touched.add(group);
   }
 
   /** Whether gravity is given by a pivot in the body: for a solid, and for a mesh without a fixed point. */

@@ -6,6 +6,8 @@ import { table } from "./toml.ts";
 /** The initial state chosen by the controls. */
 export interface StartChoice {
   spin: Spin;
+  /** Ω_B as given by hand, rad/s; null where it is `spin`. */
+  omega: Triple | null;
   /** Null while the rotor of the scene is unchanged. */
   attitude: Attitude | null;
   rotor: Quadruple;
@@ -38,7 +40,17 @@ const PLANES = ["e2∧e3", "e3∧e1", "e1∧e2"];
 
 export function startOf(about: About, path: StartChoice["path"]): StartChoice {
   const { rotor, omega_body, time } = about.start;
-  return { spin: spinOf(omega_body), attitude: null, rotor, path, time };
+  return { spin: spinOf(omega_body), omega: null, attitude: null, rotor, path, time };
+}
+
+/** A start with these numbers, bit for bit. */
+export function startAt(
+  rotor: Quadruple,
+  omega: Triple,
+  path: StartChoice["path"],
+  time: number,
+): StartChoice {
+  return { spin: spinOf(omega), omega, attitude: null, rotor, path, time };
 }
 
 function spinOf(omega: Triple): Spin {
@@ -57,10 +69,10 @@ function spinOf(omega: Triple): Spin {
 
 /** The table `[initial]`; the core evaluates its formulas. */
 export function startTable(start: StartChoice, rate: Unit): string {
-  const { spin, attitude, rotor, path, time } = start;
+  const { spin, omega, attitude, rotor, path, time } = start;
   return table("initial", {
     attitude: attitude ? rotorFormula(attitude) : { rotor },
-    spin: spinFormula(spin, rate),
+    spin: omega ? { bivector: omega } : spinFormula(spin, rate),
     ...path,
     ...(time !== 0 && { time }),
   });

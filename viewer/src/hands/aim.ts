@@ -11,8 +11,8 @@ import type { Given, Hands } from "./hands.ts";
 import { Held } from "./held.ts";
 import { turned } from "./impulse.ts";
 
-/** Distances of the grips from the origin, in drawn units. */
-const RADII = { omega: 1.42, momentum: 1.62, attitude: 1.3 } as const;
+/** Distances of the grips from the origin, in drawn units: those of Ω and L are apart where both point alike. */
+const RADII = { omega: 1.12, momentum: 1.68, attitude: 1.3 } as const;
 type Kind = keyof typeof RADII;
 
 const NAMES: Record<Kind, [symbol: string, label: string, what: string]> = {

@@ -53,7 +53,7 @@ def test_run_returns_the_motions_of_all_bodies(scene, folder):
         np.testing.assert_array_equal(data.attitude, whole.rotor.to_quaternion(order="wxyz"))
         np.testing.assert_array_equal(data.omega_body, whole.omega_body.components)
         np.testing.assert_array_equal(data.inertia, [inertia.matrix for inertia in whole.inertia])
-        for name, arguments in scene.ensemble.draw()[2]:
+        for name, arguments in scene.ensemble.laws():
             own = [key for key in data.data_vars if str(key).partition("_")[0] == name]
             for key, values in zip(own, arguments, strict=True):
                 np.testing.assert_array_equal(data[key], values)

@@ -50,7 +50,10 @@ def test_a_scene_lists_its_random_parameters(spec):
 
 def test_bodies_are_drawn(path, spec):
     scene = ph.Scene.read(path)
-    state, inertias, (damping, magnetic, gyrostat) = spec.draw()
+    state, inertias, torque = spec.draw()
+    damping, magnetic, gyrostat = spec.laws()
+    assert torque.shape == (1000,)
+    assert [law.name for law in torque.laws] == ["damping", "magnetic", "gyrostat"]
     assert state.rotor.shape == state.omega_body.shape == state.velocity.shape == (1000,)
     np.testing.assert_array_equal(state.position.components, np.zeros((1000, 3)))
     np.testing.assert_array_equal(state.velocity.components[:, 2], 0.0)
@@ -73,13 +76,13 @@ def test_bodies_are_drawn(path, spec):
 
 
 def test_a_range_of_bodies_equals_that_of_the_whole(spec):
-    whole, inertias, laws = spec.draw()
-    part, part_inertias, part_laws = spec.draw(10, 5)
+    (whole, inertias, _), laws = spec.draw(), spec.laws()
+    (part, part_inertias, _), part_laws = spec.draw(10, 5), spec.laws(10, 5)
     np.testing.assert_array_equal(part.rotor.components, whole.rotor.components[10:15])
     np.testing.assert_array_equal(part.omega_body.components, whole.omega_body.components[10:15])
     assert part_inertias == inertias[10:15]
     np.testing.assert_array_equal(part_laws[0][1][0], laws[0][1][0][10:15])
-    (damping, *_) = spec.draw(999)[2]
+    (damping, *_) = spec.draw(999)[2].laws
     assert damping.arguments == (laws[0][1][0][999],)
 
 

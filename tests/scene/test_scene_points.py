@@ -81,13 +81,13 @@ def test_an_ensemble_lists_what_its_points_vary(read):
         "initial.spin.vector": "grid, 3 values",
     }
     np.testing.assert_array_equal(spec.given(5, 2)["initial.spin.vector"], [[1, 2, 3], [0, 0.2, 1]])
-    state, _, laws = spec.draw()
+    state, _, _ = spec.draw()
     np.testing.assert_array_equal(state.omega_body._data[:6], state.omega_body._data[6:])
-    name, (damping, *_) = next(law for law in laws if isinstance(law, tuple))
+    name, (damping, *_) = next(law for law in spec.laws() if isinstance(law, tuple))
     assert name == "viscous_damping"
     assert len({*damping[:, 0]}) == 12
     texts = read(BASE + "[ensemble]\ngrid.initial.spin = ['e12', 'k e12']\n").ensemble.given()
-    assert texts == {"initial.spin": ["'e12'", "'k e12'"]}
+    assert texts == {"initial.spin": ["e12", "k e12"]}
     with pytest.raises(ValueError, match=r"range 3\.\.13 is out of bounds for 12 bodies"):
         spec.given(3, 10)
 
@@ -129,6 +129,10 @@ def test_errors_of_tables_name_the_file_and_the_row(read, tmp_path, monkeypatch)
         ),
         ("b.csv", b'body.moments\n"[9, 1, 1]"\n', r"b\.csv, line 2: .*moments"),
         ("b.csv", b"torque.damping\n1\n", r"the scene has no `torque\.damping`"),
+        ("b.csv", b"force.drag\n1\n\n2\n", r"b\.csv, line 3, column `force\.drag`: the cell is empty"),
+        ("b.csv", b",force.drag\n0,1\n", r"b\.csv, line 1: column 1 has no name; .*`index=False`"),
+        ("b.csv", b"drag\n1\n", r"`drag` is not the path of a scene value; did you mean `force\.drag`\?"),
+        ("b.csv", b"force.drag\ninf\n", r"b\.csv, line 2, column `force\.drag`: `inf` is not a finite"),
         ("b.csv", b"\xff\n1\n", r"b\.csv: not UTF-8"),
         ("b.parquet", b"no", r"b\.parquet: not a table of numbers and strings"),
         ("b.txt", b"", r"b\.txt: expected a table in a file \.csv or \.parquet"),
@@ -142,6 +146,49 @@ def test_errors_of_tables_name_the_file_and_the_row(read, tmp_path, monkeypatch)
         monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(ph.SceneError, match=r"pip install 'polhode\[parquet\]'"):
         read(BASE + "[ensemble]\ntable = 'b.parquet'\n")
+
+
+def test_empty_cells_of_parquet_are_errors(read, tmp_path):
+    pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    empty = r"b\.parquet, row 1 \(from 0\), column `force\.drag`: the cell is empty"
+    for column, message in (
+        ([1.0, None], empty),  # the last row alone would be a blank line at the end
+        ([1.0, None, 2.0], empty),
+        (["1", None], empty),
+        (["1", ""], empty),
+        (["1", "None"], r"b\.parquet, row 1 \(from 0\), column `force\.drag`: "),
+        ([1.0, float("nan")], r"row 1 \(from 0\), column `force\.drag`: `nan` is not a finite number"),
+        ([1.0, float("-inf")], r"row 1 \(from 0\), column `force\.drag`: `-inf` is not a finite number"),
+    ):
+        pq.write_table(pa.table({"force.drag": column}), tmp_path / "b.parquet")
+        with pytest.raises(ph.SceneError, match=message):
+            read(BASE + "[ensemble]\ntable = 'b.parquet'\n")
+    for name in ("__index_level_0__", "index"):
+        pq.write_table(pa.table({"force.drag": [1.0], name: [3]}), tmp_path / "b.parquet")
+        with pytest.raises(ph.SceneError, match=rf"b\.parquet: `{name}` is not .*`index=False`"):
+            read(BASE + "[ensemble]\ntable = 'b.parquet'\n")
+
+
+def test_a_drawn_body_moves_as_in_the_ensemble(read):
+    text = BASE.replace("drag = 0.5", "") + "[ensemble]\nnumber = 10\nspin = { normal = 0.1 }\n"
+    scenes = (
+        "moments = { relative = 0.1 }\ntorque.viscous_damping = { relative = 0.3 }\n",
+        "list.define.k = [0.1, 0.2, 0.3, 0.4, 0.5]\n",
+        "list.define.k = ['0.1 e1', '0.2 e1', '0.3 e2', '0.4 e3', 'e1']\n",
+    )
+    for varied in scenes:
+        own = text
+        if "e1" in varied:
+            own = text.replace("k = 0.1", "k = 'e1'").replace("-k e12", "-0.1 k e123")
+        scene = read(own + varied)
+        whole = scene.run()
+        for rows in (slice(7, 8), slice(2, 9)):
+            state, inertias, torque = scene.ensemble.draw(rows.start, rows.stop - rows.start)
+            motion = ph.simulate(inertias, state, scene.times, torque)
+            # Both runs meet the default tolerance, 1e-10, of the values.
+            for name in ("rotor", "omega_body"):
+                found, expected = (getattr(one, name)._data for one in (motion, whole[rows]))
+                np.testing.assert_allclose(found, expected, rtol=0, atol=4e-10)
 
 
 def test_a_document_of_the_viewer_has_the_table(read, tmp_path):
@@ -209,8 +256,8 @@ def test_correlated_variations_have_their_covariance(read):
     text = BASE.replace("viscous_damping = 0.1", "viscous_damping = 10")
     spec = read(text + "[ensemble]\nnumber = 20000\nseed = 2\n" + joint).ensemble
     assert spec.varied["spin"] == "correlated normal, (0.02, 0.01, 0) rad/s"
-    state, _, laws = spec.draw()
-    _, (damping, *_) = next(law for law in laws if isinstance(law, tuple))
+    state, _, _ = spec.draw()
+    _, (damping, *_) = next(law for law in spec.laws() if isinstance(law, tuple))
     found = np.cov(np.column_stack([state.omega_body._data, damping[:, 0]]), rowvar=False)
     # Five standard errors of a sample covariance: √((C_ii C_jj + C_ij²)/n).
     variance = np.diag(matrix)

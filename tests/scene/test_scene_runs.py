@@ -97,8 +97,7 @@ def test_results_do_not_depend_on_blocks_and_threads(text, write):
 
 def test_bodies_of_an_ensemble_move_as_alone(write):
     scene = ph.Scene.read(write(TORQUED))
-    state, inertias, (damping, magnetic) = scene.ensemble.draw(37, 1)
-    torque = ph.torque.viscous_damping(damping.arguments[0]) + ph.torque.magnetic(*magnetic.arguments)
+    state, inertias, torque = scene.ensemble.draw(37, 1)
     start = ph.State(state.rotor[0], state.omega_body[0])
     alone = ph.simulate(inertias[0], start, scene.times, torque, method="rk4", step=0.01)
     whole = scene.run().rotor.components[37]
@@ -202,7 +201,7 @@ def test_the_file_holds_the_results_of_run(text, write, tmp_path):
     assert {name: data.attrs[name] for name in wanted} == wanted
     assert "spin: normal, 0.01 rad/s" in data.attrs["varied"]
     if not free:
-        (_, gains), (_, (dipoles, fields)) = scene.ensemble.draw()[2]
+        (_, gains), (_, (dipoles, fields)) = scene.ensemble.laws()
         np.testing.assert_array_equal(data.viscous_damping.values, gains[0])
         np.testing.assert_array_equal(data.magnetic_dipole.values, dipoles)
         np.testing.assert_array_equal(data.magnetic_field.values, fields)

@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 from polhode import _native
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.state import State
+from polhode._scene.drawn import law_of_bodies
 from polhode._support.arrays import Array
+from polhode.torque import Torque
 
-DrawnLaw = _native.Law | tuple[str, tuple[Array, ...]]
-Drawn = tuple[State, tuple[Inertia, ...], tuple[DrawnLaw, ...]]
+DrawnLaw = _native.Law | tuple[str, tuple[Any, ...]]
+Drawn = tuple[State, tuple[Inertia, ...], Torque | None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +81,8 @@ class EnsembleSpec:
         -------
         dict
             For each path in the scene an array (count,) or (count, m): quantities with units in SI units,
-            other numbers as in the file. If a value is not a number or an array of them, the text of each.
+            other numbers as in the file. If a value is not a number or an array of them, the text of each;
+            that of a string, such as a formula, without its quotes.
 
         Raises
         ------
@@ -112,25 +116,38 @@ class EnsembleSpec:
             Their states at the start, a batch of shape (count,).
         inertias
             The inertia of each body, or one for all; about the fixed point if there is one.
-        laws
-            The torque laws, as in `Scene.torque`: a law if it is the same for all bodies; else its name and
-            its arguments, arrays (count,) or (count, m), none for a formula.
+        torque
+            Their torque for `polhode.simulate`, in which laws that differ between the bodies are batches
+            (count,); None without. Forces are not drawn: they are in `Scene.force`.
 
         Raises
         ------
         ValueError
-            If the range is out of bounds or empty.
+            If the range is out of bounds or empty, or if names in a formula have values of other grades for
+            other bodies.
+
+        Examples
+        --------
+        The motion of body 7 alone, a batch (1,)::
+
+            state, inertias, torque = scene.ensemble.draw(7, 1)
+            motion = ph.simulate(inertias, state, scene.times, torque)
         """
         count = self._count(first, count)
         rotors, omegas, positions, velocities, inertias, laws = self._core.draw(first, count)
         center = vector(positions), vector(velocities)
         time = self._core.fields()["time"]
         state = State(Rotor._from_rows(rotors), bivector(omegas), *center, time=time)
-        return state, tuple(map(Inertia, inertias)), tuple(laws)
+        torque = Torque(tuple(map(law_of_bodies, laws))) if laws else None
+        return state, tuple(map(Inertia, inertias)), torque
 
-    def laws(self, first: int, count: int) -> tuple[DrawnLaw, ...]:
-        """Return the torque laws of some bodies, as `draw` does."""
-        return tuple(self._core.draw(first, count)[5])
+    def laws(self, first: int = 0, count: int | None = None) -> tuple[DrawnLaw, ...]:
+        """Return the torque laws of `count` bodies from number `first` on, in the order of the scene.
+
+        A law that is the same for all bodies; else its name and its arguments, arrays (count,) or (count, m),
+        or for a formula the law of each body.
+        """
+        return tuple(self._core.draw(first, self._count(first, count))[5])
 
 
 def _words(form: str, widths: list[float], unit: str) -> str:

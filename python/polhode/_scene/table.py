@@ -56,7 +56,13 @@ def _parquet(file: Path) -> bytes:
     content = io.BytesIO(file.read_bytes())
     text = io.BytesIO()
     try:
-        csv.write_csv(reader.read_table(content), text)
+        table = reader.read_table(content)
+        for name, column in zip(table.column_names, table.columns, strict=True):
+            # As text a row of nulls alone is a blank line.
+            if column.null_count:
+                row = column.is_null().index(True).as_py()
+                raise ValueError(f"{file}, row {row} (from 0), column `{name}`: the cell is empty")
+        csv.write_csv(table, text)
     except library.lib.ArrowException as error:
         raise ValueError(f"{file}: not a table of numbers and strings: {error}") from None
     return text.getvalue()

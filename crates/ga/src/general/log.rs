@@ -72,7 +72,8 @@ impl Calculus {
     /// `log 1 = 0`; `log(−1) = π E` with E the first basis plane of square −1.
     ///
     /// With up to five generators it is found if it exists, up to rounding: with two or more generators of either sign,
-    /// a large boost may hide a rotation. With more generators it is found if the angles of B over its planes sum to
+    /// a large boost may hide a rotation, and a bivector B near null ones may not be found if |B| is more than 1000: of a
+    /// rotor R, `exp(log R)` may be off by `32 ε (|R|² + |B|²)`, and by more than √ε it is an error. With more generators it is found if the angles of B over its planes sum to
     /// less than π, and in most other cases. Otherwise it is an error.
     ///
     /// Parts with null generators that are not a versor's, such as rounding left where larger parts cancelled, are
@@ -207,7 +208,8 @@ impl Calculus {
     }
 
     /// The size of R in units of `exp(log)`; None if R is not along it. The rounding of a large R makes `R~R = 1`
-    /// uncertain by `ε|R|²`.
+    /// uncertain by `ε|R|²`. A bivector B near null ones may be larger than R; it and its exponential are then sums that
+    /// cancel, and `exp(log R)` was found to be off by at most `27 ε|B|²`.
     fn size_beside(&self, log: &[f64], r: &[f64]) -> Option<f64> {
         let length = norm(r);
         let (r, exp) = (scaled(r, 1.0 / length), scaled(&self.exp_bits(log).ok()?, 1.0 / length));
@@ -215,7 +217,8 @@ impl Calculus {
         let mut difference = scaled(&exp, -ratio);
         add_scaled(&mut difference, &r, 1.0);
         let Tolerances { rounding, versor, least_certain, .. } = self.tolerances;
-        let tolerance = versor * (1.0 + norm(log)).min(MOST_LENIENT) + rounding * length.powi(2);
+        let tolerance =
+            versor * (1.0 + norm(log)).min(MOST_LENIENT) + rounding * (length.powi(2) + norm(log).powi(2));
         let close = norm(&difference) <= tolerance.min(least_certain);
         (close && (ratio - 1.0).abs() <= tolerance).then_some(ratio)
     }

@@ -68,14 +68,16 @@ pub(crate) fn inertias(drawn: &Ensemble) -> Vec<Inertia> {
     drawn.inertias.all().iter().map(|inertia| Inertia(*inertia)).collect()
 }
 
-/// A law that all bodies share, or the name and the arguments, arrays (n,) or (n, m), of a law that varies.
+/// A law that all bodies share, or the name and the arguments of a law that varies: arrays (n,) or (n, m), or for a
+/// formula the law of each body.
 fn one_or_columns<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> {
     if let [torque] = torques {
         return Ok(named(py, torque.clone())?.into_bound(py).into_any());
     }
     if let Some(Torque::Formula(_)) = torques.first() {
-        // Formulas whose names have other values.
-        return Ok(("formula", PyTuple::empty(py)).into_pyobject(py)?.into_any());
+        // Formulas whose names have other values: the law of each body.
+        let laws: Vec<_> = torques.iter().map(|law| named(py, law.clone())).collect::<PyResult<_>>()?;
+        return Ok(("formula", PyTuple::new(py, laws)?).into_pyobject(py)?.into_any());
     }
     let own: Vec<_> = torques.iter().filter_map(Torque::registered).collect();
     let Some(&(entry, _)) = own.first() else { return Err(bad("a law without numbers cannot vary")) };

@@ -2,11 +2,15 @@
 
 use super::covariance;
 use super::ensemble::{Attitudes, Ensemble, Nominal};
-use super::parameters::PARAMETERS;
-use super::reader::{Reader, Value};
+use super::parameters::{PARAMETERS, Parameter};
+use super::reader::{Reader, Value, nearest_path};
 use super::spread::{Form, Spread, WIDEST_FACTOR};
 use crate::laws::registry::Limit;
+use polhode_ga::diagnostic::{list, quote};
 use toml::de::DeValue;
+
+/// The random parameters of the body and of its start.
+const OWN: [&str; 5] = ["attitude", "spin", "moments", "position", "velocity"];
 
 /// Reads `covariance` and gives the parameters in it their distributions.
 pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal, ensemble: &mut Ensemble) -> Option<()> {
@@ -20,13 +24,10 @@ fn one(reader: &mut Reader, value: &Value, nominal: &Nominal, ensemble: &mut Ens
     let mut places = Vec::new();
     let found = covariance::read(reader, value, |reader, item, name| {
         let size = match name {
-            "attitude" | "spin" | "moments" | "position" | "velocity" => 3,
+            name if OWN.contains(&name) => 3,
             _ => {
                 let Some(parameter) = PARAMETERS.iter().find(|parameter| parameter.name() == name) else {
-                    let message = format!(
-                        "unknown parameter `{name}`, expected `attitude`, `spin`, `moments`, `position`, `velocity`, or one of a law such as `torque.damping`"
-                    );
-                    reader.report(item.span(), message);
+                    reader.report(item.span(), unknown(name));
                     return None;
                 };
                 let Ok(known) = nominal.numbers(parameter) else {
@@ -96,4 +97,15 @@ fn one(reader: &mut Reader, value: &Value, nominal: &Nominal, ensemble: &mut Ens
     }
     ensemble.covariances.push(found);
     Some(())
+}
+
+/// The error for a name that is not a random parameter.
+fn unknown(name: &str) -> String {
+    let names: Vec<String> =
+        OWN.iter().map(|name| name.to_string()).chain(PARAMETERS.iter().map(Parameter::name)).collect();
+    let expected = match nearest_path(name, &names) {
+        Some(near) => format!("`{near}`"),
+        None => format!("{}, or one of a law such as `torque.damping`", list(&OWN)),
+    };
+    format!("unknown parameter {}, expected {expected}", quote(name))
 }

@@ -80,10 +80,20 @@ pub fn read(
     let table: &Table = &reader.table(value, "`covariance`")?;
     reader.only(table, &["of", "matrix"]);
     let parameters = reader.field(table, "of", |reader, value| {
-        reader.list(value, "names", |reader, item| {
-            let name = reader.string(item)?;
-            Some((name.to_owned(), size(reader, item, name)?))
-        })
+        reader
+            .list(value, "names", |reader, item| {
+                let name = reader.string(item)?;
+                Some((name.to_owned(), size(reader, item, name)?))
+            })
+            .filter(|names| {
+                if names.is_empty() {
+                    reader.report(
+                        value.span(),
+                        "no names; write at least one random parameter, such as `spin`",
+                    );
+                }
+                !names.is_empty()
+            })
     });
     let matrix = reader.field(table, "matrix", |reader, value| {
         let row =
@@ -98,14 +108,9 @@ pub fn read(
         }
     }
     let names: Vec<String> = parameters.iter().flat_map(|(name, size)| numbered(name, *size)).collect();
-    let n = names.len();
-    if n == 0 || matrix.len() != n || matrix.iter().any(|row| row.len() != n) {
-        let found = matrix.first().map_or(0, Vec::len);
-        let (rows, of) = (matrix.len(), names.join(", "));
-        reader.report(
-            span,
-            format!("expected {n} rows of {n} numbers, for {of}; found {rows} rows, the first of {found}"),
-        );
+    if let Some(found) = other_shape(&matrix, names.len()) {
+        let (n, of) = (names.len(), names.join(", "));
+        reader.report(span, format!("expected {n} rows of {n} numbers, for {of}; {found}"));
         return None;
     }
     match factor(&matrix, &names) {
@@ -115,6 +120,16 @@ pub fn read(
             None
         }
     }
+}
+
+/// The shape of a matrix that does not have n rows of n numbers.
+fn other_shape(matrix: &[Vec<f64>], n: usize) -> Option<String> {
+    let plural = |k: usize, what: &str| format!("{k} {what}{}", if k == 1 { "" } else { "s" });
+    if matrix.len() != n {
+        return Some(format!("found {}", plural(matrix.len(), "row")));
+    }
+    let (index, row) = matrix.iter().enumerate().find(|(_, row)| row.len() != n)?;
+    Some(format!("row {} of them has {}", index + 1, plural(row.len(), "number")))
 }
 
 fn numbered(name: &str, size: usize) -> Vec<String> {

@@ -110,6 +110,11 @@ use toml::de::DeTable;
 
 /// Maximum size of a scene file in bytes.
 const LARGEST_FILE: u64 = 10_000_000;
+/// Names at the top of a file, but for those of formulas.
+const NAMES: [&str; 11] = [
+    "title", "caption", "define", "body", "initial", "gravity", "torque", "force", "run", "method",
+    "ensemble",
+];
 /// Maximum number of reported errors.
 const MOST_REPORTED: usize = 100;
 
@@ -249,11 +254,7 @@ fn read_scene(
     text: &str,
     tables: TableSource<'_>,
 ) -> Option<Scene> {
-    let names = [
-        "title", "caption", "define", "body", "initial", "gravity", "torque", "force", "run", "method",
-        "ensemble",
-    ];
-    reader.only(root, &[&names[..], &laws::FORMULAS.map(|(name, _)| name)].concat());
+    reader.only(root, &[&NAMES[..], &laws::FORMULAS.map(|(name, _)| name)].concat());
     parts::define(reader, root);
     let title = reader.optional(root, "title", |reader, value| reader.string(value).map(str::to_owned));
     let caption = reader.optional(root, "caption", |reader, value| {

@@ -337,3 +337,15 @@ fn unknown(what: &str, name: &str, known: &[&str]) -> String {
     };
     format!("unknown {what} {}, expected {expected}", quote(name))
 }
+
+/// The path that `name` probably means, of its own or by the end of the path: `rate` of `initial.spin.rate`.
+pub fn nearest_path<'p>(name: &str, paths: &'p [String]) -> Option<&'p str> {
+    let ends = |path: &'p String| {
+        let starts = path.match_indices('.').map(|(at, _)| at + 1);
+        starts.map(move |start| (&path[start..], path.as_str()))
+    };
+    let whole = paths.iter().map(|path| (path.as_str(), path.as_str()));
+    let named: Vec<(&str, &str)> = whole.chain(paths.iter().flat_map(ends)).collect();
+    let near = nearest(name, named.iter().map(|(end, _)| *end))?;
+    named.iter().find(|(end, _)| *end == near).map(|(_, path)| *path)
+}

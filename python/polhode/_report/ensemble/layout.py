@@ -118,7 +118,7 @@ class EnsembleLayout:
             if isinstance(law, _native.Law):
                 continue
             name, arguments = law
-            if not arguments:  # a formula
+            if name == "formula":
                 continue
             for argument, values in zip(TORQUES[name].arguments, arguments, strict=True):
                 dims = () if values.ndim == 1 else ("axis" if values.shape[1] == 3 else "quaternion",)

@@ -1,5 +1,6 @@
 //! Tables of points as comma-separated text: a header line of paths, and a line for each point.
 
+use super::place::row;
 use super::values::{Values, number, string};
 use polhode_ga::diagnostic::quote;
 use toml::de::DeValue;
@@ -8,38 +9,60 @@ use toml::de::DeValue;
 pub struct CsvTable {
     /// Names and values of the columns.
     pub columns: Vec<(String, Values)>,
-    /// The number of each row's line in the file, if lines without content are before it.
+    /// The line of the header in the file, from 1.
+    pub header: u32,
+    /// The line of each row in the file.
     pub lines: Vec<u32>,
 }
 
-/// Reads the text of a table; an error has its line.
-pub fn read(text: &str) -> Result<CsvTable, String> {
-    let mut table = CsvTable { columns: Vec::new(), lines: Vec::new() };
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let number = index + 1;
-        let cells = split(line).map_err(|why| format!("line {number}: {why}"))?;
+/// Reads the text of a table; an error has the name of the file and the line.
+pub fn read(file: &str, text: &str) -> Result<CsvTable, String> {
+    let mut table = CsvTable { columns: Vec::new(), header: 0, lines: Vec::new() };
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end();
+    for (index, line) in text.lines().enumerate() {
+        let number = index as u32 + 1;
+        let place = || row(file, number);
         let columns = table.columns.len();
+        // In a table of one column a blank line is a row whose cell is empty.
+        if line.trim().is_empty() && columns != 1 {
+            continue;
+        }
+        let cells = split(line).map_err(|why| format!("{}: {why}", place()))?;
         if columns == 0 {
+            if let Some(why) = other_separator(line) {
+                return Err(format!("{}: {why}", place()));
+            }
             table.columns = cells.iter().map(|cell| (unquoted(cell), Values::new())).collect();
+            table.header = number;
             continue;
         }
         if cells.len() != columns {
             let found = cells.len();
-            return Err(format!("line {number}: expected {columns} cells as in the header, found {found}"));
+            return Err(format!("{}: expected {columns} cells as in the header, found {found}", place()));
         }
         for ((name, values), cell) in table.columns.iter_mut().zip(cells) {
-            let value = value(cell).map_err(|why| format!("line {number}, column `{name}`: {why}"))?;
+            let value = value(cell).map_err(|why| format!("{}, column `{name}`: {why}", place()))?;
             if !values.push(&value) {
-                return Err(format!("line {number}: column `{name}` has more than 4 GB of text"));
+                return Err(format!("{}: column `{name}` has more than 4 GB of text", place()));
             }
         }
-        table.lines.push(number as u32);
+        table.lines.push(number);
     }
     if table.lines.is_empty() {
-        return Err("has no rows; expected a header line of paths and a line for each body".to_owned());
+        let expected = "expected a header line of paths and a line for each body";
+        return Err(format!("{file} has no rows; {expected}"));
     }
     Ok(table)
+}
+
+/// What is wrong with a header without commas whose cells another character separates.
+fn other_separator(header: &str) -> Option<String> {
+    let (_, name) = [(';', "semicolons"), ('\t', "tabs"), ('|', "bars")]
+        .into_iter()
+        .find(|(separator, _)| header.contains(*separator) && !header.contains(','))?;
+    Some(format!(
+        "the cells are separated by {name}; separate them by commas, with decimal points in numbers"
+    ))
 }
 
 /// The cells of a line, without spaces around them.
@@ -57,7 +80,7 @@ fn split(line: &str) -> Result<Vec<&str>, String> {
         }
     }
     if quoted {
-        return Err(format!("{} has no closing quote", quote(&line[start..])));
+        return Err(format!("{} has no closing quote in its line", quote(&line[start..])));
     }
     cells.push(line[start..].trim());
     Ok(cells)
@@ -73,15 +96,17 @@ fn unquoted(cell: &str) -> String {
 
 /// The content of a cell as text of TOML: a number, an array in brackets, or a string.
 fn value(cell: &str) -> Result<String, String> {
-    if let Ok(x) = cell.parse() {
+    if let Some(x) = cell.parse().ok().filter(|x: &f64| x.is_finite()) {
         return Ok(number(x));
     }
     let text = unquoted(cell);
     if text.is_empty() {
         return Err("the cell is empty".to_owned());
     }
-    if let Ok(x) = text.parse() {
-        return Ok(number(x));
+    if let Ok(x) = text.parse::<f64>() {
+        let is_float = |text: &str| DeValue::parse(text).is_ok_and(|value| value.get_ref().is_float());
+        // A number that is too large is reported as it is written.
+        return Ok(if x.is_infinite() && is_float(&text) { text } else { number(x) });
     }
     let is_array = text.starts_with('[') && DeValue::parse(&text).is_ok();
     Ok(if is_array { text } else { string(&text) })

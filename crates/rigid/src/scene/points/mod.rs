@@ -15,20 +15,20 @@ mod bodies;
 mod csv;
 mod cursor;
 mod path;
+mod place;
 mod values;
 
 #[cfg(test)]
 mod tests;
 
 use super::reader::{Reader, Table, Value};
-use crate::laws::registry::{TABLE, TORQUES};
 use crate::units;
 pub use cursor::{Cursor, Point};
-use path::{Path, Step};
-use polhode_ga::diagnostic::alternatives;
+use path::Path;
+use polhode_ga::diagnostic::quote;
 use std::ops::Range;
 use std::sync::OnceLock;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 use values::{MOST_POINTS, Values};
 
 /// Reads the text of a table of points by its path; relative paths start at the folder of the scene.
@@ -88,7 +88,7 @@ impl Column {
 pub enum Given {
     /// Rows of numbers of this size, and their unit if the scene has it.
     Numbers(Vec<f64>, usize, &'static str),
-    /// Other values, as text of TOML.
+    /// Other values: the content of strings, such as formulas, and others as text of TOML.
     Texts(Vec<String>),
 }
 
@@ -122,7 +122,7 @@ impl Points {
             let all = column.kind(scene).and_then(|kind| Some((numbers(texts.clone())?.0, kind)));
             let values = match all {
                 Some((numbers, (size, unit))) => Given::Numbers(numbers, size, unit),
-                None => Given::Texts(texts.map(str::to_owned).collect()),
+                None => Given::Texts(texts.map(plain).collect()),
             };
             (column.path.to_string(), values)
         };
@@ -132,7 +132,7 @@ impl Points {
     /// A point in words, for errors.
     pub fn describe(&self, scene: &str, point: usize) -> String {
         if let Some(line) = self.lines.get(point) {
-            return format!("{}, line {line}", self.file.as_deref().unwrap_or_default());
+            return place::row(self.file.as_deref().unwrap_or_default(), *line);
         }
         let value = |column: &Column| {
             let text: String = column.values.text(column.at(point), scene).chars().take(40).collect();
@@ -140,6 +140,14 @@ impl Points {
         };
         let values: Vec<String> = self.columns.iter().take(4).map(value).collect();
         format!("point {point}, {}", values.join(", "))
+    }
+}
+
+/// The content of a string of TOML; other values as they are.
+fn plain(text: &str) -> String {
+    match DeValue::parse(text).map(|value| value.into_inner()) {
+        Ok(DeValue::String(content)) => content.into_owned(),
+        _ => text.to_owned(),
     }
 }
 
@@ -186,14 +194,16 @@ pub fn read(
     let Some(form) = reader.at_most_one(table, &FIELDS) else { return Some(None) };
     let value = table.get(form)?;
     let mut lines = Vec::new();
-    let mut file = None;
+    // The place of the names of a table; in a grid or list each name has its own.
+    let (mut file, mut header) = (None, String::new());
     let mut columns = match form {
         "table" => {
             let name = reader.string(value)?;
-            let read = source(name).and_then(|text| csv::read(&text).map_err(|why| format!("{name}: {why}")));
+            let read = source(name).and_then(|text| csv::read(name, &text));
             let found = read.map_err(|why| reader.report(value.span(), why)).ok()?;
+            header = place::header(name, found.header);
             (file, lines) = (Some(name.to_owned()), found.lines);
-            named(reader, value, found.columns)?
+            named(reader, value, &header, found.columns)?
         }
         _ => {
             let mut columns = Vec::new();
@@ -205,12 +215,14 @@ pub fn read(
     };
     let before = reader.problems.len();
     for (index, column) in columns.iter().enumerate() {
-        if let Err(why) = replaceable(root.fields, &column.path) {
-            reader.report(column.span.clone(), why);
+        if let Err(why) = place::replaceable(root.fields, &column.path) {
+            let remedy = if file.is_some() { place::remedy(column.path.field(0)) } else { "" };
+            reader.report(column.span.clone(), format!("{header}{why}{remedy}"));
+            continue;
         }
         let same = |other: &&Column| column.path.is_within(&other.path) || other.path.is_within(&column.path);
         if let Some(other) = columns[..index].iter().find(same) {
-            let message = format!("`{}` is given twice, as `{}` too", column.path, other.path);
+            let message = format!("{header}`{}` is given twice, as `{}` too", column.path, other.path);
             reader.report(column.span.clone(), message);
         }
     }
@@ -242,21 +254,28 @@ fn length(reader: &mut Reader, columns: &[Column]) -> Option<usize> {
     Some(number)
 }
 
-/// The columns of a table by the paths in its header.
-fn named(reader: &mut Reader, value: &Value, columns: Vec<(String, Values)>) -> Option<Vec<Column>> {
-    let column = |(name, values): (String, Values)| match Path::default().join(&name) {
+/// The columns of a table by the paths in its header, whose place is given.
+fn named(
+    reader: &mut Reader,
+    value: &Value,
+    header: &str,
+    columns: Vec<(String, Values)>,
+) -> Option<Vec<Column>> {
+    let column = |(index, (name, values)): (usize, (String, Values))| match Path::default().join(&name) {
         Some(path) => Some(Column::new(path, values, value.span())),
         None => {
-            reader.report(value.span(), unreadable(&name));
+            let why =
+                if name.is_empty() { format!("column {} has no name", index + 1) } else { unreadable(&name) };
+            reader.report(value.span(), format!("{header}{why}{}", place::remedy(&name)));
             None
         }
     };
-    let columns: Vec<Option<Column>> = columns.into_iter().map(column).collect();
+    let columns: Vec<Option<Column>> = columns.into_iter().enumerate().map(column).collect();
     columns.into_iter().collect()
 }
 
 fn unreadable(name: &str) -> String {
-    format!("expected the path of a scene value such as `initial.spin.vector[0]`, found `{name}`")
+    format!("expected the path of a scene value such as `initial.spin.vector[0]`, found {}", quote(name))
 }
 
 /// The columns of a table of the scene: arrays and ranges, at the paths of its fields.
@@ -300,53 +319,4 @@ fn walk(reader: &mut Reader, table: &Table, above: &Path, columns: &mut Vec<Colu
         }
     }
     complete
-}
-
-/// The tables whose values may be replaced.
-const TABLES: [&str; 6] = ["body", "initial", "gravity", "torque", "force", "define"];
-
-/// Whether the scene has a place for a value that may differ between bodies.
-fn replaceable(root: &DeTable, path: &Path) -> Result<(), String> {
-    let (table, field) = (path.field(0), path.field(1));
-    let mesh = root
-        .get("body")
-        .and_then(|body| body.get_ref().as_table())
-        .is_some_and(|body| body.contains_key("mesh"));
-    match table {
-        _ if !TABLES.contains(&table) => {
-            let tables = alternatives(&TABLES);
-            return Err(format!("`{table}` is the same for all bodies; values of {tables} may vary"));
-        }
-        _ if path.0.len() < 2 => {
-            return Err(format!("expected a value in [{table}], such as `{table}.name`"));
-        }
-        "initial" if field == "time" => {
-            return Err("the initial time is the same for all bodies, as the output times are".to_owned());
-        }
-        "body" if mesh => {
-            return Err("a mesh is the same for all bodies; give the moments of the body".to_owned());
-        }
-        "gravity" if field == "pivot" && mesh => {
-            return Err(
-                "the pivot of a mesh is the same for all bodies; give the moments of the body".to_owned()
-            );
-        }
-        "torque" if !TORQUES.iter().any(|law| law.name == field && field != TABLE) => {
-            return Err(format!(
-                "`{field}` is the same for all bodies; values of [define] may vary in formulas"
-            ));
-        }
-        _ => {}
-    }
-    let parents = if matches!(table, "torque" | "force") { 2 } else { path.0.len() - 1 };
-    for depth in 1..=parents.max(path.0.len() - 1) {
-        let parent = Path(path.0[..depth].to_vec());
-        if parent.find(root).is_none() {
-            return Err(format!("the scene has no `{parent}`"));
-        }
-    }
-    match path.0.last() {
-        Some(Step::Item(_)) if path.find(root).is_none() => Err(format!("the scene has no `{path}`")),
-        _ => Ok(()),
-    }
 }

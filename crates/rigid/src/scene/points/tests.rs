@@ -27,6 +27,17 @@ fn table(path: &Path) -> Result<String, String> {
         Some("folder/empty.csv") => Ok("initial.spin.vector[1],torque.viscous_damping\n1,\n".to_owned()),
         Some("folder/rows.csv") => Ok("initial.spin.vector[1]\n".to_owned()),
         Some("folder/quote.csv") => Ok("initial.spin.vector[1]\n\"1\n".to_owned()),
+        Some("folder/blank.csv") => Ok("torque.viscous_damping\n\n1\n".to_owned()),
+        Some("folder/semicolons.csv") => Ok("torque.viscous_damping;force.drag\n1;2\n".to_owned()),
+        Some("folder/index.csv") => Ok(",torque.viscous_damping\n0,1\n".to_owned()),
+        Some("folder/level.csv") => Ok("__index_level_0__,torque.viscous_damping\n0,1\n".to_owned()),
+        Some("folder/id.csv") => Ok("\nid,torque.viscous_damping\n0,1\n".to_owned()),
+        Some("folder/near.csv") => Ok("torque.viscous_damp\n1\n".to_owned()),
+        Some("folder/twice.csv") => Ok("force.drag,force.drag\n1,2\n".to_owned()),
+        Some("folder/infinite.csv") => Ok("force.drag\n-Infinity\n1e999\nNaN\n".to_owned()),
+        Some("folder/rows.parquet") => Ok("force.drag\n1\n1 m\n".to_owned()),
+        Some("folder/id.parquet") => Ok("index,force.drag\n0,1\n".to_owned()),
+        Some("folder/end.csv") => Ok("force.drag\n1\n2\n\n\n".to_owned()),
         Some("folder/units.csv") => Ok("torque.viscous_damping\n2\n2 m\n-1\n".to_owned()),
         _ => Err("no such file".to_owned()),
     }
@@ -239,7 +250,10 @@ fn errors_name_the_point() {
             "grid.torque.torque_body = ['0 e12']",
             "`torque_body` is the same for all bodies; values of [define]",
         ),
-        ("grid.'initial.spin.vector[3]' = [1]", "the scene has no `initial.spin.vector[3]`"),
+        (
+            "grid.'initial.spin.vector[3]' = [1]",
+            "the scene has no `initial.spin.vector[3]`; `initial.spin.vector` has 3 items, from [0]",
+        ),
         ("grid.'initial.spin.vector[' = [1]", "expected the path of a scene value"),
         ("grid.'initial.spin.vector[0]' = [1]\ngrid.initial.spin.vector = [[1, 2, 3]]", "is given twice"),
         ("grid = {}", "no values; write lists at the paths of scene values"),
@@ -268,9 +282,78 @@ fn errors_name_the_point() {
             "units.csv, line 3, column `torque.viscous_damping`: expected a torque per angular",
         ),
         ("table = 'units.csv'", "units.csv, line 4, column `torque.viscous_damping`: must not be negative"),
-        ("table = 'cells.csv'", "cells.csv: line 3: expected 2 cells as in the header, found 3"),
+        ("table = 'cells.csv'", "cells.csv, line 3: expected 2 cells as in the header, found 3"),
         ("table = 'empty.csv'", "line 2, column `torque.viscous_damping`: the cell is empty"),
-        ("table = 'rows.csv'", "has no rows"),
+        (
+            "table = 'blank.csv'",
+            "19:9: blank.csv, line 2, column `torque.viscous_damping`: the cell is empty",
+        ),
+        (
+            "table = 'semicolons.csv'",
+            "semicolons.csv, line 1: the cells are separated by semicolons; separate",
+        ),
+        (
+            "table = 'index.csv'",
+            "index.csv, line 1: column 1 has no name; remove the column, or write the file by pandas with `index=False`",
+        ),
+        (
+            "table = 'level.csv'",
+            "level.csv, line 1: `__index_level_0__` is not the path of a scene value; remove the column, or write",
+        ),
+        (
+            "table = 'id.csv'",
+            "id.csv, line 2: `id` is not the path of a scene value; rename or remove the column",
+        ),
+        (
+            "table = 'near.csv'",
+            "near.csv, line 1: the scene has no `torque.viscous_damp`; did you mean `torque.viscous_damping`?",
+        ),
+        ("table = 'twice.csv'", "twice.csv, line 1: `force.drag` is given twice"),
+        (
+            "table = 'infinite.csv'",
+            "infinite.csv, line 2, column `force.drag`: `-inf` is not a finite number",
+        ),
+        (
+            "table = 'infinite.csv'",
+            "infinite.csv, line 3, column `force.drag`: `1e999` is not a finite number",
+        ),
+        ("table = 'infinite.csv'", "infinite.csv, line 4, column `force.drag`: `nan` is not a finite number"),
+        ("table = 'rows.parquet'", "rows.parquet, row 1 (from 0), column `force.drag`: expected a"),
+        (
+            "table = 'id.parquet'",
+            "id.parquet: `index` is not the path of a scene value; remove the column, or",
+        ),
+        (
+            "grid.vector = [[1, 2, 3]]",
+            "`vector` is not the path of a scene value; did you mean `initial.spin.vector`?",
+        ),
+        (
+            "list.froce.drag = [1]",
+            "`froce.drag` is not the path of a scene value; did you mean `force.drag`?",
+        ),
+        ("grid.inital.spin.vector = [1]", "did you mean `initial.spin.vector`?"),
+        ("grid.define.kk = [1]", "the scene has no `define.kk`; did you mean `define.k`?"),
+        (
+            "number = 2\ncovariance = { of = [], matrix = [] }",
+            "no names; write at least one random parameter",
+        ),
+        (
+            "number = 2\ncovariance = { of = ['spin'], matrix = [[1, 0, 0], [0, 1], [0, 0, 1]] }",
+            "expected 3 rows of 3 numbers, for spin[0], spin[1], spin[2]; row 2 of them has 2 numbers",
+        ),
+        (
+            "number = 2\ncovariance = { of = ['spin'], matrix = [[1, 0, 0]] }",
+            "expected 3 rows of 3 numbers, for spin[0], spin[1], spin[2]; found 1 row",
+        ),
+        (
+            "number = 2\ncovariance = { of = ['viscous_dampin'], matrix = [[1]] }",
+            "unknown parameter `viscous_dampin`, expected `torque.viscous_damping`",
+        ),
+        (
+            "number = 2\ncovariance = { of = ['id'], matrix = [[1]] }",
+            "unknown parameter `id`, expected `attitude`, ",
+        ),
+        ("table = 'rows.csv'", "rows.csv has no rows"),
         ("table = 'quote.csv'", "has no closing quote"),
         ("table = 'none.csv'", "no such file"),
     ];
@@ -282,6 +365,19 @@ fn errors_name_the_point() {
     let errors =
         Scene::parse(&format!("{mesh}[ensemble]\ngrid.body.mass = [1]\n"), Path::new("x.toml")).unwrap_err();
     assert!(errors[0].message.contains("a mesh is the same for all bodies"), "{errors:?}");
+}
+
+#[test]
+fn blank_lines_at_the_end_are_not_rows() {
+    assert_eq!(scene(&with("table = 'end.csv'")).ensemble.unwrap().number, 2);
+}
+
+#[test]
+fn texts_are_given_without_quotes() {
+    let crowd = scene(&with("grid.initial.attitude = ['exp(-e12)', { plane = 'e1e2', angle = 1 }]"));
+    let points = crowd.ensemble.as_ref().unwrap().points.as_ref().unwrap();
+    let texts = ["exp(-e12)", "{ plane = 'e1e2', angle = 1 }"].map(str::to_owned).to_vec();
+    assert_eq!(points.given(&crowd.text, 0..2), [("initial.attitude".to_owned(), Given::Texts(texts))]);
 }
 
 #[test]

@@ -89,7 +89,11 @@ fn placed<'t>(value: Value<'t>, place: &impl Fn(Range<usize>) -> Range<usize>) -
 
 /// A number as text of TOML.
 pub fn number(x: f64) -> String {
-    if x.is_finite() { format!("{x:e}") } else { "nan".to_owned() }
+    match x {
+        _ if x.is_nan() => "nan".to_owned(),
+        _ if x.is_infinite() => format!("{x}"),
+        _ => format!("{x:e}"),
+    }
 }
 
 /// A string as text of TOML.

@@ -13,8 +13,9 @@ import { frame } from "./frames.ts";
 import { gravity } from "./gravity.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Paths } from "./paths.ts";
-import { poinsot } from "./poinsot.ts";
+import { level, poinsot } from "./poinsot.ts";
 import { quaternion, vector } from "./rotor.ts";
+import { shadow } from "./shadow.ts";
 import { tip } from "./tip.ts";
 import { Viewport } from "./viewport.ts";
 
@@ -46,8 +47,11 @@ export class Stage extends Viewport {
   private motion: Motion | null = null;
   private painted: Palette | null = null;
   private camera: CameraName | null = null;
+  /** The motion whose invariable plane is horizontal. */
+  private levelled: Motion | null = null;
   private fitting = false;
   private played = 0;
+  private shownAt = Number.NaN;
   private whole = false;
 
   constructor(
@@ -122,14 +126,17 @@ export class Stage extends Viewport {
     this.space.visible = row !== null;
     if (row) {
       // The camera first: space and labels depend on it.
-      this.stand(vector(row, State.momentumSpace));
+      this.stand(vector(row, State.omegaSpace), vector(row, State.momentumSpace));
       const instant = this.instant(row);
       this.turning.quaternion.copy(instant.attitude);
       for (const part of this.parts) part.update(instant, shown);
       const description = this.description(shown);
       if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
-    this.render(shown.labels && row !== null);
+    const time = model.time.peek();
+    const steady = !this.whole && (model.playing.peek() || time === this.shownAt);
+    this.shownAt = time;
+    this.render(shown.labels && row !== null, steady);
     this.host.dataset.points = String(this.paths?.points ?? 0);
   }
 
@@ -162,6 +169,7 @@ export class Stage extends Viewport {
       this.paths,
       tip(setting, () => this.model.marked.peek()),
       gravity(setting),
+      shadow(setting),
       crowd(setting),
     ];
     this.parts = parts.filter((part) => part !== null);
@@ -177,17 +185,28 @@ export class Stage extends Viewport {
   }
 
   /** Moves to the model's camera if it has changed or a fit was requested. */
-  private stand(momentum: Vector3): void {
+  private stand(omega: Vector3, momentum: Vector3): void {
     const name = this.model.camera.peek();
-    if (name === this.camera && !this.fitting) return;
-    this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches);
+    // Poinsot's plane is at rest if L is.
+    const still = this.model.shown.peek().poinsot && (this.motion?.about.free ?? null) !== null;
+    const levelled = name === "oblique" && still && momentum.length() > 0 ? this.motion : null;
+    const upright = levelled && level(omega, momentum);
+    const before = this.levelled;
+    this.levelled = levelled;
+    if (name === this.camera && !this.fitting && (before === null) === (levelled === null)) {
+      // The user's view is kept while sliders move.
+      if (upright && before !== levelled) this.viewpoint.upright.copy(upright);
+      return;
+    }
+    this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches, upright);
     this.camera = name;
     this.fitting = false;
   }
 
   private instant(row: Float64Array): Instant {
     const attitude = quaternion(row, State.rotor);
-    this.space.quaternion.identity().slerp(attitude.clone().invert(), this.viewpoint.withBody);
+    const { upright, withBody } = this.viewpoint;
+    this.space.quaternion.copy(upright).slerp(attitude.clone().invert(), withBody);
     return {
       time: row[State.time]!,
       attitude,

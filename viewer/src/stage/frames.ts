@@ -14,7 +14,8 @@ export function frame({ palette, screen, labels }: Setting, of: "body" | "space"
     const shapes = new Shapes(screen, new Color(colour).lerp(new Color(palette.background), body ? 0 : 0.3));
     shapes.arrow(axis.clone().multiplyScalar(length), body ? { width: 2.6 } : { width: 1.4, dash: 0.05 });
     arrows.add(shapes.object);
-    return { axis, label: labels.add(body ? "f" : "e", colour, { index: k + 1, rank: body ? 2 : 3 }) };
+    // Labels that are at rest have their places first; the others move out of their way.
+    return { axis, label: labels.add(body ? "f" : "e", colour, { index: k + 1, rank: body ? 3 : 2 }) };
   });
   return {
     ...(body ? { inBody: arrows } : { inSpace: arrows }),

@@ -417,7 +417,8 @@ def test_a_page_of_a_lesson_leaves_the_focus_when_it_is_loaded(lesson):
 
 def test_another_scene_closes_the_lesson(lesson):
     page = lesson(LESSONS[0])
-    page.page.locator("#preset").select_option("toutatis.toml")
+    page.page.locator("#scenes").click()
+    page.page.locator("[data-scene='toutatis.toml']").click()
     page.page.locator(".lesson").wait_for(state="detached")
     assert read(page, "model.about.value.title") == "4179 Toutatis"
     page.page.locator("#file").set_input_files(LESSONS[0])

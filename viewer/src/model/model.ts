@@ -58,6 +58,8 @@ export class Model {
   readonly opened = signal<About | null>(null);
   /** Whether the tip of Ω is marked, in the picture in space and on the energy ellipsoid. */
   readonly marked = signal(false);
+  /** The name of the built-in scene that is open; null for others. */
+  readonly preset = signal<string | null>(null);
   /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
   /** The lesson that the page shows. */
@@ -289,6 +291,7 @@ export class Model {
   private take(scene: string | null, { name, files }: Opened): void {
     [this.name, this.files, this.original] = [name, files, scene];
     this.caption.value = null;
+    this.preset.value = null;
   }
 
   /** Starts the motion of a scene. */

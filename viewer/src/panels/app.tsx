@@ -93,7 +93,7 @@ function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds
       listed,
       "lessons",
       "Lessons",
-      model.caption.value !== null || lessons.left.value,
+      model.preset.value !== null || lessons.left.value,
       <LessonList lessons={lessons} />,
     ],
     [known, "state", "State", learning ? false : !compact || wide, <Readout model={model} />],

@@ -14,7 +14,8 @@ export interface Preset {
 
 /** The view of a top: the path of its axis, without the polhode. */
 const TOP: Partial<ViewState> = { speed: 0.5, shown: { polhode: false, omega: false } };
-const ROLLING = { poinsot: true, herpolhode: true, trace: false, omega: false, momentum: false };
+/** Ω and L as arrows, from the middle of the ellipsoid to its plane and through it. */
+const ROLLING = { poinsot: true, herpolhode: true, axial: true, trace: false, omega: false, momentum: false };
 
 /** The built-in scenes in groups; the first one is the first page. */
 export const GROUPS: readonly (readonly [title: string, presets: readonly Preset[]])[] = [
@@ -31,7 +32,10 @@ export const GROUPS: readonly (readonly [title: string, presets: readonly Preset
         view: { speed: 0.5 },
         hint: "Choose the axis under “Spin plane” and the perturbation by “Off-axis angle”.",
       },
-      { name: "poinsot.toml", view: { speed: 0.5, shown: { ...ROLLING, bodyFrame: false } } },
+      {
+        name: "poinsot.toml",
+        view: { speed: 0.5, shown: { ...ROLLING, bodyFrame: false, spaceFrame: false } },
+      },
       { name: "symmetric-top.toml", view: { speed: 0.1, shown: { herpolhode: true } } },
       { name: "feynman-plate.toml", view: { speed: 0.1, shown: { polhode: false } } },
     ],
@@ -42,7 +46,7 @@ export const GROUPS: readonly (readonly [title: string, presets: readonly Preset
       {
         name: "nutating-top.toml",
         view: TOP,
-        hint: "Reduce “Off-axis angle”, and the loops become cusps; set “Azimuth” to 90°, and they become waves.",
+        hint: "Reduce “Off-axis angle” for cusps; set “Azimuth” to 90° for waves.",
       },
       { name: "cusps.toml", view: TOP },
       { name: "waves.toml", view: TOP },

@@ -428,6 +428,13 @@ def test_another_scene_closes_the_lesson(lesson):
     page.until("model.about.value.top !== null")
 
 
+def test_captions_of_scenes_do_not_answer_the_questions_of_a_lesson(lesson):
+    """That of this lesson's scene says how the ellipsoid moves, which a step asks."""
+    page = lesson(ROOT / "examples/lessons/why-l-stays-and-omega-wanders.md")
+    assert read(page, "model.about.value.caption").startswith("The inertia ellipsoid rolls")
+    assert page.page.locator(".caption").count() == 0
+
+
 @pytest.mark.parametrize("name", ["why-l-stays-and-omega-wanders", "half-angles"])
 def test_phrases_turn_to_the_page_of_their_step(name, lesson):
     page = lesson(ROOT / f"examples/lessons/{name}.md")

@@ -47,7 +47,7 @@ export function Picture(props: {
         <Strobe model={model} />
         <ErrorMessage model={model} />
       </div>
-      {caption !== null && <p class="caption">{caption}</p>}
+      {caption && <p class="caption">{caption}</p>}
     </section>
   );
 }

@@ -1,11 +1,13 @@
 """Controls change the scene of a page, and its motion equals that of Python for the changed scene."""
 
+import tomllib
 from pathlib import Path
 
 import pytest
 
 import polhode as ph
 from polhode._viewer import document
+from viewer_page import VIEWER
 from viewer_scenes import FILES, PRESETS, followed_text
 
 BOX = """\
@@ -124,18 +126,40 @@ def test_local_files_can_be_opened(box, follow):
 @pytest.mark.slow
 def test_presets_can_be_opened(opened):
     page = opened("asymmetric")
-    select = page.page.get_by_label("Scene", exact=True)
-    names = select.locator("option:not([disabled])").evaluate_all("options => options.map(o => o.value)")
-    assert len(names) >= 8
+    entries = page.page.locator("[data-scene]")
+    names = entries.evaluate_all("entries => entries.map((entry) => entry.dataset.scene)")
+    # All examples are among the scenes, each once; what is not an example has a file of its own.
+    files = FILES | PRESETS
+    assert len(files) == len(FILES) + len(PRESETS)
+    assert sorted(names) == sorted(f"{stem}.toml" for stem in files)
     for name in names:
-        select.select_option(name)
-        path = FILES.get(Path(name).stem) or PRESETS[Path(name).stem]
+        page.page.locator("#scenes").click()
+        page.page.locator(f"[data-scene='{name}']").click()
+        path = files[Path(name).stem]
         page.until("model.scene.value === text", text=path.read_text())
+        page.page.locator("dialog.gallery").wait_for(state="hidden")
         assert page.viewer.get_attribute("data-state") == "ready"
-        # All presets have exact motions.
-        assert page.page.locator("#method").inner_text() == "exact"
+        caption = tomllib.loads(path.read_text())["caption"]
+        shown = page.page.locator(".caption").inner_text()
+        assert shown.startswith(" ".join(caption.split()))
         if name == "sleeping.toml":
             assert page.viewer.get_attribute("data-regime") == "sleeping, nearly upright"
+
+
+def test_list_of_scenes_says_what_each_shows(opened):
+    """With a title and the first sentence of its caption, in groups; the open one is marked."""
+    page = opened({"format": 1})
+    page.page.locator("#scenes").click()
+    entry = page.page.locator("[data-scene='t-handle.toml']")
+    assert entry.get_attribute("aria-current") == "true"
+    assert entry.locator("strong").inner_text() == "T-handle in free flight"
+    assert entry.locator(".note").inner_text().startswith("A T-handle spun about its stem")
+    about = page.page.locator("[data-scene] .note").all_inner_texts()
+    assert all(text.endswith((".", "?")) and 20 < len(text) < 240 for text in about)
+    assert page.page.locator(".gallery h3").count() >= 3
+    page.page.keyboard.press("Escape")
+    page.page.locator("dialog.gallery").wait_for(state="hidden")
+    assert page.page.evaluate(f"{VIEWER}.shadowRoot.activeElement.id") == "scenes"
 
 
 def test_recorded_motions_are_shown_at_their_times(opened, follow):

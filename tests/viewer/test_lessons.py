@@ -417,7 +417,8 @@ def test_a_page_of_a_lesson_leaves_the_focus_when_it_is_loaded(lesson):
 
 def test_another_scene_closes_the_lesson(lesson):
     page = lesson(LESSONS[0])
-    page.page.locator("#preset").select_option("toutatis.toml")
+    page.page.locator("#scenes").click()
+    page.page.locator("[data-scene='toutatis.toml']").click()
     page.page.locator(".lesson").wait_for(state="detached")
     assert read(page, "model.about.value.title") == "4179 Toutatis"
     page.page.locator("#file").set_input_files(LESSONS[0])
@@ -425,6 +426,13 @@ def test_another_scene_closes_the_lesson(lesson):
     page.page.locator("#file").set_input_files(ROOT / "examples/gyroscope.toml")
     page.page.locator(".lesson").wait_for(state="detached")
     page.until("model.about.value.top !== null")
+
+
+def test_captions_of_scenes_do_not_answer_the_questions_of_a_lesson(lesson):
+    """That of this lesson's scene says how the ellipsoid moves, which a step asks."""
+    page = lesson(ROOT / "examples/lessons/why-l-stays-and-omega-wanders.md")
+    assert read(page, "model.about.value.caption").startswith("The inertia ellipsoid rolls")
+    assert page.page.locator(".caption").count() == 0
 
 
 @pytest.mark.parametrize("name", ["why-l-stays-and-omega-wanders", "half-angles"])

@@ -7,7 +7,7 @@ import { Model, words } from "./model/model.ts";
 import { paletteOf, variables } from "./model/theme.ts";
 import { LIGHT, type Palette } from "./palette.ts";
 import { App } from "./panels/app.tsx";
-import { regimeOf } from "./panels/facts.tsx";
+import { regimeOf } from "./panels/regime.ts";
 import { bindKeys, commitOnEnter } from "./panels/keys.ts";
 import { mayAutoplay, openPreset, PRESETS } from "./presets/index.ts";
 import { type PictureOptions, Stage } from "./stage/stage.ts";

@@ -146,7 +146,8 @@ export class Lessons {
     }
     if (!(await this.openScene(subject, set, place))) return;
     this.look({ camera: "oblique", playing: true, ...set }, SHOWN);
-    model.caption.value = set.caption ?? null;
+    // Not that of the scene, which may answer the question of the step.
+    model.caption.value = set.caption ?? "";
   }
 
   /** Turns to the page that a step is about, and back to what was pressed there. */

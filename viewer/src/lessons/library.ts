@@ -1,15 +1,9 @@
 import type { Files } from "../core/core.ts";
 import type { LessonFile } from "../document.ts";
-import { decoded } from "../packed.ts";
-import { PRESETS } from "../presets/index.ts";
+import { sceneFile } from "../presets/files.ts";
 import { plain, type SceneNamed } from "./parse.ts";
 
-const FOLDER = "../../../examples/";
-const scenes = import.meta.glob<string>("../../../examples/*.toml", {
-  query: "?raw",
-  import: "default",
-  eager: true,
-});
+const FOLDER = "../../../examples/lessons/";
 const texts = import.meta.glob<string>("../../../examples/lessons/*.md", {
   query: "?raw",
   import: "default",
@@ -29,25 +23,19 @@ const ORDER = [
 /** The lessons that are part of the page. */
 export const LESSONS: readonly { id: string; title: string; about: string; file: LessonFile }[] = ORDER.map(
   (id) => {
-    const text = texts[`${FOLDER}lessons/${id}.md`]!;
+    const text = texts[`${FOLDER}${id}.md`]!;
     const field = (name: string) => plain(new RegExp(`^${name}: (.*)$`, "mu").exec(text)?.[1] ?? "");
     return { id, title: field("title"), about: field("about"), file: { text, name: `${id}.md` } };
   },
 );
 
 /**
- * A scene by its name: a file beside the lesson, a preset, or an example. The empty name stands for a scene written in
+ * A scene by its name: a file beside the lesson, or one that is part of the page. The empty name stands for a scene written in
  * the lesson, and gives its files alone.
  */
 export function sceneNamed(name: string, files: Files): ReturnType<SceneNamed> {
   const beside = files.get(name);
   if (name === "") return { scene: "", name, files };
   if (beside) return { scene: new TextDecoder().decode(beside), name, files };
-  const preset = PRESETS.find((one) => one.name === `${name}.toml`);
-  if (preset) {
-    const meshes = Object.entries(preset.files ?? {}).map(([file, text]) => [file, decoded(text)] as const);
-    return { scene: preset.scene, name: preset.name, files: new Map(meshes) };
-  }
-  const scene = scenes[`${FOLDER}${name}.toml`];
-  return scene === undefined ? null : { scene, name: `${name}.toml`, files: new Map() };
+  return sceneFile(`${name}.toml`);
 }

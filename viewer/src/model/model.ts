@@ -71,6 +71,8 @@ export class Model {
   readonly marked = signal(false);
   /** The layer that the legend points at. */
   readonly pointed = signal<keyof Shown | null>(null);
+  /** The name of the built-in scene that is open; null for others. */
+  readonly preset = signal<string | null>(null);
   /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
   /** The lesson that the page shows. */
@@ -366,6 +368,7 @@ export class Model {
   private take(scene: string | null, { name, files }: Opened): void {
     [this.name, this.files, this.original] = [name, files, scene];
     this.caption.value = null;
+    this.preset.value = null;
   }
 
   /** Starts the motion of a scene. */

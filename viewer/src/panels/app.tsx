@@ -12,13 +12,14 @@ import type { Palette } from "../palette.ts";
 import { Controls } from "../vary/controls.ts";
 import { BodyPanel } from "./body.tsx";
 import { Editor } from "./editor.tsx";
-import { Facts, regimeOf } from "./facts.tsx";
+import { Facts } from "./facts.tsx";
 import { Header } from "./header.tsx";
 import { LawsPanel } from "./laws.tsx";
 import { openFiles } from "./open.ts";
 import { Playback } from "./playback.tsx";
 import { Readout } from "./readout.tsx";
 import { Picture } from "./picture.tsx";
+import { inWords } from "./regime.ts";
 import { StartPanel } from "./start.tsx";
 import { ViewPanel } from "./view.tsx";
 
@@ -64,7 +65,7 @@ export function App({ model, palette, compact, wide }: Props) {
       }}
     >
       <Header model={model} compact={compact} lesson={lessons.lesson.value} />
-      <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
+      <div id="page" role="tabpanel" class="page">
         <Boundary key={model.page.value}>
           {motion ? (
             <MotionPage {...{ model, palette, compact, wide, controls, hands, lessons, folds }} />
@@ -98,19 +99,19 @@ function MotionPage(props: Props & { controls: Controls; hands: Hands; lessons: 
       listed,
       "lessons",
       "Lessons",
-      model.caption.value !== null || lessons.left.value,
+      model.preset.value !== null || lessons.left.value,
       <LessonList lessons={lessons} />,
     ],
+    [known, "motion", "Motion", !learning && !compact, <Facts model={model} wide={wide} />],
     [known, "state", "State", learning ? false : !compact || wide, <Readout model={model} />],
     [varied, "start", "Spin and attitude", wide, <StartPanel controls={controls} />],
-    [known, "motion", "Motion", wide && !compact, <Facts model={model} />],
     [varied, "body", "Body", false, <BodyPanel controls={controls} />],
     [varied, "laws", "Torques", false, <LawsPanel controls={controls} />],
     [true, "view", "View", false, <ViewPanel model={model} />],
     [!compact && editable, "text", "Scene", !known && !learning, <Editor model={model} />],
   ];
   return (
-    <main class="motion">
+    <main class="motion" aria-labelledby="tab-motion">
       <Picture model={model} palette={palette} hands={hands} formulas={formulas} compact={compact} />
       <Playback model={model} />
       <aside class="panels" aria-label="Values and controls">
@@ -124,9 +125,9 @@ function MotionPage(props: Props & { controls: Controls; hands: Hands; lessons: 
             ),
         )}
       </aside>
-      {/* Announces to screen readers when the regime changes. */}
+      {/* Announces to screen readers when the kind of motion changes. */}
       <p class="hidden" aria-live="polite">
-        {regimeOf(model.about.value)}
+        {inWords(model.about.value, model.core.laws)}
       </p>
     </main>
   );

@@ -6,11 +6,13 @@ import { Defined, Term } from "../glossary/term.tsx";
 import { axisNames, ordered } from "../model/axes.ts";
 import type { Model } from "../model/model.ts";
 import { HOLDING } from "../vary/laws.ts";
+import { Details } from "./details.tsx";
+import { inWords, regimeOf } from "./regime.ts";
 
 type Fact = [name: string, value: ComponentChildren, id?: string];
 
-/** Properties of the whole motion: regime, laws, periods, and accuracy. */
-export function Facts({ model }: { model: Model }) {
+/** Properties of the whole motion: what happens in words, and in the details regime, laws, periods, and accuracy. */
+export function Facts({ model, wide }: { model: Model; wide: boolean }) {
   const about = model.about.value;
   if (!about) return null;
   const { body, free, top } = about;
@@ -34,24 +36,29 @@ export function Facts({ model }: { model: Model }) {
   ];
   return (
     <>
-      <dl class="facts">
-        {facts.map(
-          ([name, value, id], k) =>
-            value && (
-              <div class="fact" key={k}>
-                <dt>
-                  {name === "Moments" ? (
-                    <Term term="principal moments" text={name} />
-                  ) : (
-                    <Defined text={name} />
-                  )}
-                </dt>
-                <dd id={id}>{value}</dd>
-              </div>
-            ),
-        )}
-      </dl>
-      <Conserved about={about} />
+      <p class="happens">
+        <Defined text={inWords(about, model.core.laws)} />
+      </p>
+      <Details wide={wide}>
+        <dl class="facts">
+          {facts.map(
+            ([name, value, id], k) =>
+              value && (
+                <div class="fact" key={k}>
+                  <dt>
+                    {name === "Moments" ? (
+                      <Term term="principal moments" text={name} />
+                    ) : (
+                      <Defined text={name} />
+                    )}
+                  </dt>
+                  <dd id={id}>{value}</dd>
+                </div>
+              ),
+          )}
+        </dl>
+        <Conserved about={about} />
+      </Details>
     </>
   );
 }
@@ -87,11 +94,6 @@ function topFacts({ tilt, nutation_period, precession_rate, ...top }: NonNullabl
     ["Precession", turn && `${duration(turn, 7)} per turn about e₃, on average`],
     ["Upright", `${stable}; stable from a spin of ${significant(top.critical_spin, 5)} rad/s on`],
   ];
-}
-
-/** The regime of the motion in words; empty if it has no name. */
-export function regimeOf(about: About | null): string {
-  return about?.free?.regime ?? about?.top?.regime ?? "";
 }
 
 /** The principal axis that Ω circles. */

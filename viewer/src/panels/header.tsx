@@ -1,11 +1,9 @@
 import { useRef } from "preact/hooks";
-import { Icon, IconButton } from "../inputs/button.tsx";
-import { Choices } from "../inputs/fields.tsx";
+import { Icon } from "../inputs/button.tsx";
 import type { Lesson } from "../lessons/lesson.ts";
 import type { Model } from "../model/model.ts";
-import { openPreset, PRESETS } from "../presets/index.ts";
 import { KEYS } from "./keys.ts";
-import { ACCEPTED, openFiles } from "./open.ts";
+import { Scenes } from "./scenes.tsx";
 
 const PAGES = ["motion", "algebra"] as const;
 
@@ -47,54 +45,6 @@ function Tabs({ model }: { model: Model }) {
           {page === "motion" ? "Motion" : "Algebra"}
         </button>
       ))}
-    </div>
-  );
-}
-
-/** The presets, and a button that opens files. */
-function Scenes({ model }: { model: Model }) {
-  const input = useRef<HTMLInputElement>(null);
-  const chosen = PRESETS.find(({ caption }) => caption === model.caption.value);
-  return (
-    <div class="scenes">
-      <label for="preset" class="hidden">
-        Scene
-      </label>
-      <Choices
-        id="preset"
-        value={chosen?.name ?? null}
-        options={PRESETS.map(({ name, title }) => [name, title])}
-        other="Scenes…"
-        onChange={(name) => {
-          model.lesson.value = null;
-          void openPreset(
-            model,
-            PRESETS.find((preset) => preset.name === name)!,
-          );
-        }}
-      />
-      <IconButton
-        id="open"
-        class="quiet"
-        label="Open a scene"
-        icon="open"
-        onClick={() => input.current?.click()}
-      />
-      <input
-        id="file"
-        ref={input}
-        class="hidden"
-        type="file"
-        multiple
-        accept={ACCEPTED}
-        tabIndex={-1}
-        aria-label="Scene and mesh files"
-        onChange={(event) => {
-          const files = [...(event.currentTarget.files ?? [])];
-          event.currentTarget.value = "";
-          if (files.length > 0) void openFiles(model, files);
-        }}
-      />
     </div>
   );
 }

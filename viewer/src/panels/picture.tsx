@@ -58,7 +58,7 @@ export function Picture(props: {
         </div>
         <ErrorMessage model={model} />
       </div>
-      {caption !== null && (
+      {caption && (
         <p class="caption">
           <Defined text={caption} />
         </p>

@@ -15,8 +15,11 @@ const MOVE = 0.6;
 /** The angle of one step of a turn. */
 const STEP = (5 * Math.PI) / 180;
 
-/** Direction of the preset 'oblique': e1 points left and towards the viewer, e2 right, e3 up. */
-const OBLIQUE = new Vector3(Math.cos(0.33) * Math.cos(0.6), Math.cos(0.33) * Math.sin(0.6), Math.sin(0.33));
+/** Azimuth of the preset 'oblique', and its elevations: e1 points left and towards the viewer, e2 right, e3 up. */
+export const AZIMUTH = 0.6;
+const LOW = 0.33;
+/** Higher, to look down on a plane. */
+const HIGH = 0.55;
 
 /** Three's spherical coordinates have their pole along y, ours along e3. */
 const TO_Y = new Quaternion().setFromUnitVectors(AXES[2], AXES[1]);
@@ -41,6 +44,8 @@ interface Move {
   to: Spherical;
   withFrom: number;
   withTo: number;
+  uprightFrom: Quaternion;
+  uprightTo: Quaternion;
   passed: number;
 }
 
@@ -49,6 +54,8 @@ export class Viewpoint {
   readonly camera = new PerspectiveCamera(LENS, 1, 0.1, 100);
   /** How much space turns back under the body: from 0, not at all, to 1, where the body is at rest. */
   withBody = 0;
+  /** The turn of space that makes another direction than e3 the vertical of the picture. */
+  readonly upright = new Quaternion();
   private readonly controls: OrbitControls;
   private fit = 1;
   private move: Move | null = null;
@@ -58,7 +65,7 @@ export class Viewpoint {
     private readonly changed: () => void,
   ) {
     this.camera.up.copy(AXES[2]);
-    this.camera.position.copy(OBLIQUE);
+    this.camera.position.copy(oblique(LOW));
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enablePan = false;
     this.controls.rotateSpeed = 0.8;
@@ -66,14 +73,23 @@ export class Viewpoint {
     this.controls.addEventListener("start", this.grabbed);
   }
 
-  /** Moves to a preset; `momentum` is the axial vector of L. */
-  go(name: CameraName, momentum: Vector3, atOnce: boolean): void {
-    const to = spherical(direction(name, momentum).multiplyScalar(this.fit));
+  /** Moves to a preset; `momentum` is the axial vector of L. With an upright, looks down on its horizontal plane. */
+  go(name: CameraName, momentum: Vector3, atOnce: boolean, upright: Quaternion | null = null): void {
+    const towards = upright ? oblique(HIGH) : direction(name, momentum);
+    const to = spherical(towards.multiplyScalar(this.fit));
     const from = this.here;
     // The shorter way around.
     to.theta += 2 * Math.PI * Math.round((from.theta - to.theta) / (2 * Math.PI));
     const withTo = name === "with the body" ? 1 : 0;
-    this.move = { from, to, withFrom: this.withBody, withTo, passed: atOnce ? MOVE : 0 };
+    this.move = {
+      from,
+      to,
+      withFrom: this.withBody,
+      withTo,
+      uprightFrom: this.upright.clone(),
+      uprightTo: upright ?? new Quaternion(),
+      passed: atOnce ? MOVE : 0,
+    };
     this.step(0);
     this.changed();
   }
@@ -81,6 +97,7 @@ export class Viewpoint {
   /** Moves at once to an azimuth, from e1 towards e2, and an elevation above e1∧e2, in degrees. */
   from(azimuth: number, elevation: number): void {
     this.move = null;
+    this.upright.identity();
     const radians = Math.PI / 180;
     // The zero of theta is the z axis, to which TO_Y turns −e2.
     this.stand(new Spherical(this.fit, (90 - elevation) * radians, (azimuth + 90) * radians));
@@ -100,6 +117,7 @@ export class Viewpoint {
     const between = (a: number, b: number) => MathUtils.lerp(a, b, eased);
     const { from, to } = move;
     this.withBody = between(move.withFrom, move.withTo);
+    this.upright.slerpQuaternions(move.uprightFrom, move.uprightTo, eased);
     this.stand(
       new Spherical(
         between(from.radius, to.radius),
@@ -149,7 +167,10 @@ export class Viewpoint {
   }
 
   private readonly grabbed = (): void => {
-    if (this.move) this.withBody = this.move.withTo;
+    if (this.move) {
+      this.withBody = this.move.withTo;
+      this.upright.copy(this.move.uprightTo);
+    }
     this.move = null;
   };
 
@@ -169,10 +190,16 @@ function spherical(from: Vector3): Spherical {
   return new Spherical().setFromVector3(from.applyQuaternion(TO_Y)).makeSafe();
 }
 
+/** The direction of the preset 'oblique' at an elevation. */
+function oblique(elevation: number): Vector3 {
+  const across = Math.cos(elevation);
+  return new Vector3(across * Math.cos(AZIMUTH), across * Math.sin(AZIMUTH), Math.sin(elevation));
+}
+
 /** The direction of a preset from the middle of the figure, a unit vector in space axes. */
 function direction(name: CameraName, momentum: Vector3): Vector3 {
   const axis = ["along e1", "along e2", "along e3"].indexOf(name);
   if (axis >= 0) return AXES[axis as 0 | 1 | 2].clone();
-  if (name !== "along L") return OBLIQUE.clone();
+  if (name !== "along L") return oblique(LOW);
   return momentum.length() > 0 ? momentum.clone().normalize() : AXES[2].clone();
 }

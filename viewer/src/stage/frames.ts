@@ -19,7 +19,8 @@ export function frame({ figure, palette, screen, labels }: Setting, of: "body" |
     const shapes = new Shapes(screen, new Color(colour).lerp(new Color(palette.background), body ? 0 : 0.3));
     shapes.arrow(axis.clone().multiplyScalar(length), body ? { width: 2.6 } : { width: 1.4, dash: 0.05 });
     arrows.add(shapes.object);
-    const label = labels.add(body ? "f" : "e", colour, { index: k + 1, rank: body ? 2 : 3 });
+    // Labels that are at rest have their places first; the others move out of their way.
+    const label = labels.add(body ? "f" : "e", colour, { index: k + 1, rank: body ? 3 : 2 });
     if (body && own) label.value = names[k]!;
     return { axis, label };
   });

@@ -1,11 +1,10 @@
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshLambertMaterial, Vector3 } from "three";
 import { REACH } from "./figure.ts";
+import { standOf } from "./floor.ts";
 import type { Part, Setting } from "./part.ts";
 import { AXES } from "./rotor.ts";
 import { circle, Shapes } from "./shapes.ts";
 
-/** Height of the stand under the pivot. */
-const STAND = 0.42;
 const WEIGHT = new Vector3(0, 0, -0.75);
 const PARALLELS = 5;
 
@@ -15,7 +14,8 @@ export function gravity({ figure, palette, screen, labels }: Setting): Part | nu
   if (!about.held) return null;
   const arm = centre.length();
   const material = new MeshLambertMaterial({ color: palette.faint });
-  const cone = new ConeGeometry(0.13, STAND, 48).rotateX(Math.PI / 2).translate(0, 0, -STAND / 2);
+  const high = standOf(figure);
+  const cone = new ConeGeometry(0.13, high, 48).rotateX(Math.PI / 2).translate(0, 0, -high / 2);
   const stem = new CylinderGeometry(0.014, 0.014, arm, 24).rotateX(Math.PI / 2).translate(0, 0, arm / 2);
   const inBody = new Mesh(stem, material);
   inBody.quaternion.setFromUnitVectors(AXES[2], centre.clone().normalize());

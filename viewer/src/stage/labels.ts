@@ -11,10 +11,15 @@ const HALO = 4;
 /** Labels have values on a canvas of at least this width. */
 const ROOMY = 520;
 const FAMILY = '"STIX Two Text", "Latin Modern Roman", Cambria, "Times New Roman", serif';
-const LETTER = `italic 17px ${FAMILY}`;
-const SMALL = `13px ${FAMILY}`;
-/** Shifts of a label that would overlap another, in heights. */
-const PLACES = [0, -1, 1, -2, 2];
+/** Room of the plate around the letters, its corners and its opacity. */
+const PLATE = { x: 4, y: 1, corner: 4, opacity: 0.8 };
+/** A label returns to a better place only if this much room is around it there: places do not alternate. */
+const MARGIN = 8;
+/** The part of the way to its place that a label goes in one frame; more if another one is in its way. */
+const PACES = [0.25, 0.5, 0.75];
+/** On a canvas narrower than this, letters are smaller by this factor. */
+const NARROW = 300;
+const SMALLER = 0.82;
 
 /** A label of a point: an italic symbol, with an index or a value. */
 export interface Label {
@@ -29,6 +34,9 @@ export interface Label {
   hidden: boolean;
   /** The side of its point that it is on, right and up; null for away from the centre. */
   side: Point | null;
+  /** Which of its places it has, and where its middle is drawn from its point; null before it is drawn. */
+  place: number | null;
+  from: Vector2 | null;
 }
 
 export interface Point {
@@ -44,14 +52,19 @@ interface Piece {
   y: number;
 }
 
-/** The layer of labels over the canvas. Those without room are hidden. */
+/** The layer of labels over the canvas: each on a plate, none over another. Those without room are hidden. */
 export class Labels {
   readonly element = document.createElement("canvas");
-  /** Colours of letters are readable on this one's background, which is also that of their halo. */
+  /** Colours of letters are readable on this one's background, which is also that of plates. */
   palette = LIGHT;
+  /** Whether labels go to other places at once: for readers who prefer reduced motion. */
+  calm = false;
+  /** Whether labels are still on their way to their places. */
+  gliding = false;
   private readonly context = this.element.getContext("2d")!;
   private labels: Label[] = [];
   private placed: { label: Label; pieces: Piece[]; box: Box2 }[] = [];
+  private scale = 1;
 
   constructor() {
     // The description of the canvas and the panels have the same content.
@@ -61,7 +74,7 @@ export class Labels {
   }
 
   add(symbol: string, colour: string, style: { index?: string | number; rank: number }): Label {
-    const label = {
+    const label: Label = {
       index: "",
       ...style,
       symbol,
@@ -70,6 +83,8 @@ export class Labels {
       value: "",
       hidden: false,
       side: null,
+      place: null,
+      from: null,
     };
     this.labels.push(label);
     this.labels.sort((a, b) => a.rank - b.rank);
@@ -85,51 +100,105 @@ export class Labels {
     this.element.width = width * ratio;
     this.element.height = height * ratio;
     this.context.scale(ratio, ratio);
+    this.scale = width < NARROW ? SMALLER : 1;
   }
 
-  /** Places the labels on a canvas of a size in CSS pixels, and draws them. */
-  place(camera: Camera, space: Matrix4, size: Vector2, shown: boolean): void {
+  /**
+   * Places the labels on a canvas of a size in CSS pixels, and draws them. `steady` ones, of pictures that follow each
+   * other without a jump, keep their places while they can; others have places that depend on this picture alone.
+   */
+  place(camera: Camera, space: Matrix4, size: Vector2, shown: boolean, steady = false): void {
     const [width, height] = [size.x, size.y];
     this.placed = [];
+    this.gliding = false;
     const centre = onScreen(new Vector3().setFromMatrixPosition(space), camera, width, height);
     for (const label of shown ? this.labels : []) {
+      if (!steady || label.hidden) [label.place, label.from] = [null, null];
       if (label.hidden) continue;
       const point = onScreen(label.at.clone().applyMatrix4(space), camera, width, height);
       const { pieces, width: wide } = this.typeset(label, width >= ROOMY);
-      const taken = this.placed.map(({ box }) => box);
-      const box = free(around(point, centre, wide, label.side), taken, width, height);
+      const plate = new Vector2(wide + 2 * PLATE.x, (HEIGHT + 2 * PLATE.y) * this.scale);
+      const box = this.free(label, point, around(point, centre, plate, label.side), size);
       if (box) this.placed.push({ label, pieces, box });
     }
+    this.element.dataset.plates = JSON.stringify(
+      this.placed.map(({ label, box }) => [
+        `${label.symbol}${label.index}`,
+        ...box.min.toArray(),
+        ...box.max.toArray(),
+      ]),
+    );
     this.context.clearRect(0, 0, width, height);
     this.draw(this.context);
   }
 
   /** Draws the labels at their last places, in CSS pixels. */
   draw(context: CanvasRenderingContext2D): void {
-    [context.strokeStyle, context.lineWidth, context.lineJoin] = [this.palette.background, HALO, "round"];
+    const { background } = this.palette;
+    [context.strokeStyle, context.lineWidth, context.lineJoin] = [background, HALO, "round"];
     for (const { label, pieces, box } of this.placed) {
+      const { x: wide, y: high } = box.getSize(new Vector2());
+      context.fillStyle = background;
+      context.globalAlpha = PLATE.opacity;
+      context.beginPath();
+      context.roundRect(box.min.x, box.min.y, wide, high, PLATE.corner);
+      context.fill();
+      context.globalAlpha = 1;
       context.fillStyle = label.colour;
       for (const { text, font, x, y } of pieces) {
+        const [left, base] = [box.min.x + PLATE.x + x, box.min.y + PLATE.y + y];
         context.font = font;
-        context.strokeText(text, box.min.x + x, box.min.y + y);
-        context.fillText(text, box.min.x + x, box.min.y + y);
+        context.strokeText(text, left, base);
+        context.fillText(text, left, base);
       }
     }
   }
 
   private typeset(label: Label, valued: boolean): { pieces: Piece[]; width: number } {
+    const { scale } = this;
+    const [letter, small] = [`italic ${17 * scale}px ${FAMILY}`, `${13 * scale}px ${FAMILY}`];
     const pieces: Piece[] = [];
     let width = 0;
     const write = (text: string, font: string, gap = 0, drop = 0): void => {
       if (!text) return;
-      pieces.push({ text, font, x: width + gap, y: BASELINE + drop });
+      pieces.push({ text, font, x: width + gap, y: (BASELINE + drop) * scale });
       this.context.font = font;
       width += gap + this.context.measureText(text).width;
     };
-    write(label.symbol, LETTER);
-    write(String(label.index), SMALL, 0, DROP);
-    if (valued) write(label.value, SMALL, GAP);
+    write(label.symbol, letter);
+    write(String(label.index), small, 0, DROP);
+    if (valued) write(label.value, small, GAP);
     return { pieces, width };
+  }
+
+  /** The plate of a label, in the picture and beside those that are taken; null without room. */
+  private free(label: Label, point: Point, best: Box2, size: Vector2): Box2 | null {
+    const taken = this.placed.map(({ box }) => box);
+    const room = (box: Box2, margin = 0): boolean => {
+      const { min, max } = box;
+      if (min.x < 0 || max.x > size.x || min.y < 0 || max.y > size.y) return false;
+      const wider = box.clone().expandByScalar(margin);
+      return !taken.some((other) => wider.intersectsBox(other));
+    };
+    const places = placesOf(best, point, size.x);
+    const had = label.place === null ? null : places[label.place]!;
+    const better = places.findIndex((box, k) => room(box, had && k !== label.place ? MARGIN : 0));
+    const place = better < 0 ? places.findIndex((box) => room(box)) : better;
+    const from = label.from;
+    [label.place, label.from] = [place < 0 ? null : place, null];
+    if (place < 0) return null;
+    const target = places[place]!.getCenter(new Vector2()).sub(point);
+    label.from = target;
+    if (!from || this.calm || from.distanceTo(target) < 1) return places[place]!;
+    for (const part of PACES) {
+      const way = from.clone().lerp(target, part);
+      const box = new Box2().setFromCenterAndSize(way.clone().add(point), best.getSize(new Vector2()));
+      if (!room(box)) continue;
+      label.from = way;
+      this.gliding = true;
+      return box;
+    }
+    return places[place]!;
   }
 }
 
@@ -139,24 +208,31 @@ export function onScreen(point: Vector3, camera: Camera, width: number, height: 
   return { x: ((1 + point.x) * width) / 2, y: ((1 - point.y) * height) / 2 };
 }
 
-/** The box of a label beside a point: away from the centre until the point is outside, or on the given side. */
-function around(point: Point, centre: Point, width: number, side: Point | null): Box2 {
+/** The plate of a label beside a point: away from the centre until the point is outside, or on the given side. */
+function around(point: Point, centre: Point, size: Vector2, side: Point | null): Box2 {
   let [dx, dy] = [point.x - centre.x, point.y - centre.y || -1e-3];
-  let away = Math.min((width / 2 + GAP) / Math.abs(dx), (HEIGHT / 2 + GAP) / Math.abs(dy));
+  let away = Math.min((size.x / 2 + GAP) / Math.abs(dx), (size.y / 2 + GAP) / Math.abs(dy));
   if (side) {
     const length = Math.hypot(side.x, side.y);
     [dx, dy] = [side.x / length, -side.y / length];
-    away = (width / 2) * Math.abs(dx) + (HEIGHT / 2) * Math.abs(dy) + GAP;
+    away = (size.x / 2) * Math.abs(dx) + (size.y / 2) * Math.abs(dy) + GAP;
   }
   const middle = new Vector2(point.x + dx * away, point.y + dy * away);
-  return new Box2().setFromCenterAndSize(middle, new Vector2(width, HEIGHT));
+  return new Box2().setFromCenterAndSize(middle, size);
 }
 
-/** The box, moved into the picture and beside those that are taken; null without room. */
-function free(box: Box2, taken: Box2[], width: number, height: number): Box2 | null {
-  const shift = Math.max(4 - box.min.x, Math.min(0, width - 4 - box.max.x));
-  const moved = PLACES.map((place) => box.clone().translate(new Vector2(shift, place * HEIGHT)));
-  const room = (at: Box2) =>
-    at.min.y >= 0 && at.max.y <= height && !taken.some((other) => at.intersectsBox(other));
-  return moved.find(room) ?? null;
+/** Places of a plate, from the best one on: above and below that, and on the left and right of its point. */
+function placesOf(best: Box2, point: Point, width: number): Box2[] {
+  const size = best.getSize(new Vector2());
+  const middle = best.getCenter(new Vector2());
+  const beside = size.x / 2 + GAP;
+  const middles = [
+    ...[0, -1, 1].map((k) => new Vector2(middle.x, middle.y + k * size.y)),
+    ...[1, -1].map((k) => new Vector2(point.x + k * beside, point.y)),
+    ...[-2, 2].map((k) => new Vector2(middle.x, middle.y + k * size.y)),
+  ];
+  return middles.map((at) => {
+    at.x += Math.max(size.x / 2 - at.x, Math.min(0, width - size.x / 2 - at.x));
+    return new Box2().setFromCenterAndSize(at, size);
+  });
 }

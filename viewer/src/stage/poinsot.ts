@@ -1,4 +1,13 @@
-import { Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
+import {
+  Group,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
+} from "three";
+import { AZIMUTH } from "./camera.ts";
 import type { Part, Setting } from "./part.ts";
 import { AXES, quaternion } from "./rotor.ts";
 import { circle, Shapes } from "./shapes.ts";
@@ -56,4 +65,12 @@ export function poinsot({ figure, palette, screen }: Setting): Part | null {
       contact.position.copy(omega).multiplyScalar(figure.rate);
     },
   };
+}
+
+/** The turn of space that makes the invariable plane horizontal, with the point of contact on the side of the eye. */
+export function level(omega: Vector3, momentum: Vector3): Quaternion {
+  const upright = new Quaternion().setFromUnitVectors(momentum.clone().normalize(), AXES[2]);
+  const contact = omega.clone().applyQuaternion(upright);
+  const turn = AZIMUTH - Math.atan2(contact.y, contact.x);
+  return upright.premultiply(new Quaternion().setFromAxisAngle(AXES[2], turn));
 }

@@ -16,8 +16,9 @@ import { frame, principal } from "./frames.ts";
 import { gravity } from "./gravity.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Paths } from "./paths.ts";
-import { poinsot } from "./poinsot.ts";
+import { level, poinsot } from "./poinsot.ts";
 import { quaternion, vector } from "./rotor.ts";
+import { shadow } from "./shadow.ts";
 import { tip } from "./tip.ts";
 import type { SpaceTools } from "./tools.ts";
 import { Viewport } from "./viewport.ts";
@@ -50,8 +51,11 @@ export class Stage extends Viewport {
   private motion: Motion | null = null;
   private painted: Palette | null = null;
   private camera: CameraName | null = null;
+  /** The motion whose invariable plane is horizontal. */
+  private levelled: Motion | null = null;
   private fitting = false;
   private played = 0;
+  private shownAt = Number.NaN;
   private whole = false;
   /** Whether laws or thrusts act on the body, and the layer that was emphasized. */
   private acts = false;
@@ -140,7 +144,7 @@ export class Stage extends Viewport {
     this.space.visible = row !== null;
     if (row) {
       // The camera first: space and labels depend on it.
-      this.stand(vector(row, State.momentumSpace));
+      this.stand(vector(row, State.omegaSpace), vector(row, State.momentumSpace));
       const instant = this.instant(row);
       this.turning.quaternion.copy(instant.attitude);
       for (const part of this.parts) part.update(instant, shown);
@@ -150,7 +154,10 @@ export class Stage extends Viewport {
       const description = this.description(shown);
       if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
-    this.render(shown.labels && row !== null);
+    const time = model.time.peek();
+    const steady = !this.whole && (model.playing.peek() || time === this.shownAt);
+    this.shownAt = time;
+    this.render(shown.labels && row !== null, steady);
     this.tools?.place(this.sight(row), this.figure);
     this.host.dataset.points = String(this.paths?.points ?? 0);
   }
@@ -189,6 +196,7 @@ export class Stage extends Viewport {
       this.paths,
       tip(setting, () => this.model.marked.peek()),
       gravity(setting),
+      shadow(setting),
       crowd(setting),
       ...(this.tools?.parts(setting) ?? []),
     ];
@@ -206,10 +214,20 @@ export class Stage extends Viewport {
   }
 
   /** Moves to the model's camera if it has changed or a fit was requested. */
-  private stand(momentum: Vector3): void {
+  private stand(omega: Vector3, momentum: Vector3): void {
     const name = this.model.camera.peek();
-    if (name === this.camera && !this.fitting) return;
-    this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches);
+    // Poinsot's plane is at rest if L is.
+    const still = this.model.shown.peek().poinsot && (this.motion?.about.free ?? null) !== null;
+    const levelled = name === "oblique" && still && momentum.length() > 0 ? this.motion : null;
+    const upright = levelled && level(omega, momentum);
+    const before = this.levelled;
+    this.levelled = levelled;
+    if (name === this.camera && !this.fitting && (before === null) === (levelled === null)) {
+      // The user's view is kept while sliders move.
+      if (upright && before !== levelled) this.viewpoint.upright.copy(upright);
+      return;
+    }
+    this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches, upright);
     this.camera = name;
     this.fitting = false;
   }
@@ -217,7 +235,8 @@ export class Stage extends Viewport {
   private instant(row: Float64Array): Instant {
     const attitude = quaternion(row, State.rotor);
     const acting = this.acts ? actingOn(this.motion!, row) : null;
-    this.space.quaternion.identity().slerp(attitude.clone().invert(), this.viewpoint.withBody);
+    const { upright, withBody } = this.viewpoint;
+    this.space.quaternion.copy(upright).slerp(attitude.clone().invert(), withBody);
     return {
       time: row[State.time]!,
       attitude,

@@ -149,10 +149,12 @@ export abstract class Viewport {
     return { camera, space: this.space.matrixWorld.clone(), size: this.screen.value, row };
   }
 
-  protected render(labelled: boolean): void {
+  /** Draws; labels of a `steady` picture, which follows the last one without a jump, keep their places. */
+  protected render(labelled: boolean, steady = true): void {
     const { camera } = this.viewpoint;
+    this.labels.calm = this.calm.matches;
     this.scene.updateMatrixWorld();
-    this.labels.place(camera, this.space.matrixWorld, this.screen.value, labelled);
+    this.labels.place(camera, this.space.matrixWorld, this.screen.value, labelled, steady);
     this.renderer.render(this.scene, camera);
     this.old.splice(0).forEach(release);
   }
@@ -222,13 +224,15 @@ export abstract class Viewport {
     } finally {
       this.drawing = false;
     }
-    going ||= this.viewpoint.moving || (this.seen && this.unfinished);
+    going ||= this.viewpoint.moving || (this.seen && (this.unfinished || this.labels.gliding));
     this.last = going ? now : null;
     if (going) this.draw();
     const took = performance.now() - began;
     this.spent += (took - this.spent) * (this.drawn < 10 ? 0.5 : 0.1);
     this.drawn += 1;
     this.canvas.dataset.camera = this.viewpoint.camera.position.toArray().join(" ");
+    const { upright } = this.viewpoint;
+    this.canvas.dataset.upright = upright.toArray().join(" ");
     this.host.dataset.complete = String(!this.unfinished);
     this.host.dataset.drawn = String(this.drawn);
     this.host.dataset.frameMs = this.spent.toFixed(3);

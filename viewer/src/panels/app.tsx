@@ -7,6 +7,7 @@ import { LessonList, LessonPanel } from "../lessons/panel.tsx";
 import { Lessons } from "../lessons/lessons.ts";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
+import { Share, type Sharing } from "../share/share.tsx";
 import { Controls } from "../vary/controls.ts";
 import { BodyPanel } from "./body.tsx";
 import { Editor } from "./editor.tsx";
@@ -26,19 +27,21 @@ interface Props {
   compact: boolean;
   /** Whether panels fit beside the picture; they are then open by default. */
   wide: boolean;
+  sharing: Sharing;
 }
 
 /** Whether panels are open, for those that the user opened or folded. */
 type Folds = Map<string, boolean>;
 
 /** The page: the header, and the motion or the algebra below it. */
-export function App({ model, palette, compact, wide }: Props) {
+export function App({ model, palette, compact, wide, sharing }: Props) {
   const dragged = useSignal(false);
   // Kept while the algebra is shown.
   const controls = useMemo(() => new Controls(model), [model]);
   useEffect(() => () => controls.dispose(), [controls]);
   const lessons = useMemo(() => new Lessons(model), [model]);
   useEffect(() => () => lessons.dispose(), [lessons]);
+  useEffect(() => sharing.address?.keep(lessons), [sharing, lessons]);
   const app = useRef<HTMLDivElement>(null);
   useAttention(app, lessons);
   const folds = useMemo<Folds>(() => new Map(), []);
@@ -59,7 +62,12 @@ export function App({ model, palette, compact, wide }: Props) {
         if (files.length > 0) void openFiles(model, files);
       }}
     >
-      <Header model={model} compact={compact} lesson={lessons.lesson.value} />
+      <Header
+        model={model}
+        compact={compact}
+        lesson={lessons.lesson.value}
+        share={<Share {...{ model, palette, lessons, sharing }} />}
+      />
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
         <Boundary key={model.page.value}>
           {motion ? (
@@ -77,7 +85,7 @@ export function App({ model, palette, compact, wide }: Props) {
   );
 }
 
-function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds: Folds }) {
+function MotionPage(props: Omit<Props, "sharing"> & { controls: Controls; lessons: Lessons; folds: Folds }) {
   const { model, palette, compact, controls, lessons, folds } = props;
   const known = model.about.value !== null;
   // Without a motion, the text of an invalid scene.

@@ -2,7 +2,7 @@ import type { ReadonlySignal } from "@preact/signals";
 import { Group, Vector2, Vector3 } from "three";
 import { State } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
-import type { CameraName, Shown } from "../document.ts";
+import type { CameraName, Pose, Shown } from "../document.ts";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { body } from "./body.ts";
@@ -46,6 +46,8 @@ export class Stage extends Viewport {
   private motion: Motion | null = null;
   private painted: Palette | null = null;
   private camera: CameraName | null = null;
+  /** The pose of the model that the camera has taken. */
+  private pose: Pose | null = null;
   private fitting = false;
   private played = 0;
   private whole = false;
@@ -64,9 +66,13 @@ export class Stage extends Viewport {
       const turn = model.turned.value;
       if (turn && turn !== turned) this.viewpoint.turn(turn);
       turned = turn;
-      const { motion, row, shown, marked, camera, playing } = model;
-      for (const watched of [motion, row, shown, marked, camera, playing, palette]) void watched.value;
+      const { motion, row, shown, marked, camera, pose, playing } = model;
+      for (const watched of [motion, row, shown, marked, camera, pose, playing, palette]) void watched.value;
     });
+    this.viewpoint.moved = () => {
+      this.pose = this.viewpoint.pose;
+      model.pose.value = this.pose;
+    };
   }
 
   /** Returns to the preset of the model's camera. */
@@ -176,13 +182,19 @@ export class Stage extends Viewport {
     this.viewpoint.look(new Vector3(0, 0, figure.about.held ? Math.max(0.2 * top, 0) : 0));
   }
 
-  /** Moves to the model's camera if it has changed or a fit was requested. */
+  /** Moves to the model's camera if it has changed or a fit was requested, and to a pose that was set. */
   private stand(momentum: Vector3): void {
-    const name = this.model.camera.peek();
-    if (name === this.camera && !this.fitting) return;
-    this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches);
-    this.camera = name;
-    this.fitting = false;
+    const { camera, pose } = this.model;
+    const name = camera.peek();
+    const set = pose.peek() !== this.pose;
+    if (name !== this.camera || this.fitting) {
+      this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches);
+      this.camera = name;
+      this.fitting = false;
+      if (!set) pose.value = null;
+    }
+    this.pose = pose.peek();
+    if (set && this.pose) this.viewpoint.from(...this.pose);
   }
 
   private instant(row: Float64Array): Instant {

@@ -29,6 +29,14 @@ const LOST = "The graphics context was lost; the picture returns when the browse
 /** The longest step in s, so that a page that was hidden continues where it was. */
 export const LONGEST_STEP = 0.1;
 
+/** The viewports by their hosts. */
+const inHosts = new WeakMap<HTMLElement, Viewport>();
+
+/** The picture in a host with its labels, at a number of pixels per CSS pixel; null if there is none. */
+export function pictureIn(host: HTMLElement, scale: number): HTMLCanvasElement | null {
+  return inHosts.get(host)?.pictured(scale) ?? null;
+}
+
 /** A 3-d picture with labels that fills its host. A frame is drawn only when something has changed. */
 export abstract class Viewport {
   protected readonly canvas = document.createElement("canvas");
@@ -72,6 +80,7 @@ export abstract class Viewport {
     this.scene.add(this.space, this.viewpoint.camera, this.hemisphere);
     this.furnish();
     this.observer.observe(host);
+    inHosts.set(host, this);
   }
 
   /** Returns to the first view. */
@@ -90,7 +99,29 @@ export abstract class Viewport {
     return false;
   }
 
+  /** What is on the screen, with its labels, in other pixels. */
+  pictured(scale: number): HTMLCanvasElement | null {
+    if (!this.seen || this.lost) return null;
+    const { clientWidth: width, clientHeight: height } = this.host;
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [width * scale, height * scale];
+    const context = canvas.getContext("2d")!;
+    this.drawing = true;
+    try {
+      this.fill(width, height, scale);
+      this.show();
+      context.drawImage(this.canvas, 0, 0, canvas.width, canvas.height);
+      context.scale(scale, scale);
+      this.labels.draw(context);
+    } finally {
+      this.drawing = false;
+      this.resize();
+    }
+    return canvas;
+  }
+
   dispose(): void {
+    inHosts.delete(this.host);
     cancelAnimationFrame(this.request);
     this.lost = true;
     this.unwatch();

@@ -13,6 +13,7 @@ import type {
   ViewState,
 } from "../document.ts";
 import { unpacked } from "../packed.ts";
+import type { CurveName } from "../stage/curves.ts";
 
 /** Default visibility. */
 export const SHOWN: Shown = {
@@ -68,6 +69,8 @@ export class Model {
   readonly opened = signal<About | null>(null);
   /** Whether the tip of Ω is marked, in the picture in space and on the energy ellipsoid. */
   readonly marked = signal(false);
+  /** The curve under the pointer, which is marked in all pictures. */
+  readonly pointed = signal<CurveName | null>(null);
   /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
   /** The lesson that the page shows. */

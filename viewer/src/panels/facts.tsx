@@ -3,6 +3,7 @@ import { type About, hasMass, type LawEntry, type Triple } from "../core/core.ts
 import { significant, small } from "../format/numbers.ts";
 import { DEGREE, duration } from "../format/units.ts";
 import type { Model } from "../model/model.ts";
+import { cloudOf } from "../vary/cloud.ts";
 import { HOLDING } from "../vary/laws.ts";
 
 type Fact = [name: string, value: ComponentChildren, id?: string];
@@ -27,7 +28,7 @@ export function Facts({ model }: { model: Model }) {
       `${list(body.moments)}${hasMass(about) ? " kg m²" : ""}${about.held ? " about the fixed point" : ""}`,
     ],
     ["Mass", body.mass !== null && `${significant(body.mass, 5)} kg`],
-    ["Bodies", about.ensemble?.toLocaleString("en")],
+    ["Bodies", cloudOf(model.scene.value, about) ?? about.ensemble?.toLocaleString("en"), "cloud"],
     ["Method", methodOf(about)],
   ];
   return (

@@ -8,7 +8,7 @@ import { fragmentOf, isState, stateOfFragment } from "./state.ts";
 
 /** The longest fragment that is written: programs that pass addresses on cut longer ones off. */
 const LONGEST = 16_000;
-/** The shortest time in ms between two changes of the address; browsers allow a hundred in half a minute. */
+/** The time in ms without a change after which the address is written. */
 const PAUSE = 400;
 
 /** The address of a page, whose fragment holds what the page shows. */
@@ -66,7 +66,9 @@ export class Address {
       for (const watched of [page, scene, speed, camera, pose, theme, shown, lines, lesson])
         void watched.value;
       void lessons.index.value;
-      this.timer ??= setTimeout(() => void this.write(lessons), PAUSE);
+      // Once nothing changes any more: not while a slider is dragged.
+      clearTimeout(this.timer);
+      this.timer = setTimeout(() => void this.write(lessons), PAUSE);
     });
     const changed = (): void => {
       if (location.href === this.last || location.hash === "") return;

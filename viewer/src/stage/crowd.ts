@@ -11,7 +11,7 @@ const SIZE = 0.06;
  * The bodies of an ensemble: small boxes on the sphere around the nominal body, each with its own attitude and in the
  * direction of its own axis. They start together and spread over the sphere.
  */
-export function crowd({ figure, palette, say }: Setting): Part | null {
+export function crowd({ figure, palette, curves, say }: Setting): Part | null {
   const { about, motion, traced } = figure;
   if (about.ensemble === null) return null;
   if (motion.awaitsBodies) {
@@ -27,6 +27,16 @@ export function crowd({ figure, palette, say }: Setting): Part | null {
   });
   const bodies = new InstancedMesh(box, material, Math.min(BODIES, about.ensemble));
   bodies.frustumCulled = false;
+  curves.add({
+    name: "cloud",
+    object: bodies,
+    visit: (point) => {
+      const places = bodies.instanceMatrix.array;
+      for (let at = 12; at < 16 * bodies.count; at += 16) {
+        point(places[at]!, places[at + 1]!, places[at + 2]!, false);
+      }
+    },
+  });
   let drawn = Number.NaN;
 
   const draw = (rotors: Float64Array): void => {

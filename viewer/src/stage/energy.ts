@@ -5,8 +5,12 @@ import type { Motion } from "../core/wasm.ts";
 import type { Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
 import type { Palette } from "../palette.ts";
+import type { CurveName } from "./curves.ts";
 import { REACH } from "./figure.ts";
+import { Hover } from "./hover.ts";
+import { named } from "./names.ts";
 import { type Curve, neighbours, ordered, separatrix, through } from "./polhodes.ts";
+import type { Ribbon } from "./ribbon.ts";
 import { AXES, quaternion, vector } from "./rotor.ts";
 import { Shapes } from "./shapes.ts";
 import { Viewport } from "./viewport.ts";
@@ -27,6 +31,7 @@ export class EnergyView extends Viewport {
   private dot: Mesh | null = null;
   /** Drawn units for 1 rad/s. */
   private rate = 1;
+  private readonly hover: Hover;
 
   constructor(
     host: HTMLElement,
@@ -35,8 +40,16 @@ export class EnergyView extends Viewport {
   ) {
     super(host);
     this.watch(() => {
-      for (const watched of [model.motion, model.row, model.marked, model.shown, palette]) void watched.value;
+      const { motion, row, marked, pointed, shown } = model;
+      for (const watched of [motion, row, marked, pointed, shown, palette]) void watched.value;
     });
+    this.hover = new Hover(
+      host,
+      this.curves,
+      { camera: this.viewpoint.camera, size: this.screen.value },
+      (name) => named(name, model),
+      (name) => (model.pointed.value = name),
+    );
   }
 
   override home(): void {
@@ -44,8 +57,14 @@ export class EnergyView extends Viewport {
     this.draw();
   }
 
+  override dispose(): void {
+    this.hover.dispose();
+    super.dispose();
+  }
+
   protected override show(): void {
     this.build();
+    this.curves.mark(this.model.pointed.peek());
     const row = this.model.row.peek();
     if (row && this.dot) {
       this.dot.position.copy(vector(row, State.omegaBody)).multiplyScalar(this.rate * LIFTED);
@@ -78,20 +97,27 @@ export class EnergyView extends Viewport {
     body.add(this.skin(palette, semiAxes));
     const thin = new Shapes(this.screen, palette.polhode);
     for (const curve of neighbours(moments))
-      thin.line(placed(curve), { width: 1, opacity: 0.7, behind: 0.15 }, true);
+      this.named("neighbours", thin.line(placed(curve), { width: 1, opacity: 0.7, behind: 0.15 }, true));
     const dashed = new Shapes(this.screen, palette.text);
     for (const curve of separatrix(moments))
-      dashed.line(placed(curve), { width: 1.6, opacity: 0.9, behind: 0.2, dash: 0.09 }, true);
+      this.named(
+        "separatrix",
+        dashed.line(placed(curve), { width: 1.6, opacity: 0.9, behind: 0.2, dash: 0.09 }, true),
+      );
     const own = new Shapes(this.screen, palette.omega);
     const unit = omega.clone().applyQuaternion(body.quaternion.clone().invert());
     const curve = through(moments, unit.multiplyScalar(this.rate).divide(semiAxes).normalize());
-    if (curve) own.line(placed(curve), { width: 2.6, behind: 0.3 }, true);
+    if (curve) this.named("polhode", own.line(placed(curve), { width: 2.6, behind: 0.3 }, true));
     body.add(thin.object, dashed.object, own.object);
 
     this.dot = new Mesh(new SphereGeometry(DOT, 24, 16), new MeshBasicMaterial({ color: palette.omega }));
     this.space.add(body, this.axes(motion.about, palette), this.dot);
     this.canvas.ariaLabel =
       "The energy ellipsoid in the body, with the polhode of Ω, its neighbours and the separatrix. Arrow keys turn it.";
+  }
+
+  private named(name: CurveName, line: Ribbon): void {
+    this.curves.add(line.curve(name));
   }
 
   private skin(palette: Palette, semiAxes: Vector3): Mesh {

@@ -1,6 +1,7 @@
 import type { Object3D, Quaternion, Vector3 } from "three";
 import type { Shown } from "../document.ts";
 import type { Palette } from "../palette.ts";
+import type { Curves } from "./curves.ts";
 import type { Figure } from "./figure.ts";
 import type { Labels } from "./labels.ts";
 import type { Screen } from "./ribbon.ts";
@@ -11,6 +12,8 @@ export interface Setting {
   palette: Palette;
   screen: Screen;
   labels: Labels;
+  /** What can be pointed at. */
+  curves: Curves;
   /** Whether the user prefers reduced motion. */
   calm: { readonly matches: boolean };
   /** Shows a message over the picture. */

@@ -11,6 +11,8 @@ import { disc, MOMENTUM, OMEGA } from "./disc.ts";
 import { figureOf } from "./figure.ts";
 import { frame } from "./frames.ts";
 import { gravity } from "./gravity.ts";
+import { Hover } from "./hover.ts";
+import { named, revealed } from "./names.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Paths } from "./paths.ts";
 import { poinsot } from "./poinsot.ts";
@@ -51,6 +53,7 @@ export class Stage extends Viewport {
   private fitting = false;
   private played = 0;
   private whole = false;
+  private readonly hover: Hover;
 
   constructor(
     host: HTMLElement,
@@ -66,9 +69,17 @@ export class Stage extends Viewport {
       const turn = model.turned.value;
       if (turn && turn !== turned) this.viewpoint.turn(turn);
       turned = turn;
-      const { motion, row, shown, marked, camera, pose, playing } = model;
-      for (const watched of [motion, row, shown, marked, camera, pose, playing, palette]) void watched.value;
+      const { motion, row, shown, marked, pointed, camera, pose, playing } = model;
+      for (const watched of [motion, row, shown, marked, pointed, camera, pose, playing, palette])
+        void watched.value;
     });
+    this.hover = new Hover(
+      host,
+      this.curves,
+      { camera: this.viewpoint.camera, size: this.screen.value },
+      (name) => named(name, model),
+      (name) => (model.pointed.value = name),
+    );
     this.viewpoint.moved = () => {
       this.pose = this.viewpoint.pose;
       model.pose.value = this.pose;
@@ -79,6 +90,11 @@ export class Stage extends Viewport {
   override home(): void {
     this.fitting = true;
     this.draw();
+  }
+
+  override dispose(): void {
+    this.hover.dispose();
+    super.dispose();
   }
 
   /** Draws the present state with its labels at once, in any size. For stages whose host has none. */
@@ -122,8 +138,9 @@ export class Stage extends Viewport {
 
   protected override show(): void {
     const { model } = this;
-    const shown = model.shown.peek();
+    const shown = revealed(model.shown.peek(), model.pointed.peek());
     this.build();
+    this.curves.mark(model.pointed.peek());
     const row = model.row.peek();
     this.space.visible = row !== null;
     if (row) {
@@ -154,6 +171,7 @@ export class Stage extends Viewport {
       palette,
       screen: this.screen,
       labels: this.labels,
+      curves: this.curves,
       calm: this.calm,
       say: (message) => this.say(message),
     };

@@ -15,6 +15,7 @@ import {
 } from "three";
 import type { Palette } from "../palette.ts";
 import { Viewpoint } from "./camera.ts";
+import { Curves } from "./curves.ts";
 import { Labels } from "./labels.ts";
 import type { Screen } from "./ribbon.ts";
 
@@ -42,6 +43,7 @@ export abstract class Viewport {
   protected readonly canvas = document.createElement("canvas");
   protected readonly renderer: WebGLRenderer;
   protected readonly labels = new Labels();
+  protected readonly curves = new Curves();
   protected readonly screen: Screen = { value: new Vector2(1, 1) };
   protected readonly viewpoint: Viewpoint;
   /** What is drawn, in space axes. */
@@ -152,6 +154,7 @@ export abstract class Viewport {
     this.old.push(...this.space.children);
     this.space.clear();
     this.labels.clear();
+    this.curves.clear();
     const background = new Color(palette.background);
     const dark = background.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5;
     this.renderer.setClearColor(background);

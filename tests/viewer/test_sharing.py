@@ -304,7 +304,9 @@ def test_saved_page_of_a_lesson_opens_at_its_step(opened, new_page, tmp_path):
 def test_several_viewers_leave_the_address_alone(opened, new_page, tmp_path):
     opened(SCENE)
     path = next(tmp_path.glob("*.html"))
-    path.write_text(path.read_text().replace("</polhode-viewer>", "</polhode-viewer><polhode-viewer></polhode-viewer>", 1))
+    path.write_text(
+        path.read_text().replace("</polhode-viewer>", "</polhode-viewer><polhode-viewer></polhode-viewer>", 1)
+    )
     page = new_page()
     page.page.goto(path.as_uri() + "#v=1&t=2")
     page.until("model?.motion.value")

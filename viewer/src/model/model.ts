@@ -13,7 +13,6 @@ import type {
   ViewState,
 } from "../document.ts";
 import { unpacked } from "../packed.ts";
-import type { CurveName } from "../stage/curves.ts";
 
 /** Default visibility. */
 export const SHOWN: Shown = {
@@ -31,6 +30,9 @@ export const SHOWN: Shown = {
   gravity: true,
   labels: true,
 };
+
+/** What has a name where the pointer is over it. */
+export type CurveName = "polhode" | "herpolhode" | "trace" | "separatrix" | "neighbours" | "cloud";
 
 /** The name of a scene, and the files that it refers to. */
 interface Opened {

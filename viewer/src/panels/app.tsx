@@ -68,19 +68,21 @@ export function App({ model, palette, compact, wide, sharing }: Props) {
         lesson={lessons.lesson.value}
         share={<Share {...{ model, palette, lessons, sharing }} />}
       />
-      <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
-        <Boundary key={model.page.value}>
-          {motion ? (
-            <MotionPage {...{ model, palette, compact, wide, controls, lessons, folds }} />
-          ) : (
-            <AlgebraPage
-              model={model}
-              palette={palette}
-              lesson={lessons.step && <LessonPanel lessons={lessons} />}
-            />
-          )}
-        </Boundary>
-      </div>
+      <main>
+        <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
+          <Boundary key={model.page.value}>
+            {motion ? (
+              <MotionPage {...{ model, palette, compact, wide, controls, lessons, folds }} />
+            ) : (
+              <AlgebraPage
+                model={model}
+                palette={palette}
+                lesson={lessons.step && <LessonPanel lessons={lessons} />}
+              />
+            )}
+          </Boundary>
+        </div>
+      </main>
     </div>
   );
 }
@@ -113,7 +115,7 @@ function MotionPage(props: Omit<Props, "sharing"> & { controls: Controls; lesson
     [!compact && editable, "text", "Scene", !known && !learning, <Editor model={model} />],
   ];
   return (
-    <main class="motion">
+    <div class="motion">
       <Picture model={model} palette={palette} formulas={formulas} />
       <Playback model={model} />
       <aside class="panels" aria-label="Values and controls">
@@ -131,7 +133,7 @@ function MotionPage(props: Omit<Props, "sharing"> & { controls: Controls; lesson
       <p class="hidden" aria-live="polite">
         {regimeOf(model.about.value)}
       </p>
-    </main>
+    </div>
   );
 }
 
@@ -173,12 +175,12 @@ class Boundary extends Component<{ children: ComponentChildren }, { problem: str
   render() {
     if (this.state.problem === null) return this.props.children;
     return (
-      <main class="notice">
+      <div class="notice">
         <div role="alert">
           <p>This page cannot be shown.</p>
           <pre>{this.state.problem}</pre>
         </div>
-      </main>
+      </div>
     );
   }
 }

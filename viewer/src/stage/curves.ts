@@ -1,7 +1,5 @@
 import { type Camera, Matrix4, type Object3D, type Vector2 } from "three";
-
-/** What has a name where the pointer is over it. */
-export type CurveName = "polhode" | "herpolhode" | "trace" | "separatrix" | "neighbours" | "cloud";
+import type { CurveName } from "../model/model.ts";
 
 /** Those that show one motion, and are marked together. */
 const TOGETHER: readonly CurveName[] = ["polhode", "herpolhode", "trace"];

@@ -1,5 +1,6 @@
 import type { Camera, Vector2 } from "three";
-import type { CurveName, Curves } from "./curves.ts";
+import type { CurveName } from "../model/model.ts";
+import type { Curves } from "./curves.ts";
 
 /** CSS pixels from the pointer to the text. */
 const AWAY = 14;

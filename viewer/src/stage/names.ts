@@ -1,7 +1,6 @@
 import type { Shown } from "../document.ts";
-import type { Model } from "../model/model.ts";
+import type { CurveName, Model } from "../model/model.ts";
 import { cloudOf } from "../vary/cloud.ts";
-import type { CurveName } from "./curves.ts";
 
 /** What curves are, in the words that stand beside the pointer. */
 const NAMES: Record<Exclude<CurveName, "cloud">, string> = {

@@ -16,7 +16,8 @@ import {
   type Vector3,
 } from "three";
 
-import type { Curve, CurveName } from "./curves.ts";
+import type { CurveName } from "../model/model.ts";
+import type { Curve } from "./curves.ts";
 
 /** The size of the canvas in CSS pixels, shared by all ribbons of a stage. */
 export interface Screen {

@@ -10,10 +10,13 @@ export function cloudOf(scene: string | null, about: About | null): string | nul
   const drawn = Math.min(about.ensemble, BODIES);
   const many = (number: number) => number.toLocaleString("en");
   const count = drawn < about.ensemble ? `the first ${many(drawn)} of ${many(about.ensemble)}` : many(drawn);
+  const spin = about.start.omega_body.map(Math.abs);
+  const axis = `the direction of its axis f${"₁₂₃"[spin.indexOf(Math.max(...spin))]}`;
+  const place = about.held ? "the direction from the fixed point to its centre of mass" : axis;
   return (
     `${count[0]!.toUpperCase()}${count.slice(1)} bodies, ${varied(tableOf(scene, "ensemble") ?? {})}. Each small box ` +
-    `is one of them: it lies where ${about.held ? "the axis of that body" : "the traced axis of that body"} points, ` +
-    "and is turned like it. All have one colour; the large body has the values of the scene."
+    `is one body: it lies in ${place}, and is turned like it. The colour is the same for all; the large body has the ` +
+    "values of the scene itself."
   );
 }
 

@@ -81,7 +81,7 @@ def main() -> None:
 
 
 def frames(page: Page, session: CDPSession) -> float:
-    """Return the CPU time in ms of the callbacks of a frame, all pictures together, over two seconds of playing."""
+    """Return the CPU time in ms of the callbacks of a frame while the motion plays, all pictures together."""
     page.evaluate(f"async () => void ((await {ELEMENT}.ready).playing.value = true)")
     page.wait_for_timeout(1500)
     before = _drawn(page)

@@ -16,6 +16,8 @@ export interface Setting {
   curves: Curves;
   /** Whether the user prefers reduced motion. */
   calm: { readonly matches: boolean };
+  /** The places of the cloud that was drawn last, for as long as those of a new motion are being computed. */
+  cloud: { matrices: ArrayLike<number> | null };
   /** Shows a message over the picture. */
   say: (message: string) => void;
 }

@@ -54,6 +54,7 @@ export class Stage extends Viewport {
   private played = 0;
   private whole = false;
   private readonly hover: Hover;
+  private readonly cloud: Setting["cloud"] = { matrices: null };
 
   constructor(
     host: HTMLElement,
@@ -172,6 +173,7 @@ export class Stage extends Viewport {
       screen: this.screen,
       labels: this.labels,
       curves: this.curves,
+      cloud: this.cloud,
       calm: this.calm,
       say: (message) => this.say(message),
     };

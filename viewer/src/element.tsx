@@ -33,7 +33,7 @@ export class PolhodeViewer extends HTMLElement {
   static readonly observedAttributes = ["theme", "compact", "src"];
 
   /** The script of the viewer, where whoever embeds it has it: a notebook. Its address is then not the viewer's. */
-  script: (() => string) | null = null;
+  script: (() => string | undefined) | null = null;
 
   /** The state of the page, once the core is loaded. */
   ready: Promise<Model>;

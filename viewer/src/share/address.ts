@@ -38,7 +38,7 @@ export class Address {
     try {
       await restore(this.model, await stateOfFragment(location.hash.slice(1)), this.own());
     } catch (error) {
-      throw new Problem(`the part of the address after # cannot be used: ${words(error)}`);
+      throw new Problem(`the part of the address after # was ignored: ${words(error)}`);
     }
   }
 

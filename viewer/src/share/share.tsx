@@ -17,7 +17,7 @@ export interface Sharing {
   /** The document that the viewer was given. */
   own: () => PageDocument | null;
   /** The script of the viewer, if whoever embeds it has it. */
-  script: (() => string) | null;
+  script: (() => string | undefined) | null;
 }
 
 interface Props {
@@ -73,7 +73,8 @@ export function Share({ model, palette, lessons, sharing }: Props) {
     return `Picture saved as ${name}.`;
   };
   const savePage = async (): Promise<string> => {
-    const script = sharing.script ? inElement(sharing.script()) : await ownScript();
+    const given = sharing.script?.();
+    const script = given ? inElement(given) : await ownScript();
     const text = await pageOf(await documentOf(model, lessons, sharing.own()), titleOf(model), script);
     const name = `${fileName(model)}.html`;
     save(new Blob([text], { type: "text/html" }), name);

@@ -112,8 +112,11 @@ export async function restore(model: Model, state: PageState, own: PageDocument 
   } else {
     model.lesson.value = null;
     if (start) await start(model);
-    else if (base?.scene !== undefined || base?.recorded) await model.show({ ...base, view: {} });
-    else await openPreset(model, PRESETS[0]!);
+    else if (base?.scene !== undefined || base?.recorded) {
+      // The lesson of the page was left.
+      const { lesson: _, ...motion } = base;
+      await model.show({ ...motion, view: {} });
+    } else await openPreset(model, PRESETS[0]!);
     const older = text !== undefined && of !== undefined && of !== checksum(base?.scene ?? "");
     if (text !== undefined && !older) await model.replace(text);
     model.look({ camera: "oblique", ...shown, shown: { ...SHOWN, ...view.shown } });

@@ -16,7 +16,7 @@ const MOST_TURNS = 60;
 /** Tolerance of a line in drawn units: a fifth of a pixel in the default view. */
 const NEAR = 1e-3;
 /** Time in ms for the paths of one frame: while the motion plays, so that no frame is late, and otherwise. */
-const FRAME = 1.5;
+const FRAME = 1;
 const PAUSED = 8;
 /** Points of a path computed in one step. */
 const STEP = 500;

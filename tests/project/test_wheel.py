@@ -67,7 +67,12 @@ def test_the_wheel_has_all_and_runs_on_any_python(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
     files = {path.name for path in EXAMPLES.iterdir() if path.suffix in (".toml", ".stl")}
     assert {f"polhode/_examples/{name}" for name in files} <= names
-    assert {"polhode/_viewer/viewer.js", "polhode/py.typed", "polhode/_native.pyi"} <= names
+    assert {
+        "polhode/_viewer/viewer.js",
+        "polhode/_viewer/page.html",
+        "polhode/py.typed",
+        "polhode/_native.pyi",
+    } <= names
     assert not [name for name in names if name.endswith((".pyc", ".map")) or "/tests/" in name]
 
 

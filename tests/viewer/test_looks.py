@@ -209,9 +209,21 @@ def test_ratios_of_moments_have_no_units(known, opened):
     assert units == (["kg m²/s", "J", "kg m²\n"] if known else [])
 
 
-def test_the_algebra_page_is_in_a_landmark(opened):
-    page = opened({"format": 1, "page": "algebra"})
-    outside = page.page.evaluate(
-        f"""() => [...{VIEWER}.shadowRoot.querySelector("#page").children].map((one) => one.localName)"""
+@pytest.mark.parametrize("shown", ["motion", "algebra"])
+def test_the_pages_are_in_a_landmark(shown, opened):
+    """The panel of a tab has a label, which is content: it is inside the landmark itself."""
+    page = opened({"format": 1, "page": shown})
+    around = page.page.evaluate(
+        f"""() => [...{VIEWER}.shadowRoot.querySelectorAll("main")].map((one) => one.firstElementChild.id)"""
     )
-    assert outside == ["main"]
+    assert around == ["page"]
+
+
+def test_many_values_of_the_algebra_page_have_colours_of_their_own(opened):
+    """Those of the lesson on mirrors are seven."""
+    lines = "\n".join(f"{name} = {k + 1} e1 + e2" for k, name in enumerate("abcdfgh"))
+    page = opened({"format": 1, "page": "algebra", "lines": lines})
+    names = page.page.locator("li.line pre").evaluate_all(
+        "all => all.map(one => getComputedStyle(one.querySelector('[style]')).color)"
+    )
+    assert len(set(names)) == 7

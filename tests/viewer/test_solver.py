@@ -106,3 +106,28 @@ def test_page_without_workers_solves_its_scenes_itself(how, new_page, opened, fo
     assert not page.page.evaluate(f"async () => (await {VIEWER}.ready).solver.available")
     ask(page, "[body")
     page.until("model.problem.value !== null")
+
+
+def test_cloud_stays_while_a_slider_moves(opened):
+    """That of the motion before, until the bodies of the new one are known: no message takes its place."""
+    page = opened({"format": 1, "scene": ENSEMBLE, "name": "many.toml"})
+    page.until("!model.motion.value.awaitsBodies")
+    page.drawn()
+    page.page.evaluate(
+        f"""() => {{
+            window.said = new Set();
+            const stage = {VIEWER}.shadowRoot.querySelector(".stage");
+            new MutationObserver(() => window.said.add(stage.textContent)).observe(stage, {{
+                childList: true, characterData: true, subtree: true,
+            }});
+        }}"""
+    )
+    for number in (0.2, 0.3, 0.4):
+        page.page.evaluate(
+            f"async tables => (await {VIEWER}.ready).change(tables)",
+            f"[torque]\nquadratic_damping = {number}\n",
+        )
+        page.drawn()
+    page.until("!model.solving.value && !model.motion.value.awaitsBodies")
+    page.drawn()
+    assert not any("being computed" in text for text in page.page.evaluate("[...window.said]"))

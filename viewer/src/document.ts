@@ -23,7 +23,12 @@ export interface PageDocument {
   lines?: string;
   /** Values that the algebra page draws beside those of its lines. */
   values?: GivenValue[];
-  /** A lesson in Markdown, which sets what the page shows; its own scenes and meshes are in `files`. */
+  /** The caption of the picture, instead of that of the scene. */
+  caption?: string;
+  /**
+   * A lesson in Markdown, which sets what the page shows; its own scenes and meshes are in `files`. `scene` and `view`
+   * are then what was changed in its step.
+   */
   lesson?: { text: string; name: string; step?: number };
   /** Differences from the default view. */
   view?: Partial<ViewState>;
@@ -35,6 +40,8 @@ export interface LessonFile {
   name: string;
   files?: ReadonlyMap<string, Uint8Array>;
   step?: number;
+  /** The text of the scene and the view, where they differ from those that the step sets. */
+  changed?: { scene?: string; view?: Partial<ViewState> };
 }
 
 /** A value of projective or conformal geometry, as Python wrote and measured it; a batch has a shape per element. */
@@ -84,12 +91,17 @@ export interface ViewState {
   /** Seconds of motion per second. */
   speed: number;
   camera: CameraName;
+  /** Where the camera was turned to from its preset. */
+  pose?: Pose;
   theme: "auto" | "light" | "dark";
   shown: Partial<Shown>;
 }
 
 export const CAMERAS = ["oblique", "along e1", "along e2", "along e3", "along L", "with the body"] as const;
 export type CameraName = (typeof CAMERAS)[number];
+
+/** A place of the camera: azimuth and elevation in degrees, and the nearness, 1 at the distance of presets. */
+export type Pose = readonly [azimuth: number, elevation: number, nearness: number];
 
 /** Visibility of the parts of the picture. */
 export interface Shown {

@@ -10,6 +10,8 @@ import { App } from "./panels/app.tsx";
 import { regimeOf } from "./panels/regime.ts";
 import { bindKeys, commitOnEnter } from "./panels/keys.ts";
 import { mayAutoplay, openPreset, PRESETS } from "./presets/index.ts";
+import { Address } from "./share/address.ts";
+import type { Sharing } from "./share/share.tsx";
 import { type PictureOptions, Stage } from "./stage/stage.ts";
 import styles from "./theme.css?inline";
 
@@ -30,6 +32,9 @@ const PAPER: Palette = { ...LIGHT, background: "#ffffff" };
 export class PolhodeViewer extends HTMLElement {
   static readonly observedAttributes = ["theme", "compact", "src"];
 
+  /** The script of the viewer, where whoever embeds it has it: a notebook. Its address is then not the viewer's. */
+  script: (() => string | undefined) | null = null;
+
   /** The state of the page, once the core is loaded. */
   ready: Promise<Model>;
 
@@ -40,6 +45,7 @@ export class PolhodeViewer extends HTMLElement {
   private given: PageDocument | null = null;
   private model: Model | null = null;
   private palette: ReadonlySignal<Palette> | null = null;
+  private sharing: Sharing | null = null;
   private leave: (() => void)[] = [];
   /** The stage of `capture`. */
   private studio: Stage | null = null;
@@ -108,6 +114,7 @@ export class PolhodeViewer extends HTMLElement {
       if (!this.isConnected || this.model) return;
       this.model = model;
       if (this.hasAttribute("theme")) model.look({ theme: themeOf(this.getAttribute("theme")) });
+      this.sharing = this.shared(model);
       await this.first(model).catch(this.report);
       // The element may have been removed in the meantime.
       if (this.model !== model) return;
@@ -123,10 +130,32 @@ export class PolhodeViewer extends HTMLElement {
   private async first(model: Model): Promise<void> {
     const given = this.given ?? (await this.child()) ?? (await this.source());
     this.given ??= given;
+    const { address } = this.sharing!;
+    if (address?.given) {
+      try {
+        await address.read();
+        return;
+      } catch (error) {
+        // After the scene of the page is shown, which removes older problems.
+        void this.ready.then(() => this.report(error));
+      }
+    }
     if (given) await model.show(given);
     if (!given?.scene && !given?.recorded && !given?.lesson) await openPreset(model, PRESETS[0]!);
     else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
       model.look({ playing: mayAutoplay() });
+  }
+
+  /** What the page may share. Its address is that of the viewer if it has no other viewer and is not a notebook. */
+  private shared(model: Model): Sharing {
+    const alone = this.ownerDocument.querySelectorAll(this.localName).length === 1;
+    const own = () => this.given;
+    const has = alone && this.script === null && !this.hasAttribute("bare");
+    return {
+      address: has ? new Address(model, own, this.hasAttribute("titled")) : null,
+      own,
+      script: this.script,
+    };
   }
 
   /** The document inside the element, after it was parsed. */
@@ -187,7 +216,8 @@ export class PolhodeViewer extends HTMLElement {
     if (!this.palette || this.hasAttribute("bare")) return;
     const compact = this.hasAttribute("compact");
     const wide = this.clientWidth >= WIDE;
-    render(<App model={model} palette={this.palette} compact={compact} wide={wide} />, this.place);
+    const { palette, sharing } = this;
+    render(<App {...{ model, palette, compact, wide }} sharing={sharing!} />, this.place);
   }
 
   /** Keeps colours and `data-…` up to date, and binds the keys. */

@@ -28,6 +28,8 @@ export function render({ model: traits, el }: { model: Traits; el: HTMLElement }
   const viewer = document.createElement("polhode-viewer") as PolhodeViewer;
   viewer.style.cssText = "display: block; height: min(40rem, 85vh)";
   viewer.document = present(traits);
+  // anywidget loads the script from an address that it then withdraws.
+  viewer.script = () => traits.get("_esm") as string | undefined;
   let leave = () => {};
   let away = false;
   const entered = () => {

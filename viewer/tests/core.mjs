@@ -56,6 +56,11 @@ const answers = {
   },
   merged: ({ scene, change }) => core.merged(scene, change),
   evaluated: ({ lines }) => core.evaluated(lines),
+  table: async ({ text, name }) => (await vite.ssrLoadModule("/src/vary/read.ts")).tableOf(text, name),
+  cloud: async ({ scene, ensemble, held, omega }) => {
+    const { cloudOf } = await vite.ssrLoadModule("/src/vary/cloud.ts");
+    return cloudOf(scene, { ensemble, held, start: { omega_body: omega } });
+  },
   polhodes: async ({ moments, through }) => {
     const { Vector3 } = await vite.ssrLoadModule("three");
     const curves = await vite.ssrLoadModule("/src/stage/polhodes.ts");

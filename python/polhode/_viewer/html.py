@@ -8,39 +8,16 @@ import html
 import json
 import re
 from pathlib import Path
+from string import Template
 
 from polhode._viewer.document import Document, title_of
 
 _BUNDLE = Path(__file__).with_name("viewer.js")
 
-# No connections in or out, and no script but the viewer. Its core is WebAssembly, which the policy must
-# allow; it solves scenes in a worker, whose script it holds itself.
-_INLINE_POLICY = (
-    "default-src 'none'; script-src 'sha256-{digest}' 'wasm-unsafe-eval'; worker-src blob:; "
-    "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"
-)
-
-_PAGE = """\
-<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="generator" content="Polhode">{policy}
-<title>{title}</title>
-<link rel="icon" href="data:,">
-<style>
-html, body {{ height: 100%; margin: 0; }}
-polhode-viewer {{ display: block; height: 100%; }}
-</style>
-</head>
-<body>
-<noscript>This page shows a motion and needs JavaScript.</noscript>
-{element}
-{script}
-</body>
-</html>
-"""
+# The page, which the viewer fills as well when it saves itself (viewer/src/share/page.ts). Its policy: no
+# connections in or out, and no script but the viewer. Its core is WebAssembly, which the policy must allow;
+# it solves scenes in a worker, whose script it holds itself.
+_PAGE = Path(__file__).with_name("page.html")
 
 
 def bundle_path() -> Path:
@@ -61,24 +38,30 @@ def page(shown: Document, bare: bool = False) -> str:
     data = json.dumps(shown, allow_nan=False).replace("<", "\\u003c")
     script = "\n" + _inline(bundle_path().read_text(encoding="utf-8"))
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    policy = _INLINE_POLICY.format(digest=digest)
-    return _PAGE.format(
-        policy=f'\n<meta http-equiv="Content-Security-Policy" content="{policy}">',
+    return _template().substitute(
+        digest=digest,
         title=_title(title_of(shown)),
-        element=f"<polhode-viewer{' bare' if bare else ' titled'}>"
-        f'<script type="application/json">{data}</script></polhode-viewer>',
-        script=f'<script type="module">{script}</script>',
+        attributes=" bare" if bare else " titled",
+        data=data,
+        script=script,
     )
 
 
 def served_page(title: str) -> str:
-    """Return a page that fetches the viewer and its document from beside itself on its server."""
-    return _PAGE.format(
-        policy="",
-        title=_title(title),
-        element='<polhode-viewer titled src="document.json"></polhode-viewer>',
-        script='<script type="module" src="viewer.js"></script>',
+    """Return a page that fetches the viewer and its document from beside itself on its server.
+
+    Its policy is in the headers of the server.
+    """
+    without = re.sub(
+        r"<meta http-equiv=.*>\n|<script type=.application/json.>.*</script>", "", _template().template
     )
+    linked = without.replace('<script type="module">${script}', '<script type="module" src="viewer.js">')
+    attributes = ' titled src="document.json"'
+    return Template(linked).substitute(title=_title(title), attributes=attributes)
+
+
+def _template() -> Template:
+    return Template(_PAGE.read_text(encoding="utf-8"))
 
 
 def _title(text: str) -> str:

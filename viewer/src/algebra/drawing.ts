@@ -36,7 +36,8 @@ const KEYS: Readonly<Record<string, Turn>> = {
 
 /** The colours of items, in order. */
 export function colours(palette: Palette): string[] {
-  return [...palette.axes, palette.trace, palette.polhode, palette.text];
+  const { axes, trace, polhode, text, momentum, weight } = palette;
+  return [...axes, trace, polhode, text, momentum, weight];
 }
 
 /**

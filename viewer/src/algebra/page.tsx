@@ -42,7 +42,7 @@ export function AlgebraPage(props: {
     [model],
   );
   return (
-    <main class="algebra" aria-labelledby="tab-algebra">
+    <div class="algebra">
       <style>{styles}</style>
       {!lesson && <Presets model={model} />}
       <Picture
@@ -55,7 +55,7 @@ export function AlgebraPage(props: {
         <GivenValues values={model.values} items={items} tones={tones} />
         <Rows text={model.lines} lines={lines} items={items} tones={tones} change={change} />
       </div>
-    </main>
+    </div>
   );
 }
 

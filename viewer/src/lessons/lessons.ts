@@ -104,11 +104,22 @@ export class Lessons {
       const { text, name, files = new Map() } = given;
       this.lesson.value = lessonOf(text, name, this.model.core, (scene) => sceneNamed(scene, files));
       this.go(Math.min(given.step ?? 0, this.lesson.value.steps.length - 1));
+      if (given.changed) this.change(given.changed);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       this.model.page.value = "motion";
       this.model.problem.value = words(error);
     }
+  }
+
+  /** Makes changes of the reader when the step is shown, unless another step is asked for in the meantime. */
+  private change({ scene, view = {} }: NonNullable<LessonFile["changed"]>): void {
+    const { model, turn } = this;
+    this.shown = this.shown.then(async () => {
+      if (turn !== this.turn) return;
+      if (scene !== undefined && scene !== model.scene.value) await model.replace(scene);
+      if (turn === this.turn) model.look(view);
+    });
   }
 
   /** Applies settings when the step is shown, unless another step is asked for in the meantime. */

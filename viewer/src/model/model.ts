@@ -4,7 +4,15 @@ import { History, type Kept } from "./history.ts";
 import { defaultSpeed } from "./speed.ts";
 import { Solver } from "../core/solver.ts";
 import type { Core, Motion } from "../core/wasm.ts";
-import type { CameraName, GivenValue, LessonFile, PageDocument, Shown, ViewState } from "../document.ts";
+import type {
+  CameraName,
+  GivenValue,
+  LessonFile,
+  PageDocument,
+  Pose,
+  Shown,
+  ViewState,
+} from "../document.ts";
 import { unpacked } from "../packed.ts";
 
 /** Default visibility. */
@@ -26,6 +34,9 @@ export const SHOWN: Shown = {
   gravity: true,
   labels: true,
 };
+
+/** What has a name where the pointer is over it. */
+export type CurveName = "polhode" | "herpolhode" | "trace" | "separatrix" | "neighbours" | "cloud";
 
 /** The name of a scene, and the files that it refers to. */
 interface Opened {
@@ -60,6 +71,8 @@ export class Model {
   /** Seconds of motion per second. */
   readonly speed = signal(1);
   readonly camera = signal<CameraName>("oblique");
+  /** Where the user turned the camera to; null at its preset. */
+  readonly pose = signal<Pose | null>(null);
   readonly theme = signal<ViewState["theme"]>("auto");
   readonly shown = signal<Shown>(SHOWN);
   /** The lines of the algebra page, and the values that it was given. */
@@ -73,6 +86,8 @@ export class Model {
   readonly pointed = signal<keyof Shown | null>(null);
   /** The name of the built-in scene that is open; null for others. */
   readonly preset = signal<string | null>(null);
+  /** The curve under the pointer, which is marked in all pictures. */
+  readonly hovered = signal<CurveName | null>(null);
   /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
   /** The lesson that the page shows. */
@@ -111,23 +126,39 @@ export class Model {
     if (document.format !== 1) {
       throw new Problem(`this page reads documents of format 1, not ${String(document.format)}`);
     }
-    const files = new Map<string, Uint8Array>();
-    for (const [name, content] of Object.entries(document.files ?? {})) {
-      files.set(name, await unpacked(content));
-    }
+    const files = await this.filesOf(document);
+    // A lesson that is continued at a step opens the scene of the step itself.
+    const resumed = document.lesson?.step !== undefined;
     const rows = document.recorded && floats(await unpacked(document.recorded.rows));
     batch(() => {
       if (document.lines !== undefined) this.lines.value = document.lines;
       this.values.value = document.values ?? [];
       this.page.value = document.page ?? "motion";
-      this.lesson.value = document.lesson ? { ...document.lesson, files } : null;
+      const { scene, view } = document;
+      const changed = resumed ? { ...(scene !== undefined && { scene }), ...(view && { view }) } : {};
+      this.lesson.value = document.lesson ? { ...document.lesson, files, changed } : null;
       if (document.recorded && rows) this.record(document, rows, files);
     });
+    if (resumed) return;
     if (!document.recorded && document.scene !== undefined) {
       const options = { name: document.name ?? "scene.toml", files };
       if (!(await this.open(document.scene, options))) return;
     }
+    if (document.caption !== undefined) this.caption.value = document.caption;
     if (document.view) this.look(document.view);
+  }
+
+  /** The files of a document. */
+  async filesOf(document: PageDocument): Promise<Files> {
+    const entries = Object.entries(document.files ?? {});
+    return new Map(
+      await Promise.all(entries.map(async ([name, text]) => [name, await unpacked(text)] as const)),
+    );
+  }
+
+  /** The scene as it was given, its name and its files. */
+  get source(): { name: string; files: Files; original: string | null } {
+    return { name: this.name, files: this.files, original: this.original };
   }
 
   /**
@@ -228,11 +259,6 @@ export class Model {
     if (present) present.controls ??= keeper?.take() ?? null;
   }
 
-  /** The name of the scene, and the files that it refers to. */
-  get source(): Opened {
-    return { name: this.name, files: this.files };
-  }
-
   /** Goes to a time, or the nearest one at which the motion is known. */
   seek(time: number): void {
     const about = this.about.value;
@@ -261,6 +287,7 @@ export class Model {
       if (view.shown) this.shown.value = { ...this.shown.value, ...view.shown };
       if (view.speed !== undefined) this.speed.value = view.speed;
       if (view.camera !== undefined) this.camera.value = view.camera;
+      if (view.pose !== undefined) this.pose.value = view.pose;
       if (view.theme !== undefined) this.theme.value = view.theme;
       if (view.time !== undefined) this.seek(view.time);
       if (view.playing !== undefined) this.playing.value = view.playing;

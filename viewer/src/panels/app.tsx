@@ -9,6 +9,7 @@ import { LessonList, LessonPanel } from "../lessons/panel.tsx";
 import { Lessons } from "../lessons/lessons.ts";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
+import { Share, type Sharing } from "../share/share.tsx";
 import { Controls } from "../vary/controls.ts";
 import { BodyPanel } from "./body.tsx";
 import { Editor } from "./editor.tsx";
@@ -29,13 +30,14 @@ interface Props {
   compact: boolean;
   /** Whether panels fit beside the picture; they are then open by default. */
   wide: boolean;
+  sharing: Sharing;
 }
 
 /** Whether panels are open, for those that the user opened or folded. */
 type Folds = Map<string, boolean>;
 
 /** The page: the header, and the motion or the algebra below it. */
-export function App({ model, palette, compact, wide }: Props) {
+export function App({ model, palette, compact, wide, sharing }: Props) {
   const dragged = useSignal(false);
   // Kept while the algebra is shown.
   const controls = useMemo(() => new Controls(model), [model]);
@@ -44,6 +46,7 @@ export function App({ model, palette, compact, wide }: Props) {
   useEffect(() => () => hands.dispose(), [hands]);
   const lessons = useMemo(() => new Lessons(model), [model]);
   useEffect(() => () => lessons.dispose(), [lessons]);
+  useEffect(() => sharing.address?.keep(lessons), [sharing, lessons]);
   const app = useRef<HTMLDivElement>(null);
   useAttention(app, lessons);
   const folds = useMemo<Folds>(() => new Map(), []);
@@ -64,26 +67,35 @@ export function App({ model, palette, compact, wide }: Props) {
         if (files.length > 0) void openFiles(model, files);
       }}
     >
-      <Header model={model} compact={compact} lesson={lessons.lesson.value} />
-      <div id="page" role="tabpanel" class="page">
-        <Boundary key={model.page.value}>
-          {motion ? (
-            <MotionPage {...{ model, palette, compact, wide, controls, hands, lessons, folds }} />
-          ) : (
-            <AlgebraPage
-              model={model}
-              palette={palette}
-              lesson={lessons.step && <LessonPanel lessons={lessons} />}
-            />
-          )}
-        </Boundary>
-      </div>
+      <Header
+        model={model}
+        compact={compact}
+        lesson={lessons.lesson.value}
+        share={<Share {...{ model, palette, lessons, sharing }} />}
+      />
+      <main>
+        <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
+          <Boundary key={model.page.value}>
+            {motion ? (
+              <MotionPage {...{ model, palette, compact, wide, controls, hands, lessons, folds }} />
+            ) : (
+              <AlgebraPage
+                model={model}
+                palette={palette}
+                lesson={lessons.step && <LessonPanel lessons={lessons} />}
+              />
+            )}
+          </Boundary>
+        </div>
+      </main>
       <Definitions app={app} />
     </div>
   );
 }
 
-function MotionPage(props: Props & { controls: Controls; hands: Hands; lessons: Lessons; folds: Folds }) {
+function MotionPage(
+  props: Omit<Props, "sharing"> & { controls: Controls; hands: Hands; lessons: Lessons; folds: Folds },
+) {
   const { model, palette, compact, controls, hands, lessons, folds } = props;
   const known = model.about.value !== null;
   // Without a motion, the text of an invalid scene.
@@ -111,7 +123,7 @@ function MotionPage(props: Props & { controls: Controls; hands: Hands; lessons: 
     [!compact && editable, "text", "Scene", !known && !learning, <Editor model={model} />],
   ];
   return (
-    <main class="motion" aria-labelledby="tab-motion">
+    <div class="motion">
       <Picture model={model} palette={palette} hands={hands} formulas={formulas} compact={compact} />
       <Playback model={model} />
       <aside class="panels" aria-label="Values and controls">
@@ -129,7 +141,7 @@ function MotionPage(props: Props & { controls: Controls; hands: Hands; lessons: 
       <p class="hidden" aria-live="polite">
         {inWords(model.about.value, model.core.laws)}
       </p>
-    </main>
+    </div>
   );
 }
 
@@ -171,12 +183,12 @@ class Boundary extends Component<{ children: ComponentChildren }, { problem: str
   render() {
     if (this.state.problem === null) return this.props.children;
     return (
-      <main class="notice">
+      <div class="notice">
         <div role="alert">
           <p>This page cannot be shown.</p>
           <pre>{this.state.problem}</pre>
         </div>
-      </main>
+      </div>
     );
   }
 }

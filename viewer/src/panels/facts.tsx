@@ -5,6 +5,7 @@ import { DEGREE, duration } from "../format/units.ts";
 import { Defined, Term } from "../glossary/term.tsx";
 import { axisNames, ordered } from "../model/axes.ts";
 import type { Model } from "../model/model.ts";
+import { cloudOf } from "../vary/cloud.ts";
 import { HOLDING } from "../vary/laws.ts";
 import { Details } from "./details.tsx";
 import { inWords, regimeOf } from "./regime.ts";
@@ -31,7 +32,7 @@ export function Facts({ model, wide }: { model: Model; wide: boolean }) {
       `${namedMoments(body.moments)}${hasMass(about) ? ", kg m²" : ""}${about.held ? ", about the fixed point" : ""}`,
     ],
     ["Mass", body.mass !== null && `${significant(body.mass, 5)} kg`],
-    ["Bodies", about.ensemble?.toLocaleString("en")],
+    ["Bodies", cloudOf(model.scene.value, about) ?? about.ensemble?.toLocaleString("en"), "cloud"],
     ["Method", methodOf(about)],
   ];
   return (

@@ -1,3 +1,4 @@
+import type { ComponentChildren } from "preact";
 import { useRef } from "preact/hooks";
 import { Icon } from "../inputs/button.tsx";
 import type { Lesson } from "../lessons/lesson.ts";
@@ -7,15 +8,21 @@ import { Scenes } from "./scenes.tsx";
 
 const PAGES = ["motion", "algebra"] as const;
 
-/** The title, the list of scenes, the tabs and help. */
-export function Header(props: { model: Model; compact: boolean; lesson: Lesson | null }) {
-  const { model, compact, lesson } = props;
+/** The title, the list of scenes, the tabs, what shares the page, and help. */
+export function Header(props: {
+  model: Model;
+  compact: boolean;
+  lesson: Lesson | null;
+  share: ComponentChildren;
+}) {
+  const { model, compact, lesson, share } = props;
   const motion = model.page.value === "motion";
   return (
     <header>
       <h1>{motion ? (model.about.value?.title ?? lesson?.title ?? "Polhode") : "Algebra"}</h1>
       {!compact && motion && <Scenes model={model} />}
       <Tabs model={model} />
+      {share}
       <Help />
     </header>
   );

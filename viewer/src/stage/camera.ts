@@ -1,6 +1,6 @@
 import { MathUtils, PerspectiveCamera, Quaternion, Spherical, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import type { CameraName } from "../document.ts";
+import type { CameraName, Pose } from "../document.ts";
 import { AXES } from "./rotor.ts";
 
 /** Vertical angle of view in degrees: a long lens, with little perspective. */
@@ -12,8 +12,9 @@ const NEAREST = 0.2;
 const FARTHEST = 4;
 /** Duration of a move to a preset, in s. */
 const MOVE = 0.6;
+const DEGREE = Math.PI / 180;
 /** The angle of one step of a turn. */
-const STEP = (5 * Math.PI) / 180;
+const STEP = 5 * DEGREE;
 
 /** Azimuth of the preset 'oblique', and its elevations: e1 points left and towards the viewer, e2 right, e3 up. */
 export const AZIMUTH = 0.6;
@@ -52,6 +53,8 @@ interface Move {
 /** The camera, which looks at the middle of the figure; the pointer moves it. */
 export class Viewpoint {
   readonly camera = new PerspectiveCamera(LENS, 1, 0.1, 100);
+  /** Called when the user has moved the camera. */
+  moved = (): void => {};
   /** How much space turns back under the body: from 0, not at all, to 1, where the body is at rest. */
   withBody = 0;
   /** The turn of space that makes another direction than e3 the vertical of the picture. */
@@ -71,6 +74,7 @@ export class Viewpoint {
     this.controls.rotateSpeed = 0.8;
     this.controls.addEventListener("change", changed);
     this.controls.addEventListener("start", this.grabbed);
+    this.controls.addEventListener("end", () => this.moved());
   }
 
   /** Moves to a preset; `momentum` is the axial vector of L. With an upright, looks down on its horizontal plane. */
@@ -95,12 +99,16 @@ export class Viewpoint {
   }
 
   /** Moves at once to an azimuth, from e1 towards e2, and an elevation above e1∧e2, in degrees. */
-  from(azimuth: number, elevation: number): void {
-    this.move = null;
-    this.upright.identity();
-    const radians = Math.PI / 180;
+  from(azimuth: number, elevation: number, nearness = 1): void {
+    this.grabbed();
     // The zero of theta is the z axis, to which TO_Y turns −e2.
-    this.stand(new Spherical(this.fit, (90 - elevation) * radians, (azimuth + 90) * radians));
+    this.stand(new Spherical(this.fit / nearness, (90 - elevation) * DEGREE, (azimuth + 90) * DEGREE));
+  }
+
+  /** Where the camera is, as `from` takes it. */
+  get pose(): Pose {
+    const { radius, phi, theta } = this.here;
+    return [theta / DEGREE - 90, 90 - phi / DEGREE, this.fit / radius];
   }
 
   get moving(): boolean {
@@ -152,6 +160,7 @@ export class Viewpoint {
     this.grabbed();
     this.stand(at);
     this.changed();
+    this.moved();
   }
 
   /** Sets the point to look at. */

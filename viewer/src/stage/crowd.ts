@@ -6,15 +6,21 @@ import { quaternion } from "./rotor.ts";
 
 /** The length of a small body. */
 const SIZE = 0.06;
+/** The opacity of a cloud that is old. */
+const OLD = 0.4;
 
 /**
  * The bodies of an ensemble: small boxes on the sphere around the nominal body, each with its own attitude and in the
  * direction of its own axis. They start together and spread over the sphere.
  */
-export function crowd({ figure, palette, say }: Setting): Part | null {
+export function crowd({ figure, palette, curves, cloud, say }: Setting): Part | null {
   const { about, motion, traced } = figure;
-  if (about.ensemble === null) return null;
-  if (motion.awaitsBodies) {
+  if (about.ensemble === null) {
+    cloud.matrices = null;
+    return null;
+  }
+  const old = motion.awaitsBodies ? cloud.matrices : null;
+  if (motion.awaitsBodies && !old) {
     say("The other bodies are being computed…");
     return null;
   }
@@ -24,9 +30,25 @@ export function crowd({ figure, palette, say }: Setting): Part | null {
     color: palette.trace,
     emissive: palette.trace,
     emissiveIntensity: 0.15,
+    // Paler while it is that of the motion before: a cloud that vanished while a slider moves would flicker.
+    ...(old && { transparent: true, opacity: OLD }),
   });
-  const bodies = new InstancedMesh(box, material, Math.min(BODIES, about.ensemble));
+  const bodies = new InstancedMesh(box, material, old ? old.length / 16 : Math.min(BODIES, about.ensemble));
   bodies.frustumCulled = false;
+  if (old) {
+    bodies.instanceMatrix.array.set(old);
+    return { inSpace: bodies, update: () => {} };
+  }
+  curves.add({
+    name: "cloud",
+    object: bodies,
+    visit: (point) => {
+      const places = bodies.instanceMatrix.array;
+      for (let at = 12; at < 16 * bodies.count; at += 16) {
+        point(places[at]!, places[at + 1]!, places[at + 2]!, false);
+      }
+    },
+  });
   let drawn = Number.NaN;
 
   const draw = (rotors: Float64Array): void => {
@@ -39,6 +61,7 @@ export function crowd({ figure, palette, say }: Setting): Part | null {
       bodies.setMatrixAt(k, matrix.compose(place, turn, whole));
     }
     bodies.instanceMatrix.needsUpdate = true;
+    cloud.matrices = bodies.instanceMatrix.array.subarray(0, 16 * bodies.count);
   };
   return {
     inSpace: bodies,

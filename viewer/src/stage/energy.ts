@@ -2,12 +2,15 @@ import type { ReadonlySignal } from "@preact/signals";
 import { Group, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
 import { type About, State } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
-import type { Model } from "../model/model.ts";
+import type { CurveName, Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
 import type { Palette } from "../palette.ts";
 import { axisNames, ordered } from "../model/axes.ts";
 import { REACH } from "./figure.ts";
+import { Hover } from "./hover.ts";
+import { named } from "./names.ts";
 import { type Curve, neighbours, separatrix, through } from "./polhodes.ts";
+import type { Ribbon } from "./ribbon.ts";
 import { AXES, quaternion, vector } from "./rotor.ts";
 import { Shapes } from "./shapes.ts";
 import type { EnergyTool } from "./tools.ts";
@@ -32,6 +35,7 @@ export class EnergyView extends Viewport {
   /** From the unit sphere to the ellipsoid in body axes. */
   private readonly globe = new Matrix4();
   private readonly leave: () => void;
+  private readonly hover: Hover;
 
   constructor(
     host: HTMLElement,
@@ -43,13 +47,16 @@ export class EnergyView extends Viewport {
     this.leave = tool?.attach(host) ?? (() => {});
     this.watch(() => {
       void tool?.held.value;
-      for (const watched of [model.motion, model.row, model.marked, model.shown, palette]) void watched.value;
+      const { motion, row, marked, hovered, shown } = model;
+      for (const watched of [motion, row, marked, hovered, shown, palette]) void watched.value;
     });
-  }
-
-  override dispose(): void {
-    this.leave();
-    super.dispose();
+    this.hover = new Hover(
+      host,
+      this.curves,
+      { camera: this.viewpoint.camera, size: this.screen.value },
+      (name) => named(name, model),
+      (name) => (model.hovered.value = name),
+    );
   }
 
   override home(): void {
@@ -57,8 +64,15 @@ export class EnergyView extends Viewport {
     this.draw();
   }
 
+  override dispose(): void {
+    this.leave();
+    this.hover.dispose();
+    super.dispose();
+  }
+
   protected override show(): void {
     this.build();
+    this.curves.mark(this.model.hovered.peek());
     const row = this.model.row.peek();
     if (row && this.dot) {
       const omega = this.tool?.held.peek() ?? vector(row, State.omegaBody);
@@ -95,20 +109,27 @@ export class EnergyView extends Viewport {
     body.add(this.skin(palette, semiAxes));
     const thin = new Shapes(this.screen, palette.polhode);
     for (const curve of neighbours(moments))
-      thin.line(placed(curve), { width: 1, opacity: 0.7, behind: 0.15 }, true);
+      this.named("neighbours", thin.line(placed(curve), { width: 1, opacity: 0.7, behind: 0.15 }, true));
     const dashed = new Shapes(this.screen, palette.text);
     for (const curve of separatrix(moments))
-      dashed.line(placed(curve), { width: 1.6, opacity: 0.9, behind: 0.2, dash: 0.09 }, true);
+      this.named(
+        "separatrix",
+        dashed.line(placed(curve), { width: 1.6, opacity: 0.9, behind: 0.2, dash: 0.09 }, true),
+      );
     const own = new Shapes(this.screen, palette.omega);
     const unit = omega.clone().applyQuaternion(body.quaternion.clone().invert());
     const curve = through(moments, unit.multiplyScalar(this.rate).divide(semiAxes).normalize());
-    if (curve) own.line(placed(curve), { width: 2.6, behind: 0.3 }, true);
+    if (curve) this.named("polhode", own.line(placed(curve), { width: 2.6, behind: 0.3 }, true));
     body.add(thin.object, dashed.object, own.object);
 
     this.dot = new Mesh(new SphereGeometry(DOT, 24, 16), new MeshBasicMaterial({ color: palette.omega }));
     this.space.add(body, this.axes(motion.about, palette), this.dot);
     this.canvas.ariaLabel =
       "The energy ellipsoid in the body, with the polhode of Ω, its neighbours and the separatrix. Arrow keys turn it.";
+  }
+
+  private named(name: CurveName, line: Ribbon): void {
+    this.curves.add(line.curve(name));
   }
 
   private skin(palette: Palette, semiAxes: Vector3): Mesh {

@@ -2,6 +2,7 @@ import type { Object3D, Quaternion, Vector3 } from "three";
 import type { Acting } from "../core/core.ts";
 import type { Shown } from "../document.ts";
 import type { Palette } from "../palette.ts";
+import type { Curves } from "./curves.ts";
 import type { Figure } from "./figure.ts";
 import type { Labels } from "./labels.ts";
 import type { Screen } from "./ribbon.ts";
@@ -12,8 +13,12 @@ export interface Setting {
   palette: Palette;
   screen: Screen;
   labels: Labels;
+  /** What can be pointed at. */
+  curves: Curves;
   /** Whether the user prefers reduced motion. */
   calm: { readonly matches: boolean };
+  /** The places of the cloud that was drawn last, for as long as those of a new motion are being computed. */
+  cloud: { matrices: ArrayLike<number> | null };
   /** Shows a message over the picture. */
   say: (message: string) => void;
 }

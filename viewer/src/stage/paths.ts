@@ -1,4 +1,4 @@
-import { Group, type Vector3 } from "three";
+import { Group, Quaternion, Vector3 } from "three";
 import { ROW, State } from "../core/core.ts";
 import type { Shown } from "../document.ts";
 import { span } from "../model/model.ts";
@@ -16,8 +16,11 @@ const TURNS = 8;
 const MOST_TURNS = 60;
 /** Tolerance of a line in drawn units: a fifth of a pixel in the default view. */
 const NEAR = 1e-3;
-/** Time in ms for the paths of one frame, so that the page stays responsive. */
-const FRAME = 12;
+/** Time in ms for the paths of one frame: while the motion plays, so that no frame is late, and otherwise. */
+const FRAME = 1;
+const PAUSED = 8;
+/** Points of a path computed in one step. */
+const STEP = 500;
 /** The longest piece of a line, so that fading along it is even. */
 const LONGEST = 0.15;
 /** Scale of the polhode, so that it is drawn over the ellipsoid on which it lies. */
@@ -28,8 +31,8 @@ interface Path {
   ribbon: Ribbon;
   /** How long it is seen, s. */
   tail: number;
-  /** Its points from rows of states. */
-  points: (rows: Float64Array) => Vector3[];
+  /** Its point at an offset in rows of states. */
+  point: (rows: Float64Array, at: number, into: Vector3) => void;
 }
 
 /**
@@ -46,15 +49,20 @@ export class Paths implements Part {
   private readonly figure: Figure;
   private readonly screen: Setting["screen"];
   private readonly palette: Setting["palette"];
+  private readonly curves: Setting["curves"];
   /** Duration of a tail in s, the middle of the stretch, and that of the stretch that is being computed. */
   private tail = Number.NaN;
   private middle = Number.NaN;
   private wanted = Number.NaN;
   private asked = 0;
   private work: Steps<void> | null;
+  /** The time of the last frame. */
+  private seen = Number.NaN;
+  /** The last stretch: its rows, and the number of the first one. */
+  private last: { from: number; rows: Float64Array } | null = null;
 
-  constructor({ figure, palette, screen }: Setting) {
-    [this.figure, this.palette, this.screen] = [figure, palette, screen];
+  constructor({ figure, palette, screen, curves }: Setting) {
+    [this.figure, this.palette, this.screen, this.curves] = [figure, palette, screen, curves];
     this.work = this.prepared();
   }
 
@@ -71,7 +79,8 @@ export class Paths implements Part {
   }
 
   update({ time, whole }: Instant, shown: Shown): void {
-    const end = performance.now() + FRAME;
+    const end = performance.now() + (time === this.seen ? PAUSED : FRAME);
+    this.seen = time;
     do {
       this.request(time, shown);
       if (this.work && advance(this.work, whole ? Infinity : end - performance.now())) this.work = null;
@@ -98,12 +107,10 @@ export class Paths implements Part {
     const tail = yield* tailOf(figure);
     // ω repeats the same curves.
     const turns = Math.min(tail, (2 * TURNS * Math.PI) / figure.omega);
-    const polhode = this.path("polhode", 2.4, turns, (rows) =>
-      taken(rows, State.omegaBody, LIFTED * figure.rate),
-    );
+    const polhode = this.path("polhode", 2.4, turns, tipAt(State.omegaBody, LIFTED * figure.rate));
     const open = [
-      this.path("trace", 2.2, tail, (rows) => traced(rows, figure.traced)),
-      this.path("herpolhode", 2, turns, (rows) => taken(rows, State.omegaSpace, figure.rate)),
+      this.path("trace", 2.2, tail, axisAt(figure.traced)),
+      this.path("herpolhode", 2, turns, tipAt(State.omegaSpace, figure.rate)),
     ];
     const period = figure.about.free?.period ?? null;
     if (period !== null && within(figure, period)) {
@@ -115,13 +122,14 @@ export class Paths implements Part {
     [this.open, this.tail] = [open, tail];
   }
 
-  private path(name: Path["name"], width: number, tail: number, points: Path["points"]): Path {
+  private path(name: Path["name"], width: number, tail: number, point: Path["point"]): Path {
     const ribbon = new Ribbon(this.screen, this.palette[name], {
       width,
       behind: name === "trace" ? 0.3 : 0.35,
     });
     (name === "polhode" ? this.inBody : this.inSpace).add(ofLayer(name, ribbon.object));
-    return { name, ribbon, tail, points };
+    this.curves.add(ribbon.curve(name));
+    return { name, ribbon, tail, point };
   }
 
   private *stretch(time: number): Steps<void> {
@@ -134,21 +142,41 @@ export class Paths implements Part {
     const times = Float64Array.from({ length: Math.max(to - from + 1, 1) }, (_, k) =>
       Math.min(Math.max((from + k) * step, first), last),
     );
-    const rows = yield* statesOf(figure.motion, times);
+    const rows = yield* this.rows(from, times);
     const drawn: (() => void)[] = [];
     for (const path of this.open) {
-      const points = path.points(rows);
-      yield;
-      const kept = thinned(points);
+      const points = yield* pointsOf(rows, path.point);
+      const kept = yield* thinned(points);
       const parameters = kept.map((k) => (times[k]! - time) / path.tail);
-      const seen = kept.map((k) => points[k]!);
-      drawn.push(() => path.ribbon.set(seen, { parameters }));
+      const seen = new Float64Array(3 * kept.length);
+      kept.forEach((k, place) => seen.set(points.subarray(3 * k, 3 * k + 3), 3 * place));
+      drawn.push(() => path.ribbon.setNumbers(seen, { parameters }));
       yield;
     }
     // All at once: they fade together.
     for (const draw of drawn) draw();
     this.middle = time;
     this.asked = times.length;
+  }
+
+  /** The states at the times of a stretch, of which the last stretch has most. */
+  private *rows(from: number, times: Float64Array): Steps<Float64Array> {
+    const { last } = this;
+    const count = times.length;
+    const common = (k: number) => Math.min(Math.max(k, 0), count);
+    const first = last ? common(last.from - from) : count;
+    const end = last ? common(last.from + last.rows.length / ROW - from) : count;
+    const rows = new Float64Array(ROW * count);
+    if (last && first < end) {
+      const shift = from - last.from;
+      rows.set(last.rows.subarray(ROW * (first + shift), ROW * (end + shift)), ROW * first);
+    }
+    const parts = first < end ? [[0, first] as const, [end, count] as const] : [[0, count] as const];
+    for (const [a, b] of parts) {
+      if (a < b) rows.set(yield* statesOf(this.figure.motion, times.subarray(a, b)), ROW * a);
+    }
+    this.last = { from, rows };
+    return rows;
   }
 }
 
@@ -175,7 +203,7 @@ function* resolved(figure: Figure, tail: number): Steps<boolean> {
   const step = (3 * tail) / POINTS;
   const { start, duration } = figure.about;
   const times = Float64Array.from({ length: count }, (_, k) => start.time + Math.min(k * step, duration));
-  const path = traced(yield* statesOf(figure.motion, times), figure.traced);
+  const path = vectors(yield* pointsOf(yield* statesOf(figure.motion, times), axisAt(figure.traced)));
   let bent = 0;
   for (let k = 1; k < path.length - 1; k++) {
     const [before, after] = [piece(path, k - 1), piece(path, k)];
@@ -192,22 +220,34 @@ function within(figure: Figure, duration: number): boolean {
   return first <= start.time && start.time + duration <= last;
 }
 
-/** The tips of a unit vector of the body in space. */
-function traced(rows: Float64Array, axis: Vector3): Vector3[] {
-  return offsets(rows).map((at) =>
-    axis
-      .clone()
-      .applyQuaternion(quaternion(rows, at + State.rotor))
-      .multiplyScalar(REACH),
-  );
+/** The tip of a unit vector of the body in space. */
+function axisAt(axis: Vector3): Path["point"] {
+  const turn = new Quaternion();
+  return (rows, at, into) => {
+    quaternion(rows, at + State.rotor, turn);
+    into.copy(axis).applyQuaternion(turn).multiplyScalar(REACH);
+  };
 }
 
-function taken(rows: Float64Array, offset: number, scale: number): Vector3[] {
-  return offsets(rows).map((at) => vector(rows, at + offset).multiplyScalar(scale));
+/** The tip of a vector of the rows. */
+function tipAt(offset: number, scale: number): Path["point"] {
+  return (rows, at, into) => void vector(rows, at + offset, into).multiplyScalar(scale);
 }
 
-function offsets(rows: Float64Array): number[] {
-  return Array.from({ length: rows.length / ROW }, (_, k) => ROW * k);
+/** The points (n × 3) of a path at rows of states. */
+function* pointsOf(rows: Float64Array, point: Path["point"]): Steps<Float64Array> {
+  const here = new Vector3();
+  const points = new Float64Array((3 * rows.length) / ROW);
+  for (let k = 0; k < points.length / 3; k++) {
+    if (k % STEP === STEP - 1) yield;
+    point(rows, ROW * k, here);
+    here.toArray(points, 3 * k);
+  }
+  return points;
+}
+
+function vectors(points: Float64Array): Vector3[] {
+  return Array.from({ length: points.length / 3 }, (_, k) => new Vector3().fromArray(points, 3 * k));
 }
 
 /** A closed polhode. The speed of ω varies greatly near a saddle, so intervals are halved until points are close. */
@@ -231,7 +271,7 @@ function* polhodeOf(figure: Figure, period: number): Steps<Vector3[]> {
 /** Points of the polhode. */
 function* rates(figure: Figure, times: number[]): Steps<Vector3[]> {
   const rows = yield* statesOf(figure.motion, Float64Array.from(times));
-  return taken(rows, State.omegaBody, LIFTED * figure.rate);
+  return vectors(yield* pointsOf(rows, tipAt(State.omegaBody, LIFTED * figure.rate)));
 }
 
 /** From a point of a path to the next one. */
@@ -240,23 +280,28 @@ function piece(points: readonly Vector3[], k: number): Vector3 {
 }
 
 /** Indices of the points that a smooth line needs: few where it is nearly straight. */
-function thinned(points: readonly Vector3[]): number[] {
+function* thinned(points: Float64Array): Steps<number[]> {
   const kept: number[] = [];
+  const count = points.length / 3;
   // The last kept point, and the direction of the path there.
-  let last = points[0]!;
-  let way: Vector3 | null = null;
-  points.forEach((here, k) => {
-    if (k > 0 && k < points.length - 1) {
-      const on = piece(points, k).normalize();
-      way ??= piece(points, 0).normalize();
-      if (on.length() === 0) return;
-      const chord = here.distanceTo(last);
-      // The height of an arc is 1/8 of its chord times its turn.
-      if (chord < LONGEST && chord * on.distanceTo(way) < 8 * NEAR) return;
-      way = on;
+  const [last, way] = [new Vector3(), new Vector3()];
+  const [here, on] = [new Vector3(), new Vector3()];
+  for (let k = 0; k < count; k++) {
+    if (k % STEP === STEP - 1) yield;
+    here.fromArray(points, 3 * k);
+    const inner = k > 0 && k < count - 1;
+    if (k < count - 1) {
+      on.fromArray(points, 3 * k + 3)
+        .sub(here)
+        .normalize();
     }
+    if (inner && on.lengthSq() === 0) continue;
+    const chord = here.distanceTo(last);
+    // The height of an arc is 1/8 of its chord times its turn.
+    if (inner && chord < LONGEST && chord * on.distanceTo(way) < 8 * NEAR) continue;
+    if (k < count - 1) way.copy(on);
     kept.push(k);
-    last = here;
-  });
+    last.copy(here);
+  }
   return kept;
 }

@@ -16,6 +16,9 @@ import {
   type Vector3,
 } from "three";
 
+import type { CurveName } from "../model/model.ts";
+import type { Curve } from "./curves.ts";
+
 /** The size of the canvas in CSS pixels, shared by all ribbons of a stage. */
 export interface Screen {
   value: Vector2;
@@ -74,6 +77,9 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
+/** How much wider a marked line is, and the age up to which a fading one is seen well enough to be pointed at. */
+const MARKED = 2;
+const VISIBLE = 0.9;
 /** Values per vertex: the point, the side (−1 or 1) and the parameter. */
 const STRIDE = 5;
 
@@ -97,12 +103,17 @@ export class Ribbon {
   readonly object = new Group();
   /** Number of points. */
   count = 0;
+  private vertices: InterleavedBuffer | null = null;
+  private readonly usual: number;
+  private readonly width: { value: number };
   private readonly now = { value: 0 };
   private readonly fades = { value: false };
   private readonly meshes: Mesh[] = [];
 
   constructor(screen: Screen, colour: ColorRepresentation, style: RibbonStyle) {
     const color = { value: new Color(colour) };
+    this.width = { value: style.width };
+    this.usual = style.width;
     const opacity = style.opacity ?? 1;
     const passes: [number, typeof LessEqualDepth | typeof GreaterDepth][] = [[opacity, LessEqualDepth]];
     if (style.behind) passes.push([opacity * style.behind, GreaterDepth]);
@@ -112,7 +123,7 @@ export class Ribbon {
         fragmentShader: FRAGMENT,
         uniforms: {
           screen,
-          width: { value: style.width },
+          width: this.width,
           color,
           opacity: { value: seen },
           now: this.now,
@@ -135,28 +146,52 @@ export class Ribbon {
 
   /** Sets the points and their parameters, by default the length of the line up to them. */
   set(points: readonly Vector3[], options: { parameters?: readonly number[]; closed?: boolean } = {}): void {
-    const { parameters, closed = false } = options;
-    const given = points.length;
-    this.count = given + (closed && given > 0 ? 1 : 0);
-    // An additional point at each end: the shader needs the neighbours of each point.
-    const index = (row: number): number =>
-      closed ? (row - 1 + given) % given : Math.min(Math.max(row - 1, 0), given - 1);
-    const data = new Float32Array((this.count + 2) * 2 * STRIDE);
-    let length = 0;
-    for (let row = 0; row < this.count + 2 && given > 0; row++) {
-      const here = points[index(row)]!;
-      if (row > 1) length += here.distanceTo(points[index(row - 1)]!);
-      const parameter = parameters ? parameters[index(row)]! : length;
-      data.set([...here, -1, parameter, ...here, 1, parameter], 2 * STRIDE * row);
-    }
+    const numbers = new Float64Array(3 * points.length);
+    points.forEach((point, k) => point.toArray(numbers, 3 * k));
+    this.setNumbers(numbers, options);
+  }
+
+  /** `set` for points as numbers (n × 3). The buffers are kept while the number of points is the same. */
+  setNumbers(
+    points: Float64Array,
+    { parameters, closed = false }: { parameters?: ArrayLike<number>; closed?: boolean } = {},
+  ): void {
+    const given = points.length / 3;
+    const count = given + (closed && given > 0 ? 1 : 0);
+    const old = count === this.count ? this.vertices : null;
+    this.count = count;
+    const vertices = old ?? new InterleavedBuffer(new Float32Array((count + 2) * 2 * STRIDE), STRIDE);
+    fill(vertices.array as Float32Array, count, points, closed, parameters);
     this.fades.value = false;
-    const seen = this.count > 1;
-    const geometry = seen ? strip(new InterleavedBuffer(data, STRIDE), this.count) : new BufferGeometry();
+    if (old) {
+      old.needsUpdate = true;
+      return;
+    }
+    const seen = count > 1;
+    this.vertices = seen ? vertices : null;
+    const geometry = seen ? strip(vertices, count) : new BufferGeometry();
     for (const mesh of this.meshes) {
       mesh.geometry.dispose();
       mesh.geometry = geometry;
       mesh.visible = seen;
     }
+  }
+
+  /** As a curve that can be pointed at. */
+  curve(name: CurveName): Curve {
+    return {
+      name,
+      object: this.object,
+      mark: (marked) => (this.width.value = this.usual * (marked ? MARKED : 1)),
+      visit: (point) => {
+        const numbers = this.vertices?.array ?? [];
+        for (let row = 1; row <= this.count; row++) {
+          const at = 2 * STRIDE * row;
+          const age = this.fades.value ? Math.abs(this.now.value - numbers[at + 4]!) : 0;
+          if (age < VISIBLE) point(numbers[at]!, numbers[at + 1]!, numbers[at + 2]!, row > 1);
+        }
+      },
+    };
   }
 
   /** Sets the parameter at which the line is most opaque. */
@@ -166,13 +201,46 @@ export class Ribbon {
   }
 }
 
+/** Fills the vertices of a line: one more point at each end, because the shader needs the neighbours of each. */
+function fill(
+  into: Float32Array,
+  count: number,
+  points: Float64Array,
+  closed: boolean,
+  parameters?: ArrayLike<number>,
+): void {
+  const given = points.length / 3;
+  if (given === 0) return;
+  let length = 0;
+  let before = 0;
+  for (let row = 0; row < count + 2; row++) {
+    const point = closed ? (row - 1 + given) % given : Math.min(Math.max(row - 1, 0), given - 1);
+    const [at, last] = [3 * point, 3 * before];
+    const [x, y, z] = [points[at]!, points[at + 1]!, points[at + 2]!];
+    if (row > 1) length += Math.hypot(x - points[last]!, y - points[last + 1]!, z - points[last + 2]!);
+    before = point;
+    const parameter = parameters ? parameters[point]! : length;
+    for (let side = 0; side < 2; side++) {
+      const place = STRIDE * (2 * row + side);
+      into[place] = x;
+      into[place + 1] = y;
+      into[place + 2] = z;
+      into[place + 3] = 2 * side - 1;
+      into[place + 4] = parameter;
+    }
+  }
+}
+
 /** A strip of triangles. The neighbours of a point are in the same buffer, two vertices before and after. */
 function strip(vertices: InterleavedBuffer, count: number): BufferGeometry {
   const geometry = new BufferGeometry();
   const index = new Uint32Array(6 * (count - 1));
   for (let k = 0; k < count - 1; k++) {
-    const a = 2 * k;
-    index.set([a, a + 1, a + 2, a + 2, a + 1, a + 3], 6 * k);
+    const [a, at] = [2 * k, 6 * k];
+    index[at] = a;
+    index[at + 1] = index[at + 4] = a + 1;
+    index[at + 2] = index[at + 3] = a + 2;
+    index[at + 5] = a + 3;
   }
   geometry.setAttribute("before", new InterleavedBufferAttribute(vertices, 3, 0));
   geometry.setAttribute("position", new InterleavedBufferAttribute(vertices, 3, 2 * STRIDE));

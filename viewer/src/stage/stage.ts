@@ -2,7 +2,7 @@ import type { ReadonlySignal } from "@preact/signals";
 import { Group, Vector2, Vector3 } from "three";
 import { type About, State } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
-import type { CameraName, Shown } from "../document.ts";
+import type { CameraName, Pose, Shown } from "../document.ts";
 import { namedAxes } from "../model/axes.ts";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
@@ -14,6 +14,8 @@ import { emphasize, ofLayer } from "./emphasis.ts";
 import { actingOn, type Figure, figureOf } from "./figure.ts";
 import { frame, principal } from "./frames.ts";
 import { gravity } from "./gravity.ts";
+import { Hover } from "./hover.ts";
+import { named, revealed } from "./names.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Paths } from "./paths.ts";
 import { level, poinsot } from "./poinsot.ts";
@@ -53,15 +55,21 @@ export class Stage extends Viewport {
   private camera: CameraName | null = null;
   /** The motion whose invariable plane is horizontal. */
   private levelled: Motion | null = null;
+  /** The pose of the model that the camera has taken. */
+  private pose: Pose | null = null;
   private fitting = false;
   private played = 0;
   private shownAt = Number.NaN;
   private whole = false;
+  /** Whether the view of a captured picture was given by its angles, which are from e3. */
+  private viewed = false;
   /** Whether laws or thrusts act on the body, and the layer that was emphasized. */
   private acts = false;
   private emphasized: keyof Shown | null = null;
   private figure: Figure | null = null;
   private readonly leave: () => void;
+  private readonly hover: Hover;
+  private readonly cloud: Setting["cloud"] = { matrices: null };
 
   constructor(
     host: HTMLElement,
@@ -80,21 +88,33 @@ export class Stage extends Viewport {
       if (turn && turn !== turned) this.viewpoint.turn(turn);
       turned = turn;
       void tools?.changed.value;
-      const { motion, row, shown, marked, pointed, camera, playing } = model;
-      for (const watched of [motion, row, shown, marked, pointed, camera, playing, palette])
+      const { motion, row, shown, marked, pointed, hovered, camera, pose, playing } = model;
+      for (const watched of [motion, row, shown, marked, pointed, hovered, camera, pose, playing, palette])
         void watched.value;
     });
-  }
-
-  override dispose(): void {
-    this.leave();
-    super.dispose();
+    this.hover = new Hover(
+      host,
+      this.curves,
+      { camera: this.viewpoint.camera, size: this.screen.value },
+      (name) => named(name, model),
+      (name) => (model.hovered.value = name),
+    );
+    this.viewpoint.moved = () => {
+      this.pose = this.viewpoint.pose;
+      model.pose.value = this.pose;
+    };
   }
 
   /** Returns to the preset of the model's camera. */
   override home(): void {
     this.fitting = true;
     this.draw();
+  }
+
+  override dispose(): void {
+    this.leave();
+    this.hover.dispose();
+    super.dispose();
   }
 
   /** Draws the present state with its labels at once, in any size. For stages whose host has none. */
@@ -107,6 +127,8 @@ export class Stage extends Viewport {
     this.played = options.played ?? 0;
     if (view) {
       this.camera = this.model.camera.peek();
+      this.viewed = true;
+      this.viewpoint.upright.identity();
       this.viewpoint.from(...view);
     }
     this.whole = true;
@@ -138,8 +160,9 @@ export class Stage extends Viewport {
 
   protected override show(): void {
     const { model } = this;
-    const shown = model.shown.peek();
+    const shown = revealed(model.shown.peek(), model.hovered.peek());
     this.build();
+    this.curves.mark(model.hovered.peek());
     const row = model.row.peek();
     this.space.visible = row !== null;
     if (row) {
@@ -179,6 +202,8 @@ export class Stage extends Viewport {
       palette,
       screen: this.screen,
       labels: this.labels,
+      curves: this.curves,
+      cloud: this.cloud,
       calm: this.calm,
       say: (message) => this.say(message),
     };
@@ -213,23 +238,29 @@ export class Stage extends Viewport {
     this.viewpoint.look(new Vector3(0, 0, figure.about.held ? Math.max(0.2 * top, 0) : 0));
   }
 
-  /** Moves to the model's camera if it has changed or a fit was requested. */
+  /** Moves to the model's camera if it has changed or a fit was requested, and to a pose that was set. */
   private stand(omega: Vector3, momentum: Vector3): void {
-    const name = this.model.camera.peek();
+    const { camera, pose } = this.model;
+    const name = camera.peek();
+    const set = pose.peek() !== this.pose;
     // Poinsot's plane is at rest if L is.
-    const still = this.model.shown.peek().poinsot && (this.motion?.about.free ?? null) !== null;
+    const still =
+      !this.viewed && this.model.shown.peek().poinsot && (this.motion?.about.free ?? null) !== null;
     const levelled = name === "oblique" && still && momentum.length() > 0 ? this.motion : null;
     const upright = levelled && level(omega, momentum);
     const before = this.levelled;
     this.levelled = levelled;
-    if (name === this.camera && !this.fitting && (before === null) === (levelled === null)) {
+    if (name !== this.camera || this.fitting || (before === null) !== (levelled === null)) {
+      this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches, upright);
+      this.camera = name;
+      this.fitting = false;
+      if (!set) pose.value = null;
+    } else if (upright && before !== levelled) {
       // The user's view is kept while sliders move.
-      if (upright && before !== levelled) this.viewpoint.upright.copy(upright);
-      return;
+      this.viewpoint.upright.copy(upright);
     }
-    this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches, upright);
-    this.camera = name;
-    this.fitting = false;
+    this.pose = pose.peek();
+    if (set && this.pose) this.viewpoint.from(...this.pose);
   }
 
   private instant(row: Float64Array): Instant {

@@ -4,8 +4,8 @@ import { ROW } from "../core/core.ts";
 /** Long work in steps, between which a frame can be drawn. */
 export type Steps<T> = Generator<undefined, T, undefined>;
 
-/** States computed in one step: a few milliseconds for a motion without a closed form. */
-const STATES = 100;
+/** States computed in one step: a third of a millisecond for a motion without a closed form. */
+const STATES = 25;
 
 /** Runs some work for a time in ms, or to its end; returns whether it has ended. */
 export function advance(work: Steps<void>, time: number): boolean {

@@ -15,6 +15,7 @@ import {
 } from "three";
 import type { Palette } from "../palette.ts";
 import { Viewpoint } from "./camera.ts";
+import { Curves } from "./curves.ts";
 import { Labels } from "./labels.ts";
 import type { Screen } from "./ribbon.ts";
 import type { Sight } from "./tools.ts";
@@ -30,11 +31,20 @@ const LOST = "The graphics context was lost; the picture returns when the browse
 /** The longest step in s, so that a page that was hidden continues where it was. */
 export const LONGEST_STEP = 0.1;
 
+/** The viewports by their hosts. */
+const inHosts = new WeakMap<HTMLElement, Viewport>();
+
+/** The picture in a host with its labels, at a number of pixels per CSS pixel; null if there is none. */
+export function pictureIn(host: HTMLElement, scale: number): HTMLCanvasElement | null {
+  return inHosts.get(host)?.pictured(scale) ?? null;
+}
+
 /** A 3-d picture with labels that fills its host. A frame is drawn only when something has changed. */
 export abstract class Viewport {
   protected readonly canvas = document.createElement("canvas");
   protected readonly renderer: WebGLRenderer;
   protected readonly labels = new Labels();
+  protected readonly curves = new Curves();
   protected readonly screen: Screen = { value: new Vector2(1, 1) };
   protected readonly viewpoint: Viewpoint;
   /** What is drawn, in space axes. */
@@ -73,6 +83,7 @@ export abstract class Viewport {
     this.scene.add(this.space, this.viewpoint.camera, this.hemisphere);
     this.furnish();
     this.observer.observe(host);
+    inHosts.set(host, this);
   }
 
   /** Returns to the first view. */
@@ -91,7 +102,29 @@ export abstract class Viewport {
     return false;
   }
 
+  /** What is on the screen, with its labels, in other pixels. */
+  pictured(scale: number): HTMLCanvasElement | null {
+    if (!this.seen || this.lost) return null;
+    const { clientWidth: width, clientHeight: height } = this.host;
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [width * scale, height * scale];
+    const context = canvas.getContext("2d")!;
+    this.drawing = true;
+    try {
+      this.fill(width, height, scale);
+      this.show();
+      context.drawImage(this.canvas, 0, 0, canvas.width, canvas.height);
+      context.scale(scale, scale);
+      this.labels.draw(context);
+    } finally {
+      this.drawing = false;
+      this.resize();
+    }
+    return canvas;
+  }
+
   dispose(): void {
+    inHosts.delete(this.host);
     cancelAnimationFrame(this.request);
     this.lost = true;
     this.unwatch();
@@ -122,6 +155,7 @@ export abstract class Viewport {
     this.old.push(...this.space.children);
     this.space.clear();
     this.labels.clear();
+    this.curves.clear();
     const background = new Color(palette.background);
     const dark = background.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5;
     this.renderer.setClearColor(background);

@@ -5,7 +5,7 @@ import type { Motion } from "../core/wasm.ts";
 import type { Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
 import type { Palette } from "../palette.ts";
-import { axisNames, ordered } from "../model/axes.ts";
+import { axisNames, ordered } from "./axes.ts";
 import { REACH } from "./figure.ts";
 import { type Curve, neighbours, separatrix, through } from "./polhodes.ts";
 import { AXES, quaternion, vector } from "./rotor.ts";

@@ -208,7 +208,7 @@ def interface(name):
     """The names of the fields of an interface in TypeScript, nested ones included."""
     text = (ROOT / "viewer/src/core/core.ts").read_text()
     body = re.search(rf"export interface {name} {{\n(.*?)\n}}", text, flags=re.DOTALL)[1]
-    return re.findall(r"^  (\w+):", body, flags=re.MULTILINE), {
+    return re.findall(r"^  (\w+)\??:", body, flags=re.MULTILINE), {
         outer: re.findall(r"^    (\w+):", inner, flags=re.MULTILINE)
         for outer, inner in re.findall(r"^  (\w+): {\n(.*?)^  }", body, flags=re.MULTILINE | re.DOTALL)
     }

@@ -1,5 +1,5 @@
 import type { About } from "../core/core.ts";
-import { namedAxes } from "../model/axes.ts";
+import { namedAxes } from "../stage/axes.ts";
 import type { Envelope } from "./samples.ts";
 
 /** A mark over the chart: a time in s and what happens then. */

@@ -1,6 +1,6 @@
 import { ROW, sizeAt, State } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
-import { type NamedAxes, namedAxes } from "../model/axes.ts";
+import { type NamedAxes, namedAxes } from "../stage/axes.ts";
 import { span } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
 import { quaternion, vector } from "../stage/rotor.ts";

@@ -1,7 +1,7 @@
 import { type ReadonlySignal, type Signal, useComputed, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { About } from "../core/core.ts";
-import { namedAxes } from "../model/axes.ts";
+import { namedAxes } from "../stage/axes.ts";
 import { significant } from "../format/numbers.ts";
 import { duration } from "../format/units.ts";
 import { Icon } from "../inputs/button.tsx";

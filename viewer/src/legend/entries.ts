@@ -1,6 +1,6 @@
 import type { About } from "../core/core.ts";
 import type { Shown } from "../document.ts";
-import { namedAxes } from "../model/axes.ts";
+import { namedAxes } from "../stage/axes.ts";
 import type { Figure } from "../stage/figure.ts";
 
 /** A thing in the picture: its layer, its name, and how its colour is shown. */

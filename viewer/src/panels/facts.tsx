@@ -3,7 +3,7 @@ import { type About, hasMass, type LawEntry, type Triple } from "../core/core.ts
 import { significant, small } from "../format/numbers.ts";
 import { DEGREE, duration } from "../format/units.ts";
 import { Defined, Term } from "../glossary/term.tsx";
-import { axisNames, ordered } from "../model/axes.ts";
+import { axisNames, ordered } from "../stage/axes.ts";
 import type { Model } from "../model/model.ts";
 import { cloudOf } from "../vary/cloud.ts";
 import { HOLDING } from "../vary/laws.ts";

@@ -5,7 +5,7 @@ import type { Motion } from "../core/wasm.ts";
 import type { CurveName, Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
 import type { Palette } from "../palette.ts";
-import { axisNames, ordered } from "../model/axes.ts";
+import { axisNames, ordered } from "./axes.ts";
 import { REACH } from "./figure.ts";
 import { Hover } from "./hover.ts";
 import { named } from "./names.ts";

@@ -1,5 +1,5 @@
 import { Color, Group } from "three";
-import { namedAxes } from "../model/axes.ts";
+import { namedAxes } from "./axes.ts";
 import { REACH } from "./figure.ts";
 import type { Part, Setting } from "./part.ts";
 import { AXES, quaternion } from "./rotor.ts";

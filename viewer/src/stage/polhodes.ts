@@ -1,6 +1,6 @@
 import { Vector3 } from "three";
 import type { Triple } from "../core/core.ts";
-import { ordered } from "../model/axes.ts";
+import { ordered } from "./axes.ts";
 
 /**
  * Curves of constant |L| on the energy ellipsoid, in principal axes. In the coordinates u_k = ω_k √(i_k/2T) the ellipsoid

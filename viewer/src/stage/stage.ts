@@ -3,7 +3,7 @@ import { Group, Vector2, Vector3 } from "three";
 import { type About, State } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
 import type { CameraName, Pose, Shown } from "../document.ts";
-import { namedAxes } from "../model/axes.ts";
+import { namedAxes } from "./axes.ts";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { acting } from "./acting.ts";

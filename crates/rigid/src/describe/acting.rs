@@ -1,8 +1,8 @@
 //! What acts on a body: its torque, and the vectors that its laws depend on.
 
+use crate::error::TorqueError;
 use crate::facts;
 use crate::facts::Facts;
-use crate::error::TorqueError;
 use crate::laws::torque::{Torque, wheel};
 use crate::run::Setup;
 use crate::state::phase::{Gyrostat, Phase};

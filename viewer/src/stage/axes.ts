@@ -1,5 +1,5 @@
 import type { About, Quadruple, Triple } from "../core/core.ts";
-import { AXES, quaternion } from "../stage/rotor.ts";
+import { AXES, quaternion } from "./rotor.ts";
 
 /** Moments whose relative difference is less than this count as equal. */
 const EQUAL = 1e-9;

@@ -42,7 +42,7 @@ export function AlgebraPage(props: {
     [model],
   );
   return (
-    <main class="algebra" aria-labelledby="tab-algebra">
+    <main class="algebra">
       <style>{styles}</style>
       {!lesson && <Presets model={model} />}
       <Picture

@@ -61,7 +61,7 @@ export function App({ model, palette, compact, wide }: Props) {
       }}
     >
       <Header model={model} compact={compact} lesson={lessons.lesson.value} />
-      <div id="page" role="tabpanel" class="page">
+      <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
         <Boundary key={model.page.value}>
           {motion ? (
             <MotionPage {...{ model, palette, compact, wide, controls, lessons, folds }} />
@@ -106,7 +106,7 @@ function MotionPage(props: Props & { controls: Controls; lessons: Lessons; folds
     [!compact && editable, "text", "Scene", !known && !learning, <Editor model={model} />],
   ];
   return (
-    <main class="motion" aria-labelledby="tab-motion">
+    <main class="motion">
       <Picture model={model} palette={palette} formulas={formulas} />
       <Playback model={model} />
       <aside class="panels" aria-label="Values and controls">

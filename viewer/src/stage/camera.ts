@@ -97,7 +97,6 @@ export class Viewpoint {
   /** Moves at once to an azimuth, from e1 towards e2, and an elevation above e1∧e2, in degrees. */
   from(azimuth: number, elevation: number): void {
     this.move = null;
-    this.upright.identity();
     const radians = Math.PI / 180;
     // The zero of theta is the z axis, to which TO_Y turns −e2.
     this.stand(new Spherical(this.fit, (90 - elevation) * radians, (azimuth + 90) * radians));

@@ -49,6 +49,8 @@ export class Stage extends Viewport {
   private camera: CameraName | null = null;
   /** The motion whose invariable plane is horizontal. */
   private levelled: Motion | null = null;
+  /** Whether a captured picture has a view in space axes. */
+  private given = false;
   private fitting = false;
   private played = 0;
   private shownAt = Number.NaN;
@@ -87,8 +89,11 @@ export class Stage extends Viewport {
     const size = new Vector2(width / scale, height / scale);
     if (!size.equals(this.screen.value)) this.fill(size.x, size.y, scale);
     this.played = options.played ?? 0;
+    this.given = view !== undefined;
     if (view) {
       this.camera = this.model.camera.peek();
+      this.levelled = null;
+      this.viewpoint.upright.identity();
       this.viewpoint.from(...view);
     }
     this.whole = true;
@@ -189,7 +194,8 @@ export class Stage extends Viewport {
     const name = this.model.camera.peek();
     // Poinsot's plane is at rest if L is.
     const still = this.model.shown.peek().poinsot && (this.motion?.about.free ?? null) !== null;
-    const levelled = name === "oblique" && still && momentum.length() > 0 ? this.motion : null;
+    const turned = name === "oblique" && still && !this.given && momentum.length() > 0;
+    const levelled = turned ? this.motion : null;
     const upright = levelled && level(omega, momentum);
     const before = this.levelled;
     this.levelled = levelled;

@@ -84,3 +84,14 @@ def test_tops_stand_upright(opened):
     page.drawn()
     e3 = np.array([0.0, 0.0, 1.0])
     np.testing.assert_allclose(turned(page, e3), e3, rtol=0, atol=ROUNDING)
+
+
+def test_captured_views_are_in_space(opened):
+    """The azimuth and elevation that a figure asks for are in space, whatever the camera of the page."""
+    page = opened({"format": 1, "scene": TUMBLING + RUN, "view": SHOWN})
+    capture = f"""async (view) => {{
+        (await {VIEWER}.ready).look(view);
+        return {VIEWER}.capture(0, {{ width: 200, height: 150, scale: 1, view: [20, 30] }});
+    }}"""
+    pictures = [page.page.evaluate(capture, {"camera": camera}) for camera in ("oblique", "along e1")]
+    assert pictures[0] == pictures[1]

@@ -113,7 +113,8 @@ def test_address_is_written_seldom_and_not_while_the_time_runs(opened):
 
 def test_address_names_scenes_of_the_viewer(opened, new_page):
     page = opened({"format": 1})
-    page.page.locator("#preset").select_option("racket.toml")
+    page.page.locator("#scenes").click()
+    page.page.locator("[data-scene='racket.toml']").click()
     assert "text" not in written(page, scene="racket")
     page.page.evaluate(f"async () => ({MODEL}).change('[initial]\\nspin = {{ vector = [1, 2, 3] }}\\n')")
     page.until("!model.solving.value && location.hash.includes('text=')")

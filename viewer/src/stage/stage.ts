@@ -57,12 +57,12 @@ export class Stage extends Viewport {
   private levelled: Motion | null = null;
   /** The pose of the model that the camera has taken. */
   private pose: Pose | null = null;
+  /** Whether a captured picture has a view in space axes. */
+  private given = false;
   private fitting = false;
   private played = 0;
   private shownAt = Number.NaN;
   private whole = false;
-  /** Whether the view of a captured picture was given by its angles, which are from e3. */
-  private viewed = false;
   /** Whether laws or thrusts act on the body, and the layer that was emphasized. */
   private acts = false;
   private emphasized: keyof Shown | null = null;
@@ -125,9 +125,10 @@ export class Stage extends Viewport {
     const size = new Vector2(width / scale, height / scale);
     if (!size.equals(this.screen.value)) this.fill(size.x, size.y, scale);
     this.played = options.played ?? 0;
+    this.given = view !== undefined;
     if (view) {
       this.camera = this.model.camera.peek();
-      this.viewed = true;
+      this.levelled = null;
       this.viewpoint.upright.identity();
       this.viewpoint.from(...view);
     }
@@ -244,9 +245,9 @@ export class Stage extends Viewport {
     const name = camera.peek();
     const set = pose.peek() !== this.pose;
     // Poinsot's plane is at rest if L is.
-    const still =
-      !this.viewed && this.model.shown.peek().poinsot && (this.motion?.about.free ?? null) !== null;
-    const levelled = name === "oblique" && still && momentum.length() > 0 ? this.motion : null;
+    const still = this.model.shown.peek().poinsot && (this.motion?.about.free ?? null) !== null;
+    const turned = name === "oblique" && still && !this.given && momentum.length() > 0;
+    const levelled = turned ? this.motion : null;
     const upright = levelled && level(omega, momentum);
     const before = this.levelled;
     this.levelled = levelled;

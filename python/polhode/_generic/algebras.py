@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from polhode._generic.coefficients import Coefficients
+from polhode._generic.compiled import compiled
 from polhode._generic.exact import by_rows, call, divide, is_symbolic, is_zero
 from polhode._generic.g3_exact import free_root
 from polhode._generic.g3_smooth import COSH, SINHC, horner
@@ -31,6 +32,7 @@ _RESIDUAL = 2.0**-10
 # --- inverse
 
 
+@compiled
 def inverse(
     d: Coefficients, terms: Sequence[Term], generators: int, data: Array, null: Sequence[int] = ()
 ) -> Array:
@@ -150,6 +152,7 @@ def _anticommute(terms: Sequence[Term], held: list[int]) -> bool:
     return all(signs.get((i, j), 0) == -signs.get((j, i), 0) for i in held for j in held if i < j)
 
 
+@compiled
 def _closed_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
     """``e^s (cosh √w + V sinh √w / √w)`` for a number ``V² = w``: boost (w > 0), shift or turn (w < 0)."""
     s, *v = components(m)

@@ -14,6 +14,7 @@ import numpy as np
 
 from polhode._generic import g3_exact, g3_smooth
 from polhode._generic.coefficients import Coefficients
+from polhode._generic.compiled import compiled
 from polhode._generic.exact import by_rows
 from polhode._generic.layout import ALL, eight, grades_of, indices, of_eight
 from polhode._generic.numeric import Array, Numeric, components, require_in_range, squares
@@ -33,20 +34,22 @@ def _function(name: str, d: Coefficients, data: Array, mask: int) -> tuple[Array
 
 
 # Logarithms and roots of even values are even, ``log(−1) = π e1∧e2``, ``√(−1) = e1∧e2``; others principal.
-inverse = functools.partial(_function, "inverse")
-exp = functools.partial(_function, "exp")
-log = functools.partial(_function, "log")
-sqrt = functools.partial(_function, "sqrt")
+inverse = compiled(functools.partial(_function, "inverse"))
+exp = compiled(functools.partial(_function, "exp"))
+log = compiled(functools.partial(_function, "log"))
+sqrt = compiled(functools.partial(_function, "sqrt"))
 
 
 # --- norms
 
 
+@compiled
 def norm_squared(d: Coefficients, data: Array) -> Array:
     """``⟨A ~A⟩``, the sum of the squared components."""
     return squares(d, components(data))
 
 
+@compiled
 def norm(d: Coefficients, data: Array) -> Array:
     """``√⟨A ~A⟩``; its derivative at 0, where it has none, is 0."""
     if isinstance(d, Numeric):
@@ -55,6 +58,7 @@ def norm(d: Coefficients, data: Array) -> Array:
     return d.sqrt(norm_squared(d, data))
 
 
+@compiled
 def normalized(d: Coefficients, data: Array) -> Array:
     """``A/|A|``; a ValueError where A is zero or not finite."""
     if not isinstance(d, Numeric):

@@ -14,6 +14,7 @@ import numpy as np
 
 from polhode._generic import rotors
 from polhode._generic.coefficients import Coefficients
+from polhode._generic.compiled import compiled
 from polhode._generic.exact import by_rows, call, divide, is_zero, sqrt
 from polhode._generic.g3_smooth import horner
 from polhode._generic.numeric import Array, Numeric, components, squares
@@ -27,6 +28,7 @@ _REST = [(-1) ** k / (4 * math.factorial(2 * k + 3)) for k in range(9)]
 _FULL_TURN = "the inverse Jacobian does not exist at a full turn; reduce the angle to less than 2π"
 
 
+@compiled
 def left(d: Coefficients, v: Array, inverse: bool) -> Array:
     """Return the left Jacobians (..., 3, 3) of rotation vectors (..., 3), or their inverses."""
     s, rest = _factors(d, v)

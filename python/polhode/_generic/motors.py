@@ -13,6 +13,7 @@ import math
 from typing import Any
 
 from polhode._generic.coefficients import Coefficients
+from polhode._generic.compiled import compiled
 from polhode._generic.exact import atan2, by_rows, call, divide, is_rounding, is_symbolic, is_zero
 from polhode._generic.exact import sqrt as root_of
 from polhode._generic.g3_exact import free_root, length, log_length
@@ -38,6 +39,7 @@ _NO_MOTOR = "not a motor: M ~M is not a number; divide it by its norm with norma
 # --- exp
 
 
+@compiled
 def exp(d: Coefficients, data: Array) -> Array:
     """``exp M`` of even elements: of the bivector ``I3 β + v n`` a motor, ``cos Θ + C sin Θ/Θ``.
 
@@ -89,6 +91,7 @@ def _exact_exp(row: Parts) -> Parts:
 # --- log
 
 
+@compiled
 def log(d: Coefficients, data: Array) -> Array:
     """``ln|M|`` and the bivector B with ``exp B = M/|M|``, of positive multiples of motors.
 
@@ -143,15 +146,21 @@ def _exact_log(row: Parts) -> Parts:
     return [log_length(s, size), *beta, *v, 0]
 
 
+@compiled
 def sqrt(d: Coefficients, data: Array) -> Array:
     """``√|M| exp(B/2)`` for the logarithm ``ln|M| + B``."""
     logarithm = log(d, data)
-    return exp(d, d.stack([d.divide(x, 2) for x in components(logarithm)]))
+    two = d.divide(2, 1)
+    if isinstance(d, Numeric):
+        # XLA computes cheap operations again for each use, but divisions by what it does not know only once.
+        two = d.where(d.isfinite(data[..., 0]), 2.0, math.nan)
+    return exp(d, d.stack([d.divide(x, two) for x in components(logarithm)]))
 
 
 # --- screws
 
 
+@compiled
 def screw(d: Coefficients, data: Array) -> tuple[Array, Array, Any, Any]:
     """Return axis (..., 3), its point nearest to the origin (..., 3), angle in [0, π] and distance.
 
@@ -184,6 +193,7 @@ def _exact_screw(row: Parts) -> Parts:
     return [*axis, *(divide(x, angle) for x in _cross(axis, v)), angle, _dot(axis, v)]
 
 
+@compiled
 def adjoint(d: Coefficients, data: Array) -> Array:
     """Return matrices (..., 6, 6) of ``M X ~M`` on screws ``X = −½ I3 ω + ½ v n``, in the order ω, v.
 

@@ -30,6 +30,8 @@ class Numeric:
         self.is_complex = xp is np and np.dtype(self.dtype).kind == "c"
         self.real_dtype = np.finfo(self.dtype).dtype if self.is_complex else self.dtype
         self.placed = {} if device is None else {"device": device}
+        # While a function is compiled: what `require` was given, to be checked when values are known.
+        self.required: list[tuple[Array, str]] | None = None
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.xp, name)
@@ -152,6 +154,9 @@ class Numeric:
 
     def require(self, ok: Array, message: str) -> None:
         """Raise a ValueError, with the first index where `ok` is false; nothing while values are unknown."""
+        if self.required is not None:
+            self.required.append((ok, message))
+            return
         if not self.is_concrete(ok) or bool(self.xp.all(ok)):
             return
         if ok.ndim == 0:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from polhode._generic.coefficients import Coefficients
+from polhode._generic.compiled import compiled
 from polhode._generic.numeric import Array
 
 Term = tuple[int, int, int, int]
@@ -21,6 +22,7 @@ Term = tuple[int, int, int, int]
 _WRITTEN_OUT = 128
 
 
+@compiled
 def product(d: Coefficients, terms: Sequence[Term], count: int, a: Array, b: Array) -> Array:
     """Return the product of a (..., K) and b (..., L), batches broadcasting, with `count` components."""
     if d.exact or len(terms) <= _WRITTEN_OUT:

@@ -15,6 +15,7 @@ import numpy as np
 
 from polhode._generic import functions, g3_exact
 from polhode._generic.coefficients import Coefficients
+from polhode._generic.compiled import compiled
 from polhode._generic.exact import atan2, by_rows, call, divide, is_rounding, is_symbolic, is_zero, sqrt
 from polhode._generic.layout import BIVECTOR, EVEN, eight, indices
 from polhode._generic.numeric import Array, Numeric, components, squares
@@ -35,11 +36,13 @@ _REFLECTION = "the matrix has determinant −1, a reflection; a rotation has +1;
 # --- constructors
 
 
+@compiled
 def from_components(d: Coefficients, c4: Array) -> Array:
     """From components (..., 4), divided by their norm."""
     return d.stack(_unit(d, c4, _NO_ROTOR))
 
 
+@compiled
 def from_plane_angle(d: Coefficients, plane: Array, angle: Array) -> Array:
     """``exp(−Bθ/2)`` for planes (..., 3), whose size is ignored, and angles (...)."""
     unit = _unit(d, plane, "a bivector of zero size spans no plane; give a nonzero one")
@@ -48,17 +51,20 @@ def from_plane_angle(d: Coefficients, plane: Array, angle: Array) -> Array:
     return d.stack([d.cos(half), *(-(sin * x) for x in unit)])
 
 
+@compiled
 def from_rotation_vector(d: Coefficients, v: Array) -> Array:
     """From vectors (..., 3) along the axis whose length is the angle."""
     rotor, _ = functions.exp(d, d.divide(-v, 2), BIVECTOR)
     return rotor
 
 
+@compiled
 def from_quaternion(d: Coefficients, wxyz: Array) -> Array:
     """From quaternions (..., 4) in the order w, x, y, z, divided by their norm."""
     return from_components(d, to_quaternion(d, wxyz))
 
 
+@compiled
 def from_vectors(d: Coefficients, a: Array, b: Array) -> Array:
     """Turn the directions of a (..., 3) to those of b the short way.
 
@@ -104,6 +110,7 @@ def _smallest(a: Parts) -> int:
     return min(range(3), key=lambda i: abs(a[i]))
 
 
+@compiled
 def from_matrix(d: Coefficients, m: Array) -> Array:
     """From rotation matrices (..., 3, 3), or the nearest to what is one within 1e-4; scalar part >= 0."""
     if not isinstance(d, Numeric):
@@ -126,8 +133,11 @@ def _nearer_rotation(rows: list[Parts]) -> list[Parts]:
     """Newton's step ``½(X + X⁻ᵀ)`` to the orthogonal polar factor: X⁻ᵀ has cross products as rows."""
     cofactor = [_cross(rows[(i + 1) % 3], rows[(i + 2) % 3]) for i in range(3)]
     determinant = _dot(rows[0], cofactor[0])
+    # Divided last, because XLA computes cheaper operations again for each use: in three nested steps each
+    # component of the matrix a thousand times.
+    twice = 2 * determinant
     return [
-        [0.5 * (x + y / determinant) for x, y in zip(row, other, strict=True)]
+        [(x * determinant + y) / twice for x, y in zip(row, other, strict=True)]
         for row, other in zip(rows, cofactor, strict=True)
     ]
 
@@ -183,12 +193,14 @@ def _shepperd(m: list[Parts]) -> tuple[Parts, list[Parts]]:
 # --- converters
 
 
+@compiled
 def to_quaternion(d: Coefficients, r: Array) -> Array:
     """Return quaternions (..., 4) in the order w, x, y, z, Hamilton's and active."""
     s, x, y, z = components(r)
     return d.stack([s, -x, -y, -z])
 
 
+@compiled
 def to_matrix(d: Coefficients, r: Array) -> Array:
     """Return rotation matrices (..., 3, 3) acting on columns."""
     parts = components(r)
@@ -197,6 +209,7 @@ def to_matrix(d: Coefficients, r: Array) -> Array:
     return d.reshape(nine, (*nine.shape[:-1], 3, 3))
 
 
+@compiled
 def to_rotation_vector(d: Coefficients, r: Array) -> Array:
     """Return vectors (..., 3) along the axis whose length is the angle, at most π."""
     if not isinstance(d, Numeric):
@@ -214,6 +227,7 @@ def _exact_rotation_vector(r: Parts) -> Parts:
     return [divide(-2 * angle * x, size) for x in b]
 
 
+@compiled
 def plane_angle(d: Coefficients, r: Array) -> tuple[Array, Array]:
     """Return unit planes (..., 3) and angles (...) in [0, 2π]; for R = ±1 the plane is e1∧e2."""
     if not isinstance(d, Numeric):
@@ -239,11 +253,13 @@ def angle(r: Array) -> Any:
     ]
 
 
+@compiled
 def log(d: Coefficients, r: Array) -> Array:
     """Return the bivectors (..., 3) of size at most π whose exp is R."""
     return functions.log(d, r, EVEN)[0][..., 1:]
 
 
+@compiled
 def power(d: Coefficients, r: Array, n: Any) -> Array:
     """``exp(n log R)`` for numbers n (...); whole powers of exact rotors by products."""
     if d.exact and isinstance(n, int):
@@ -265,6 +281,7 @@ def _whole_power(d: Coefficients, r: Array, n: int) -> Array:
 # --- action
 
 
+@compiled
 def multiply(d: Coefficients, left: Array, right: Array) -> Array:
     """``S R``, not normalized: turns by R first."""
     s, *a = components(left)
@@ -273,6 +290,7 @@ def multiply(d: Coefficients, left: Array, right: Array) -> Array:
     return d.stack([s * t - _dot(a, b), *plane])
 
 
+@compiled
 def apply(d: Coefficients, r: Array, data: Array, mask: int) -> Array:
     """``R X ~R`` for the components (..., K) of the grades in the mask; scalars and trivectors stay."""
     rotor, m = components(r), eight(d, data, mask)

@@ -90,6 +90,8 @@ def test_address_is_written_seldom_and_not_while_the_time_runs(opened):
         History.prototype.pushState = () => { window.writes = NaN; };
     }""")
     assert page.page.evaluate("history.length") == 2
+    page.until("model.playing.value && model.time.value > 1")
+    assert fields(page) == {}
     # Many changes, one after the other, are written once.
     page.page.evaluate(
         f"""async () => {{

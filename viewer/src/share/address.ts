@@ -14,8 +14,9 @@ const PAUSE = 400;
 /** The address of a page, whose fragment holds what the page shows. */
 export class Address {
   private timer: ReturnType<typeof setTimeout> | undefined;
-  /** The fragment that was read or written last, with which nothing has changed. */
+  /** The address that was written last, and what in it is compared with the next one. */
   private last: string | null = null;
+  private key: string | null = null;
 
   /**
    * `own` is the document of the page. An address that is `kept` always has what is shown; another one, of a page with
@@ -34,9 +35,9 @@ export class Address {
   }
 
   /** Shows what the address holds. A Problem if it is malformed; nothing has changed then. */
-  async read(): Promise<void> {
+  async read(hash = location.hash): Promise<void> {
     try {
-      await restore(this.model, await stateOfFragment(location.hash.slice(1)), this.own());
+      await restore(this.model, await stateOfFragment(hash.slice(1)), this.own());
     } catch (error) {
       throw new Problem(`the part of the address after # was ignored: ${words(error)}`);
     }
@@ -70,9 +71,11 @@ export class Address {
       clearTimeout(this.timer);
       this.timer = setTimeout(() => void this.write(lessons), PAUSE);
     });
-    const changed = (): void => {
-      if (location.href === this.last || location.hash === "") return;
-      this.read().catch((error: unknown) => (model.problem.value = words(error)));
+    // The address of the event: that of the page may have been written in the meantime.
+    const changed = ({ newURL }: HashChangeEvent): void => {
+      const { hash } = new URL(newURL);
+      if (newURL === this.last || hash === "") return;
+      this.read(hash).catch((error: unknown) => (model.problem.value = words(error)));
     };
     window.addEventListener("hashchange", changed);
     return () => {
@@ -88,9 +91,12 @@ export class Address {
     const { model } = this;
     if (model.solving.peek() || model.motion.peek() === null) return;
     const address = await this.written(lessons).catch(() => null);
-    if (address === null || address === this.last) return;
-    const first = this.last === null;
-    this.last = address;
+    if (address === null) return;
+    // While the time runs, it is not a change.
+    const key = model.playing.peek() ? address.replace(/&t=[^&]*/u, "") : address;
+    if (key === this.key) return;
+    const first = this.key === null;
+    [this.key, this.last] = [key, address];
     if (first) return;
     try {
       history.replaceState(history.state, "", address);

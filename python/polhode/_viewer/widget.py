@@ -32,8 +32,8 @@ else:
 CAMERAS = ("oblique", "along e1", "along e2", "along e3", "along L", "with the body")
 THEMES = ("auto", "light", "dark")
 DRAWN = (
-    *("body", "bodyFrame", "spaceFrame", "omega", "momentum", "axial", "poinsot", "polhode", "herpolhode"),
-    *("trace", "energy", "ghost", "gravity", "torque", "sources", "labels"),
+    *("body", "bodyFrame", "spaceFrame", "omega", "momentum", "torque", "sources", "axial", "poinsot"),
+    *("polhode", "herpolhode", "trace", "energy", "ghost", "gravity", "labels"),
 )
 
 _VIEW = ("time", "playing", "speed", "camera", "theme", "shown")
@@ -80,9 +80,8 @@ class Viewer(anywidget.AnyWidget):
     theme
         "auto", "light" or "dark".
     shown
-        Visibility by name: body, bodyFrame, spaceFrame, omega, momentum, axial, poinsot, polhode,
-        herpolhode, trace, energy, ghost, gravity, torque, sources, labels. Names that are left out do
-        not change.
+        Visibility by name: body, bodyFrame, spaceFrame, omega, momentum, torque, sources, axial, poinsot,
+        polhode, herpolhode, trace, energy, ghost, gravity, labels. Names that are left out do not change.
     state
         The `State` at `time` of the motion of `scene`, as the page reports it. After time or scene were set
         here, until the page has answered, it is computed here, with the errors of `run`. None if `time` is.

@@ -9,8 +9,8 @@ import { hasEnergyView } from "../stage/energy.ts";
 import { actingOn, largestTorque } from "../stage/figure.ts";
 import { entriesOf } from "./entries.ts";
 
-/** The picture has room for the whole legend from this width on, in px; else it is folded at first. */
-const ROOM = 430;
+/** The picture has room for the whole legend from this size on, in px; else it is folded at first. */
+const ROOM = { width: 430, height: 330 };
 
 /**
  * The names of what the picture shows. Pointing at one emphasizes the thing, pressing it hides the thing; it stays in the
@@ -21,7 +21,8 @@ export function Legend({ model }: { model: Model }) {
   const open = useSignal<boolean | null>(null);
   const hidden = useSignal<ReadonlySet<keyof Shown>>(new Set());
   useEffect(() => {
-    open.value ??= (place.current?.parentElement?.clientWidth ?? 0) >= ROOM;
+    const width = place.current!.parentElement!.clientWidth;
+    open.value ??= width >= ROOM.width && place.current!.closest(".seen")!.clientHeight >= ROOM.height;
     return () => (model.pointed.value = null);
   }, []);
   const entries = useComputed(() => {

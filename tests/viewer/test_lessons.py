@@ -277,7 +277,7 @@ MALFORMED = {
     STEP + "\n<!-- do: camra = along L -->\n": "x.md:9: error: unknown setting `camra`; write one of",
     STEP + "\n<!-- do: camera = above -->\n": "x.md:9: error: camera: unknown name `above`; write one of",
     STEP + "\n<!-- do: time = soon -->\n": "x.md:9: error: time: `soon` is not a number; write",
-    STEP + "\n<!-- do: show = torques -->\n": "x.md:9: error: show: unknown name `torques`; write one of body",
+    STEP + "\n<!-- do: show = torques -->\n": "x.md:9: error: show: unknown name `torques`; write one of",
     STEP + "\n<!-- do: play = 2 -->\n": "x.md:9: error: play takes no value, got `2`",
     STEP + "\n<!-- do: -->\n": "x.md:9: error: no settings; write for example",
     STEP + "\n<!-- do: let a = e1 -->\n": "x.md:9: error: `let a` changes a line of formulas, but",

@@ -107,7 +107,7 @@ def test_a_missing_bundle_is_reported_with_the_remedy(tmp_path, monkeypatch, cap
 
 @needs_bundle
 def test_pages_are_small():
-    """The core and the drawing library are 1.5 MB of it; compressed, as servers send it, a page has 0.85 MB."""
+    """The core and the drawing library take 1.5 MB; compressed, as servers send it, a page has 0.85 MB."""
     text = _html.page(document.document(EXAMPLES / "toutatis.toml"))
     assert len(text.encode()) < 1_800_000
     assert len(Page(text).all("script")) == 2

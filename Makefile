@@ -11,7 +11,7 @@ export PIP_QUIET := 1
 
 VIEWER := python/polhode/_viewer/viewer.js
 
-.PHONY: setup package demo test test-slow test-all lint bench docs wheel viewer check-viewer clean
+.PHONY: setup package demo test test-slow test-all lint bench instructions docs wheel viewer check-viewer clean
 
 setup: package
 	@$(MAKE) --no-print-directory .venv/.tools
@@ -102,6 +102,10 @@ bench: .venv/.peers
 	$(BIN)/python benchmarks/accelerator.py
 	cargo run --quiet --locked --release -p polhode-ga --example batch | tee build/bench-core.txt
 	cargo run --quiet --locked --release -p polhode-rigid --example ensemble | tee build/bench-ensembles.txt
+
+# Fails where a core kernel takes more instructions than it did; benchmarks/instructions.py --update after a change.
+instructions: .venv/.python
+	$(BIN)/python benchmarks/instructions.py
 
 # Wheels for Linux with the viewer and the examples in them, and the source distribution. Built with zig, they need
 # glibc >= 2.17, whatever version this machine has.

@@ -435,6 +435,15 @@ def test_captions_of_scenes_do_not_answer_the_questions_of_a_lesson(lesson):
     assert page.page.locator(".caption").count() == 0
 
 
+def test_charts_do_not_answer_the_questions_of_a_lesson(lesson):
+    page = lesson(ROOT / "examples/lessons/book-thrown-three-ways.md")
+    page.page.locator(".strip").wait_for()
+    page.page.locator("#lesson-next").click()
+    page.page.locator(".strip").wait_for(state="detached")
+    page.page.locator(".guess").first.click()
+    page.page.locator(".strip").wait_for()
+
+
 @pytest.mark.parametrize("name", ["why-l-stays-and-omega-wanders", "half-angles"])
 def test_phrases_turn_to_the_page_of_their_step(name, lesson):
     page = lesson(ROOT / f"examples/lessons/{name}.md")

@@ -47,6 +47,11 @@ export class Lessons {
     return this.lesson.value?.steps[this.index.value] ?? null;
   }
 
+  /** Whether the step has a question that is not answered yet. */
+  get asks(): boolean {
+    return this.step?.question != null && !this.answers.value.has(this.index.value);
+  }
+
   /** Shows a step from its start. */
   go(index: number): void {
     const step = this.lesson.value?.steps[index];

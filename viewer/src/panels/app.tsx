@@ -125,7 +125,8 @@ function MotionPage(
   return (
     <div class="motion">
       <Picture model={model} palette={palette} hands={hands} formulas={formulas} compact={compact} />
-      <Playback model={model} />
+      {/* The chart shows what is to come, which may answer the question of a lesson. */}
+      <Playback model={model} chart={!lessons.asks} />
       <aside class="panels" aria-label="Values and controls">
         {learning && <LessonPanel lessons={lessons} />}
         {panels.map(

@@ -17,7 +17,7 @@ const STEPS: [id: string, label: string, press: string, icon: IconName, act: (mo
 ];
 
 /** Play, step, speed and time. */
-export function Playback({ model }: { model: Model }) {
+export function Playback({ model, chart }: { model: Model; chart: boolean }) {
   const first = useFirst(model);
   const about = model.about.value;
   if (!about) return null;
@@ -45,7 +45,7 @@ export function Playback({ model }: { model: Model }) {
         </span>
         <Speed model={model} />
       </div>
-      <Strip model={model} about={about} first={first} />
+      {chart && <Strip model={model} about={about} first={first} />}
     </section>
   );
 }

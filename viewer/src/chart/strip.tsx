@@ -34,7 +34,7 @@ export function Strip(props: { model: Model; about: About; first: ReadonlySignal
           id="strip-toggle"
           class="quiet"
           aria-expanded={open.value === true}
-          aria-label="Chart of ω in the body"
+          aria-label={open.value ? "Chart of ω in the body" : undefined}
           title={open.value ? "Fold the chart" : "Chart of ω in the body"}
           onClick={() => (open.value = !open.value)}
         >

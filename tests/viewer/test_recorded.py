@@ -30,7 +30,8 @@ def test_properties_are_the_same(name, core, tmp_path):
     trajectory = ph.Scene.read(path).run()
     found = json.loads(document.document(trajectory)["recorded"]["about"])
     expected, _ = core.motion(SCENES[name], [0.0], name="a.toml")
-    assert set(found) == set(expected)
+    # The core finds no events in the page.
+    assert set(found) - {"events"} == set(expected)
     for key in expected.keys() - OWN:
         assert found[key] == close(expected[key]), key
     assert list(map(law, found["laws"])) == list(map(law, expected["laws"]))

@@ -26,11 +26,11 @@ function weigh(material: Material, hit: boolean | null): void {
   const opaque = !material.transparent && material.userData["opacity"] === undefined;
   if (opaque && !(material instanceof ShaderMaterial)) return;
   if (material instanceof ShaderMaterial) {
-    const { opacity, width } = material.uniforms;
-    if (!opacity || !width) return;
-    const base = (material.userData["base"] ??= { opacity: opacity.value, width: width.value });
-    opacity.value = base.opacity * (hit === false ? PALE : 1);
-    width.value = base.width * (hit === true ? STRONG.width : 1);
+    const { opacity, weight } = material.uniforms;
+    if (!opacity || !weight) return;
+    const base: number = (material.userData["opacity"] ??= opacity.value);
+    opacity.value = base * (hit === false ? PALE : 1);
+    weight.value = hit === true ? STRONG.width : 1;
     return;
   }
   const base: number = (material.userData["opacity"] ??= material.opacity);

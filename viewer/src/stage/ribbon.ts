@@ -30,6 +30,8 @@ const VERTEX = /* glsl */ `
   attribute vec2 along;
   uniform vec2 screen;
   uniform float width;
+  // A factor of the width, for emphasis.
+  uniform float weight;
   varying float parameter;
 
   vec2 direction(vec2 to) {
@@ -49,7 +51,7 @@ const VERTEX = /* glsl */ `
     // At a bend the ribbon is wider along the bisector, at a cusp infinitely wide: limited.
     float bend = max(dot(tangent, going), dot(tangent, coming));
     float miter = 1.0 / max(bend, 0.6);
-    here.xy += vec2(-tangent.y, tangent.x) * along.x * miter * width / screen * here.w;
+    here.xy += vec2(-tangent.y, tangent.x) * along.x * miter * width * weight / screen * here.w;
     parameter = along.y;
     gl_Position = here;
   }
@@ -124,6 +126,7 @@ export class Ribbon {
         uniforms: {
           screen,
           width: this.width,
+          weight: { value: 1 },
           color,
           opacity: { value: seen },
           now: this.now,

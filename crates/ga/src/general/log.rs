@@ -73,8 +73,9 @@ impl Calculus {
     ///
     /// With up to five generators it is found if it exists, up to rounding: with two or more generators of either sign,
     /// a large boost may hide a rotation, and a bivector B near null ones may not be found if |B| is more than 1000: of a
-    /// rotor R, `exp(log R)` may be off by `32 ε (|R|² + |B|²)`, and by more than √ε it is an error. With more generators it is found if the angles of B over its planes sum to
-    /// less than π, and in most other cases. Otherwise it is an error.
+    /// rotor R, `exp(log R)` may be off by `32 ε (|R|² + |B|²)`, and by more than √ε it is an error. With more generators
+    /// it is found if the angles of B over its planes sum to less than π, and in most other cases. Otherwise it is an
+    /// error.
     ///
     /// Parts with null generators that are not a versor's, such as rounding left where larger parts cancelled, are
     /// replaced by the nearest: `exp(log M)` is M to `√ε` of its largest part.

@@ -100,8 +100,8 @@ def test_large_versors_have_logarithms(signature, dtype):
     M = 3 * M[(norms > largest / 4) & (norms < largest)].astype(dtype)
     assert len(M) > 200
     lengths = size(M) / 3
-    # The errors of M~M and of the norm that divides M are ε|R|², those of a bivector near null ones, which is larger
-    # than its rotor, ε|B|²; 32 roundings of sums of products.
+    # The errors of M~M and of the norm that divides M are ε|R|², those of a bivector near null ones, which is
+    # larger than its rotor, ε|B|²; 32 roundings of sums of products.
     log = M.log()
     error = size(log.exp() - M) / size(M)
     rounding = 32 * EPS[dtype] * (lengths**2 + size(log) ** 2)

@@ -149,9 +149,9 @@ def test_push_by_the_pointer(hands, tmp_path):
     assert np.linalg.norm(after["momentum_space"] - before["momentum_space"]) > 0
     assert_follows(page, tmp_path)
     scene, box = page.scene(), page.page.locator(".stage").bounding_box()
-    page.page.mouse.move(box["x"] + 20, box["y"] + box["height"] - 20)
+    page.page.mouse.move(box["x"] + 20, box["y"] + 80)
     page.page.mouse.down()
-    page.page.mouse.move(box["x"] + 80, box["y"] + box["height"] - 40)
+    page.page.mouse.move(box["x"] + 80, box["y"] + 100)
     page.page.mouse.up()
     settle(page)
     assert direction(canvas) != pytest.approx(camera, rel=1e-3)

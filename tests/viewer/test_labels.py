@@ -75,6 +75,6 @@ def test_labels_do_not_jump_while_the_motion_plays(opened):
             jumps += np.abs(found[name][:2] - before[name][:2]).max() > 21
         before = found
     assert seen > 300
-    # Labels whose ways cross change places at once, because otherwise one would cover the other; 13 of 540 here,
+    # Labels whose ways cross change places at once, lest one covers the other; here 13 of 540 do,
     # where names such as "any axis across" are long.
     assert jumps <= seen / 30

@@ -332,8 +332,10 @@ def test_ctrl_c_leaves_the_old_film(name, scene, tmp_path):
     assert "Traceback" not in printed
     assert target.read_bytes() == b"old"
     assert sorted(path.name for path in tmp_path.iterdir()) == [name, "small.toml"]
-    # The last of them ends a little after the command.
-    while any(command_of(pid) == command for pid, command in begun.items()):
+    # The last of them ends a little after the command. One that ended before its command was read has none.
+    end = time.monotonic() + 60
+    while left := [command for pid, command in begun.items() if command and command_of(pid) == command]:
+        assert time.monotonic() < end, left
         time.sleep(0.05)
 
 

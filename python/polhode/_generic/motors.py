@@ -150,10 +150,8 @@ def _exact_log(row: Parts) -> Parts:
 def sqrt(d: Coefficients, data: Array) -> Array:
     """``√|M| exp(B/2)`` for the logarithm ``ln|M| + B``."""
     logarithm = log(d, data)
-    two = d.divide(2, 1)
-    if isinstance(d, Numeric):
-        # XLA computes cheap operations again for each use, but divisions by what it does not know only once.
-        two = d.where(d.isfinite(data[..., 0]), 2.0, math.nan)
+    # XLA computes cheap operations again for each use, but divisions by what it does not know only once.
+    two = d.where(d.isfinite(data[..., 0]), 2.0, math.nan) if isinstance(d, Numeric) else 2
     return exp(d, d.stack([d.divide(x, two) for x in components(logarithm)]))
 
 

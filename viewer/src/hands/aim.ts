@@ -148,8 +148,8 @@ class Pull implements Holding {
   }
 
   drag(pointer: Vector2): void {
-    const { u, beside } = under(rayAt(pointer, this.sight!.camera), this.globe, this.far);
-    if (beside) this.far = false;
+    const { u, far } = under(rayAt(pointer, this.sight!.camera), this.globe, this.far);
+    this.far = far;
     this.set(u);
   }
 

@@ -3,6 +3,7 @@ import { Matrix4, type Vector2, Vector3 } from "three";
 import { State } from "../core/core.ts";
 import { significant } from "../format/numbers.ts";
 import type { Palette } from "../palette.ts";
+import { semiAxesAt } from "../stage/energy.ts";
 import { quaternion, vector } from "../stage/rotor.ts";
 import type { EnergyTool, Sight } from "../stage/tools.ts";
 import { isBehind, moved, rayAt, under } from "./globe.ts";
@@ -76,17 +77,14 @@ export class EnergyGrip implements EnergyTool, Holding {
     const { sight } = this;
     const row = this.hands.grab(byKey);
     if (!row || !sight) return false;
-    const double = vector(row, State.omegaBody).dot(vector(row, State.momentumBody));
-    const { moments } = this.hands.model.about.peek()!.body;
-    this.axes.fromArray(moments.map((moment) => Math.sqrt(double / moment)));
+    this.axes = semiAxesAt(row, this.hands.model.about.peek()!.body.moments);
     this.far = isBehind(this.now(row), this.globe, sight.camera);
     return true;
   }
 
   drag(pointer: Vector2): void {
-    const { u, beside } = under(rayAt(pointer, this.sight!.camera), this.globe, this.far);
-    // Beyond the edge it comes round to the front.
-    if (beside) this.far = false;
+    const { u, far } = under(rayAt(pointer, this.sight!.camera), this.globe, this.far);
+    this.far = far;
     this.set(u);
   }
 
@@ -113,9 +111,7 @@ export class EnergyGrip implements EnergyTool, Holding {
   }
 
   private on(omega: Vector3, { row }: Sight): Vector3 {
-    const double = vector(row, State.omegaBody).dot(vector(row, State.momentumBody));
-    const { moments } = this.hands.model.about.peek()!.body;
-    return this.unit(omega, new Vector3(...moments.map((moment) => Math.sqrt(double / moment))));
+    return this.unit(omega, semiAxesAt(row, this.hands.model.about.peek()!.body.moments));
   }
 
   private unit(omega: Vector3, axes: Vector3): Vector3 {

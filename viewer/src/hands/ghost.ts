@@ -60,7 +60,8 @@ export class Ghost {
     try {
       const bivector = tilted(about.start.omega_body, about.body.frame);
       const other = model.core.merged(scene, fields("initial", { spin: { bivector } }));
-      const motion = await this.solver.solve({ scene: other, ...model.source });
+      const { name, files } = model.source;
+      const motion = await this.solver.solve({ scene: other, name, files });
       if (motion && number === this.number) this.become(motion);
       else motion?.close();
     } catch (error) {

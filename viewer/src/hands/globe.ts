@@ -8,9 +8,10 @@ export function rayAt(pointer: Vector2, camera: Camera): Ray {
 
 /**
  * The point of a unit sphere under a ray, where `globe` takes the sphere to the world, as an ellipsoid perhaps: the
- * nearer one, or the farther one if `far`. For a ray beside the sphere, the point of its edge that is next to the ray.
+ * nearer one, or the farther one if `far`. For a ray beside the sphere, the point of its edge that is next to the ray:
+ * from there a drag comes round to the front, and `far` ends.
  */
-export function under(ray: Ray, globe: Matrix4, far: boolean): { u: Vector3; beside: boolean } {
+export function under(ray: Ray, globe: Matrix4, far: boolean): { u: Vector3; far: boolean } {
   const into = globe.clone().invert();
   const from = ray.origin.clone().applyMatrix4(into);
   const along = linear(into, ray.direction);
@@ -18,7 +19,7 @@ export function under(ray: Ray, globe: Matrix4, far: boolean): { u: Vector3; bes
   const square = b * b - a * c;
   const root = Math.sqrt(Math.max(square, 0));
   const u = from.addScaledVector(along, (far ? root - b : -root - b) / a).normalize();
-  return { u, beside: square < 0 };
+  return { u, far: far && square >= 0 };
 }
 
 /** A point of a unit sphere moved by an angle to the right and up on the screen. */

@@ -1,6 +1,6 @@
 import type { ReadonlySignal } from "@preact/signals";
 import { Group, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
-import { type About, State } from "../core/core.ts";
+import { type About, State, type Triple } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
 import type { CurveName, Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
@@ -8,7 +8,6 @@ import type { Palette } from "../palette.ts";
 import { axisNames, ordered } from "./axes.ts";
 import { REACH } from "./figure.ts";
 import { Hover } from "./hover.ts";
-import { named } from "./names.ts";
 import { type Curve, neighbours, separatrix, through } from "./polhodes.ts";
 import type { Ribbon } from "./ribbon.ts";
 import { AXES, quaternion, vector } from "./rotor.ts";
@@ -21,6 +20,12 @@ const LIFTED = 1.004;
 /** The radius of the dot at the tip of Ω, and its size while it is marked. */
 const DOT = 0.045;
 const MARKED = 1.8;
+
+/** The semi-axes √(2T/i) of the energy ellipsoid of a state, along the principal axes, rad/s. */
+export function semiAxesAt(row: Float64Array, moments: Triple): Vector3 {
+  const doubleKinetic = vector(row, State.omegaBody).dot(vector(row, State.momentumBody));
+  return new Vector3(...moments.map((moment) => Math.sqrt(doubleKinetic / moment)));
+}
 
 /**
  * The energy ellipsoid of a free body in body axes: all Ω of its energy. On it are its polhode, neighbours, the
@@ -50,13 +55,8 @@ export class EnergyView extends Viewport {
       const { motion, row, marked, hovered, shown } = model;
       for (const watched of [motion, row, marked, hovered, shown, palette]) void watched.value;
     });
-    this.hover = new Hover(
-      host,
-      this.curves,
-      { camera: this.viewpoint.camera, size: this.screen.value },
-      (name) => named(name, model),
-      (name) => (model.hovered.value = name),
-    );
+    const view = { camera: this.viewpoint.camera, size: this.screen.value };
+    this.hover = new Hover(host, this.curves, view, model);
   }
 
   override home(): void {
@@ -97,8 +97,7 @@ export class EnergyView extends Viewport {
     const { moments, frame } = motion.about.body;
     const row = firstRow(motion);
     const omega = vector(row, State.omegaBody);
-    const doubleKinetic = omega.dot(vector(row, State.momentumBody));
-    const semiAxes = new Vector3(...moments.map((moment) => Math.sqrt(doubleKinetic / moment)));
+    const semiAxes = semiAxesAt(row, moments);
     this.rate = REACH / Math.max(...semiAxes.toArray());
     semiAxes.multiplyScalar(this.rate);
     this.globe.compose(new Vector3(), quaternion(frame), semiAxes);

@@ -1,11 +1,12 @@
 import type { Camera, Vector2 } from "three";
-import type { CurveName } from "../model/model.ts";
+import type { CurveName, Model } from "../model/model.ts";
 import type { Curves } from "./curves.ts";
+import { named } from "./names.ts";
 
 /** CSS pixels from the pointer to the text. */
 const AWAY = 14;
 
-/** Reports the curve under the pointer, and names it beside the pointer. */
+/** Says to the model which curve is under the pointer, and names it beside the pointer. */
 export class Hover {
   private readonly tip = document.createElement("p");
   private request = 0;
@@ -15,8 +16,7 @@ export class Hover {
     private readonly host: HTMLElement,
     private readonly curves: Curves,
     private readonly view: { camera: Camera; size: Vector2 },
-    private readonly describe: (name: CurveName) => string,
-    private readonly pointed: (name: CurveName | null) => void,
+    private readonly model: Model,
   ) {
     this.tip.className = "curve-tip";
     this.tip.setAttribute("role", "tooltip");
@@ -55,8 +55,8 @@ export class Hover {
     if (name !== this.name) {
       this.name = name;
       this.tip.hidden = name === null;
-      if (name !== null) this.tip.textContent = this.describe(name);
-      this.pointed(name);
+      if (name !== null) this.tip.textContent = named(name, this.model);
+      this.model.hovered.value = name;
     }
     if (name === null) return;
     const { clientWidth: width, clientHeight: height } = this.host;

@@ -15,7 +15,7 @@ import { actingOn, type Figure, figureOf } from "./figure.ts";
 import { frame, principal } from "./frames.ts";
 import { gravity } from "./gravity.ts";
 import { Hover } from "./hover.ts";
-import { named, revealed } from "./names.ts";
+import { revealed } from "./names.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Paths } from "./paths.ts";
 import { level, poinsot } from "./poinsot.ts";
@@ -92,13 +92,8 @@ export class Stage extends Viewport {
       for (const watched of [motion, row, shown, marked, pointed, hovered, camera, pose, playing, palette])
         void watched.value;
     });
-    this.hover = new Hover(
-      host,
-      this.curves,
-      { camera: this.viewpoint.camera, size: this.screen.value },
-      (name) => named(name, model),
-      (name) => (model.hovered.value = name),
-    );
+    const view = { camera: this.viewpoint.camera, size: this.screen.value };
+    this.hover = new Hover(host, this.curves, view, model);
     this.viewpoint.moved = () => {
       this.pose = this.viewpoint.pose;
       model.pose.value = this.pose;

@@ -258,10 +258,55 @@ def test_values_are_given_by_keyword_or_mapping():
         ph.evaluate("a1", a_1=e1, a1=e1)
     with pytest.raises(TypeError, match=r'"a b" is not a name'):
         f({"a": e1, "b": e2, "a b": e3})
-    with pytest.raises(TypeError, match="at most one mapping"):
+    with pytest.raises(TypeError, match="at most one mapping .* arguments="):
         f(e1, e2)
     with pytest.raises(TypeError, match="as a mapping by name, got Multivector"):
         f(e1)
+
+
+@pytest.mark.parametrize("arguments", ["R a b", "R, a, b", ("R", "a", "b"), iter(["R", "a", "b"])])
+def test_values_are_given_by_position(arguments):
+    R, batch = ph.Rotor.from_plane_angle(e1 ^ e2, 1.0), ph.vector([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+    f = ph.formula("R a ~R + b", arguments=arguments)
+    assert f.arguments == ("R", "a", "b")
+    for a, b in ((e1, e2), (batch, e2), (e1, 2.5), (sympy_vector(), e2)):
+        expected = ph.evaluate("R a ~R + b", R=R, a=a, b=b)
+        for _ in range(2):  # the second call is cached
+            for value in (f(R, a, b), f(R, a, b=b), f(R, b=b, a=a), f({"R": R, "a": a, "b": b})):
+                assert np.all(value == expected)
+
+
+def sympy_vector():
+    x = pytest.importorskip("sympy").Symbol("x")
+    return x * ph.multivector([0, 1, 0, 0, 0, 0, 0, 0])
+
+
+def test_wrong_positions_are_errors():
+    f = ph.formula("a b", arguments="a b")
+    with pytest.raises(TypeError, match=r"takes 2 values by position \(a, b\), got 3"):
+        f(e1, e2, e3)
+    with pytest.raises(TypeError, match=r'"a" is given both by position and by name'):
+        f(e1, a=e2)
+    with pytest.raises(ph.FormulaError, match="`b` has no value"):
+        f(e1)
+    with pytest.raises(TypeError, match="a is a str"):
+        f("3", e2)
+    with pytest.raises(TypeError, match=r'"a1" and "a_1" are the same name'):
+        ph.formula("a1", arguments="a1 a_1")
+    for name in ("2", "__name__", "a-b"):
+        with pytest.raises(TypeError, match="is not a name in formulas"):
+            ph.formula("a", arguments=[name])
+    with pytest.raises(TypeError, match=r"arguments must be names"):
+        ph.formula("a", arguments=[1])
+
+
+def test_arguments_are_part_of_a_formula():
+    f = ph.formula("a b", arguments="b a")
+    assert f(e1, e2) == e2 * e1
+    assert f != ph.formula("a b")
+    assert f == pickle.loads(pickle.dumps(f)) == ph.formula("a b", arguments=("b", "a"))
+    assert hash(f) == hash(ph.formula("a b", arguments=("b", "a")))
+    assert repr(f) == "ph.formula('a b', arguments=('b', 'a'))"
 
 
 def test_invalid_values_are_named():

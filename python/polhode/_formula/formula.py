@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -32,12 +32,13 @@ class Formula:
     Juxtaposition is the geometric product; ``∧`` (``^``), ``·`` (``|``) and ``×``, the commutator, bind
     tighter than it. One-letter names may run together: ``RaR̃`` is ``R a ~R``.
 
-    Call it with values by name, as keywords or, for names such as ``R'`` and ``a∥``, in a mapping:
+    Call it with values by name, as keywords or, for names such as ``R'`` and ``a∥``, in a mapping; or by
+    position, which is faster, in the order of `arguments` if the formula was made with these. Values are
     multivectors, rotors, linear maps, numbers, and arrays as batches of numbers. Batches broadcast,
     coefficients are of any kind, and grades are checked before anything is computed. Names that the formula
     does not use are ignored. The value of an equation is an `Agreement`.
 
-    Create it with `formula`. Formulas of the same text, algebra and definitions are equal.
+    Create it with `formula`. Formulas of the same text, algebra, definitions and arguments are equal.
     """
 
     # A native function in this slot makes calls fast; JAX needs weak references.
@@ -55,6 +56,11 @@ class Formula:
     def text(self) -> str:
         """The text as it was given."""
         return self._core.text
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """The names of the values that a call takes by position; empty if it takes values by name only."""
+        return tuple(self._core.arguments)
 
     def __str__(self) -> str:
         """The formula in canonical spelling."""
@@ -164,23 +170,29 @@ class Formula:
         return gradient(self._core, names)
 
     def __repr__(self) -> str:
-        return f"ph.formula({self.text!r})"
+        arguments = f", arguments={self.arguments!r}" if self.arguments else ""
+        return f"ph.formula({self.text!r}{arguments})"
 
     def _key(self) -> tuple[Any, ...]:
-        return self.text, self._core.algebra, tuple(self._core.definitions)
+        return self.text, self._core.algebra, tuple(self._core.definitions), self.arguments
 
     def __eq__(self, other: object) -> bool:
         return self._key() == other._key() if isinstance(other, Formula) else NotImplemented
 
     def __hash__(self) -> int:
-        return hash((self.text, tuple(self._core.definitions)))
+        return hash((self.text, tuple(self._core.definitions), self.arguments))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        text, algebra, definitions = self._key()
-        return formula, (text, algebra, dict(definitions))
+        text, algebra, definitions, arguments = self._key()
+        return formula, (text, algebra, dict(definitions), arguments)
 
 
-def formula(text: str, algebra: Algebra | None = None, define: Mapping[str, str] | None = None) -> Formula:
+def formula(
+    text: str,
+    algebra: Algebra | None = None,
+    define: Mapping[str, str] | None = None,
+    arguments: str | Iterable[str] = (),
+) -> Formula:
     """Return a formula, ready to be called on values.
 
     Parameters
@@ -192,11 +204,16 @@ def formula(text: str, algebra: Algebra | None = None, define: Mapping[str, str]
     define
         Values and functions defined by formulas, ``{"c": "0.1 e3", "V(x)": "½ x·x"}``; each may use those
         before it.
+    arguments
+        Names of values that a call takes by position, in this order: ``("R", "x", "Ω")`` or ``"R x Ω"``. Each
+        value can also be given by name.
 
     Raises
     ------
     FormulaError
         If the text is not a formula.
+    TypeError
+        If a name in `arguments` is not one, or occurs twice.
     """
     if not isinstance(text, str):
         raise TypeError(f"a formula must be a string, got {type(text).__name__}")
@@ -208,7 +225,10 @@ def formula(text: str, algebra: Algebra | None = None, define: Mapping[str, str]
     for definition in definitions:
         if not all(isinstance(part, str) for part in definition):
             raise TypeError(f"define must map strings to strings, got {definition[0]!r}: {definition[1]!r}")
-    return Formula(_native.Formula(text, algebra, definitions))
+    names = arguments.replace(",", " ").split() if isinstance(arguments, str) else list(arguments)
+    if not all(isinstance(name, str) for name in names):
+        raise TypeError(f'arguments must be names such as "R x Ω" or ("R", "x", "Ω"), got {arguments!r}')
+    return Formula(_native.Formula(text, algebra, definitions, names))
 
 
 def evaluate(text: str, values: Mapping[str, Any] | None = None, /, **named: Any) -> Any:
@@ -227,12 +247,20 @@ def _compiled(text: str) -> Formula:
 
 def called(core: _native.Formula, arguments: tuple[Any, ...], named: dict[str, Any] | None) -> Any:
     """Return the value of a formula over values of any kind; the binding calls this."""
-    if len(arguments) > 1:
-        raise TypeError(
-            f"a formula takes keywords and at most one mapping of values, got {len(arguments)} arguments"
-        )
+    if len(arguments) > 1 or (arguments and core.arguments and not isinstance(arguments[0], Mapping)):
+        raise TypeError(_misfit(core, len(arguments)))
     program, known = compiled(core, given(core, arguments[0] if arguments else None, named or {}))
     return evaluated(core.text, program, known)
+
+
+def _misfit(core: _native.Formula, count: int) -> str:
+    if core.arguments:
+        names = ", ".join(core.arguments)
+        return f"this formula takes {len(core.arguments)} values by position ({names}), got {count}"
+    return (
+        f"a formula takes keywords and at most one mapping of values, got {count} values by position; name "
+        'these when the formula is made: ph.formula(text, arguments="R x Ω")'
+    )
 
 
 _native.register("call_formula", called)

@@ -18,6 +18,9 @@ use std::sync::Mutex;
 /// Maximum number of cached calls of a formula.
 const KEPT: usize = 8;
 
+/// A value, after its name.
+pub(crate) type Named<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+
 /// The calls, the latest first.
 #[derive(Default)]
 pub(crate) struct Calls(Mutex<Vec<Call>>);
@@ -40,13 +43,16 @@ pub(crate) enum Argument {
 }
 
 impl Calls {
-    /// The value for single values; `None` if no such call is cached.
-    pub fn value<'py>(&self, named: &Bound<'py, PyDict>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let py = named.py();
+    /// The value for single values with their names; `None` if no such call is cached.
+    pub fn value<'py, Values: ExactSizeIterator<Item = Named<'py>>>(
+        &self,
+        py: Python<'py>,
+        values: impl Fn() -> Values,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let found = {
             // Locked only if a finalizer, which Python may run anywhere, calls the formula within a call of it.
             let Ok(mut calls) = self.0.try_lock() else { return Ok(None) };
-            let place = calls.iter_mut().position(|call| call.takes(named).is_some());
+            let place = calls.iter_mut().position(|call| call.takes(values()).is_some());
             place.and_then(|i| {
                 calls[..=i].rotate_right(1);
                 let Call { program, inputs, values, .. } = &mut calls[0];
@@ -90,11 +96,11 @@ impl Calls {
 
 impl Call {
     /// Takes the values for inputs, if their names and kinds are those of this call.
-    fn takes(&mut self, named: &Bound<'_, PyDict>) -> Option<()> {
-        if named.len() != self.arguments.len() {
+    fn takes<'py>(&mut self, values: impl ExactSizeIterator<Item = Named<'py>>) -> Option<()> {
+        if values.len() != self.arguments.len() {
             return None;
         }
-        for ((name, value), (known, argument)) in named.iter().zip(&self.arguments) {
+        for ((name, value), (known, argument)) in values.zip(&self.arguments) {
             match (argument, operand(&value)) {
                 _ if !name.is(known) => return None,
                 (Argument::Value(ty, place), Operand::Value(value, unit))

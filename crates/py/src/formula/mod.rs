@@ -20,7 +20,7 @@ use polhode_ga::table::Signature;
 use program::{Place, Program, characters, error};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyCFunction, PyDict, PyTuple};
+use pyo3::types::{PyCFunction, PyDict, PyMapping, PyString, PyTuple};
 use std::collections::HashMap;
 use std::sync::Mutex;
 
@@ -36,6 +36,8 @@ pub(crate) struct Formula {
     text: String,
     algebra: Option<Py<Algebra>>,
     definitions: Vec<(String, String)>,
+    /// The names of values that are given by position.
+    arguments: Vec<Py<PyString>>,
     programs: Mutex<HashMap<Key, Py<Program>>>,
     calls: Calls,
 }
@@ -52,9 +54,17 @@ impl Formula {
         text: String,
         algebra: Option<Py<Algebra>>,
         definitions: Vec<(String, String)>,
+        arguments: Vec<String>,
     ) -> PyResult<Formula> {
-        let formula =
-            Formula { text, algebra, definitions, programs: Mutex::default(), calls: Calls::default() };
+        // Only to check the names.
+        let kinds: Vec<NameKind> = arguments.iter().map(|name| (name.clone(), 1, 0)).collect();
+        let (_, spelled) = names(&kinds)?;
+        if let Some(place) = spelled.iter().position(String::is_empty) {
+            return Err(not_a_name(&arguments[place]));
+        }
+        let arguments = arguments.iter().map(|name| PyString::intern(py, name).unbind()).collect();
+        let (programs, calls) = <_>::default();
+        let formula = Formula { text, algebra, definitions, arguments, programs, calls };
         formula.read_open(py)?;
         Ok(formula)
     }
@@ -75,6 +85,12 @@ impl Formula {
     #[getter]
     fn definitions(&self) -> Vec<(String, String)> {
         self.definitions.clone()
+    }
+
+    /// The names of values that are given by position.
+    #[getter]
+    fn arguments(&self, py: Python<'_>) -> Vec<Py<PyString>> {
+        self.arguments.iter().map(|name| name.clone_ref(py)).collect()
     }
 
     /// The formula in canonical spelling, `unicode`, `ascii` or `latex`, for values of these kinds; without any, with
@@ -281,9 +297,7 @@ pub(crate) fn names(given: &[NameKind]) -> PyResult<(Names, Vec<String>)> {
                 spelled.push(String::new());
                 continue;
             }
-            return Err(PyTypeError::new_err(format!(
-                "{name:?} is not a name in formulas; names are letters with subscripts and primes, or words"
-            )));
+            return Err(not_a_name(name));
         };
         if let Some(i) = spelled.iter().position(|other| *other == spelling) {
             let other = &given[i].0;
@@ -295,6 +309,12 @@ pub(crate) fn names(given: &[NameKind]) -> PyResult<(Names, Vec<String>)> {
     Ok((names, spelled))
 }
 
+fn not_a_name(name: &str) -> PyErr {
+    PyTypeError::new_err(format!(
+        "{name:?} is not a name in formulas; names are letters with subscripts and primes, or words"
+    ))
+}
+
 /// The value of a formula.
 fn called<'py>(
     formula: &Bound<'py, Formula>,
@@ -302,23 +322,62 @@ fn called<'py>(
     named: Option<&Bound<'py, PyDict>>,
 ) -> Object<'py> {
     let py = formula.py();
-    if arguments.is_empty()
-        && let Some(named) = named
-    {
-        let formula = formula.get();
-        if let Some(value) = formula.calls.value(named)? {
-            return Ok(value);
-        }
-        if formula.calls.keep(formula, named)?
-            && let Some(value) = formula.calls.value(named)?
-        {
-            return Ok(value);
-        }
-        if let Some(value) = batches::value(formula, named)? {
+    let own = formula.get();
+    if arguments.is_empty() {
+        return match named {
+            Some(named) => called_by_name(formula, named),
+            None => general(formula, arguments, named),
+        };
+    }
+    if named.is_none() && arguments.len() == own.arguments.len() {
+        let names = || own.arguments.iter().map(|name| name.bind(py).clone().into_any());
+        if let Some(value) = own.calls.value(py, || names().zip(arguments.iter()))? {
             return Ok(value);
         }
     }
-    CALL_FORMULA.get(py)?.call1((formula, arguments, named))
+    // A mapping of values by name, or an error.
+    if arguments.len() > own.arguments.len() || arguments.get_item(0)?.cast::<PyMapping>().is_ok() {
+        return general(formula, arguments, named);
+    }
+    let all = PyDict::new(py);
+    for (name, value) in own.arguments.iter().zip(arguments.iter()) {
+        all.set_item(name, value)?;
+    }
+    for (name, value) in named.iter().flat_map(|named| named.iter()) {
+        if all.contains(&name)? {
+            let name: String = name.extract()?;
+            return Err(PyTypeError::new_err(format!("{name:?} is given both by position and by name")));
+        }
+        all.set_item(name, value)?;
+    }
+    called_by_name(formula, &all)
+}
+
+/// The value for values by their names.
+fn called_by_name<'py>(formula: &Bound<'py, Formula>, named: &Bound<'py, PyDict>) -> Object<'py> {
+    let py = formula.py();
+    let own = formula.get();
+    if let Some(value) = own.calls.value(py, || named.iter())? {
+        return Ok(value);
+    }
+    if own.calls.keep(own, named)?
+        && let Some(value) = own.calls.value(py, || named.iter())?
+    {
+        return Ok(value);
+    }
+    if let Some(value) = batches::value(own, named)? {
+        return Ok(value);
+    }
+    general(formula, &PyTuple::empty(py), Some(named))
+}
+
+/// The value for values of any kind, or the error.
+fn general<'py>(
+    formula: &Bound<'py, Formula>,
+    arguments: &Bound<'py, PyTuple>,
+    named: Option<&Bound<'py, PyDict>>,
+) -> Object<'py> {
+    CALL_FORMULA.get(formula.py())?.call1((formula, arguments, named))
 }
 
 /// The kind of a node, and its further value.

@@ -42,7 +42,7 @@ package:
 	@touch $@
 
 # The viewer: the core as WebAssembly, and one bundle that Python puts into pages and notebooks.
-WASM_SOURCES := $(shell find crates/ga crates/rigid crates/wasm -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
+WASM_SOURCES := $(shell find crates/ga crates/rigid crates/wasm -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock .cargo/config.toml
 WASM := $(or $(CARGO_TARGET_DIR),target)/wasm32-unknown-unknown/viewer/polhode_wasm.wasm
 VIEWER_SOURCES := $(shell find viewer/src -type f) viewer/vite.config.ts docs/glossary.md $(wildcard examples/*.toml examples/*.stl examples/lessons/*.md)
 

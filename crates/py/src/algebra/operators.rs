@@ -9,7 +9,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
 use polhode_ga::simd::threads::Threads;
-use polhode_ga::{Graded, Multivector as FullMultivector};
+use polhode_ga::{Bivector, Graded, Multivector as FullMultivector, Rotor as UnitRotor};
 use pyo3::intern;
 use pyo3::prelude::*;
 
@@ -107,6 +107,11 @@ pub(crate) fn function<'py>(value: This<'_, 'py>, f: Function, errors: &str) -> 
     let Some(value) = value.get().single() else {
         return value.call_method1(intern!(py, "_function"), (f.name(),));
     };
+    if let (Function::Exp, Grades::BIVECTOR, &[x, y, z]) = (f, value.grades(), value.components())
+        && [x, y, z].iter().all(|x| x.is_finite())
+    {
+        return one_rotor(py, UnitRotor::exp(Bivector([x, y, z])));
+    }
     let full = value.full();
     let grades = f.grades(value.grades());
     let result = Graded::new(&f.apply(FullMultivector(full)).map_err(bad)?.0, Grades::ALL);

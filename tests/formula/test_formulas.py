@@ -258,7 +258,7 @@ def test_values_are_given_by_keyword_or_mapping():
         ph.evaluate("a1", a_1=e1, a1=e1)
     with pytest.raises(TypeError, match=r'"a b" is not a name'):
         f({"a": e1, "b": e2, "a b": e3})
-    with pytest.raises(TypeError, match="at most one mapping .* arguments="):
+    with pytest.raises(TypeError, match=r"at most one mapping .* arguments="):
         f(e1, e2)
     with pytest.raises(TypeError, match="as a mapping by name, got Multivector"):
         f(e1)

@@ -116,7 +116,9 @@ impl DampedTop {
     }
 
     fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> States<'py> {
-        states(py, &times, self.0.horizons(), one_by_one(|t| self.0.at(t)))
+        let threads = threads(7 * numbers(&times)?.len())?;
+        let fill = |times: &[f64], r: &mut [f64], w: &mut [f64]| self.0.at_many(threads, times, r, w);
+        states(py, &times, self.0.horizons(), fill)
     }
 }
 

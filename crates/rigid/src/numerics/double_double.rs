@@ -46,21 +46,6 @@ impl DoubleDouble {
         DoubleDouble::quick_two_sum(root, rest.hi / (2.0 * root))
     }
 
-    /// `e^x` and `e^x − 1`, if finite. With `x = n ln 2 + 2⁹ r` a short series gives `e^r − 1`, and
-    /// `e^{2r} − 1 = (e^r − 1)(2 + (e^r − 1))` doubles the exponent without cancellation.
-    pub fn exp(self) -> [DoubleDouble; 2] {
-        const LN_2: DoubleDouble =
-            DoubleDouble { hi: std::f64::consts::LN_2, lo: 2.319_046_813_846_299_6e-17 };
-        const DOUBLINGS: i32 = 9;
-        let n = if self.hi.abs() <= 0.35 { 0.0 } else { (self.hi * std::f64::consts::LOG2_E).round() };
-        let r = (self - LN_2 * n.into()) * 0.5f64.powi(DOUBLINGS).into();
-        let term = |sum, k: i32| (sum + DoubleDouble::ONE) * r / f64::from(k).into();
-        let series = (1..=11).rev().fold(DoubleDouble::ZERO, term);
-        let p = (0..DOUBLINGS).fold(series, |p, _| p * (p + 2.0.into()));
-        let power = DoubleDouble::from(n.exp2());
-        [power + p * power, p * power + (power - DoubleDouble::ONE)]
-    }
-
     pub fn value(self) -> f64 {
         self.hi + self.lo
     }

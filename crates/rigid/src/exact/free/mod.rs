@@ -94,7 +94,7 @@ pub use derivatives::{Differentiated, FlowDerivatives};
 use flow::{AnyFlow, Flow};
 pub use many::{TILE, Tile, Times, at_each};
 use orbit::Orbit;
-use polhode_ga::rows::curve::{sample, value};
+use polhode_ga::rows::curve::{Curve, sample, value};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
@@ -156,10 +156,7 @@ impl FreeMotion {
 
     /// Rotor and body angular velocity at time `t` in s, the same bits as [`FreeMotion::at_many`].
     pub fn at(&self, t: f64) -> (Rotor, Bivector) {
-        let (rotor, omega) = match &self.flow {
-            AnyFlow::Circular(flow) => value(flow, t),
-            AnyFlow::Hyperbolic(flow) => value(flow, t),
-        };
+        let (rotor, omega) = value(self, t);
         (Rotor::from_unit_components(rotor), Bivector(omega))
     }
 
@@ -168,9 +165,16 @@ impl FreeMotion {
     /// # Panics
     /// If the numbers of rows and times differ.
     pub fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
+        sample(self, threads, times, rotors, omegas);
+    }
+}
+
+impl Curve<4, 3> for FreeMotion {
+    #[inline(always)]
+    fn values<const W: usize, const FMA: bool>(&self, times: &[f64; W]) -> ([[f64; W]; 4], [[f64; W]; 3]) {
         match &self.flow {
-            AnyFlow::Circular(flow) => sample(flow, threads, times, rotors, omegas),
-            AnyFlow::Hyperbolic(flow) => sample(flow, threads, times, rotors, omegas),
+            AnyFlow::Circular(flow) => flow.values::<W, FMA>(times),
+            AnyFlow::Hyperbolic(flow) => flow.values::<W, FMA>(times),
         }
     }
 }

@@ -1,6 +1,7 @@
 """Stores filled by Dask clusters of processes, which are killed."""
 
 import contextlib
+import json
 import pickle
 import random
 import signal
@@ -43,11 +44,20 @@ main(sys.argv[2:])
 def scheduler(folder):
     """A scheduler, and the path of its file."""
     file = folder / "scheduler.json"
+    file.unlink(missing_ok=True)  # of a scheduler that was killed
     module = ["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
     command = [sys.executable, *module, "--scheduler-file", file]
     with processes.start(command, stdout=processes.DEVNULL, stderr=processes.DEVNULL) as process:
-        until(file.exists)
+        until(lambda: is_json(file))
         yield process, file
+
+
+def is_json(file):
+    """Whether the file is there and has been written to its end."""
+    try:
+        return bool(json.loads(file.read_text()))
+    except (FileNotFoundError, ValueError):
+        return False
 
 
 def worker(folder, file, version=""):

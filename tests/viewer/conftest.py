@@ -94,15 +94,25 @@ def new_page(pages):
 
 
 @pytest.fixture
-def opened(new_page, follow, tmp_path):
+def saved(follow, tmp_path):
+    """Saves the page of a document, or of a scene by its name; returns its path."""
+
+    def saved(given):
+        document = given if isinstance(given, dict) else _document.of_scene(follow(given).scene)
+        path = tmp_path / f"{len(list(tmp_path.glob('*.html')))}.html"
+        path.write_text(html.page(document))
+        return path
+
+    return saved
+
+
+@pytest.fixture
+def opened(new_page, saved):
     """Opens the page of a document, or of a scene by its name, from disk."""
 
     def opened(given, **options):
-        document = given if isinstance(given, dict) else _document.of_scene(follow(given).scene)
         page = new_page(**options)
-        path = tmp_path / f"{id(page)}.html"
-        path.write_text(html.page(document))
-        page.open(path)
+        page.open(saved(given))
         return page
 
     return opened

@@ -98,12 +98,12 @@ def test_text_of_the_algebra_page(theme, opened):
 
 @pytest.mark.parametrize("theme", THEMES)
 @pytest.mark.parametrize("shown", ["motion", "algebra"])
-def test_labels_of_the_picture(shown, theme, new_page, opened, tmp_path):
+def test_labels_of_the_picture(shown, theme, new_page, saved):
     view = {"theme": theme, "shown": {"axial": True, "poinsot": True, "herpolhode": True}}
-    opened({"format": 1, "scene": HELD + RUN, "page": shown, "view": view})
+    path = saved({"format": 1, "scene": HELD + RUN, "page": shown, "view": view})
     page = new_page(color_scheme=theme)
     page.page.add_init_script(WATCH)
-    page.open(next(tmp_path.glob("*.html")))
+    page.open(path)
     page.drawn()
     labels = page.page.evaluate(LABELS)
     assert len(labels) > 3

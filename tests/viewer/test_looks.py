@@ -187,12 +187,12 @@ WATCH = """
     ("shown", "drawn"),
     [("momentum", {"L"}), ("omega", {"Ω"}), ("omega momentum", {"L", "Ω"}), ("", {"L", "Ω"})],
 )
-def test_arrows_stand_for_the_bivectors_that_are_shown(shown, drawn, opened, new_page, tmp_path):
+def test_arrows_stand_for_the_bivectors_that_are_shown(shown, drawn, saved, new_page):
     view = {"shown": {name: name in shown.split() for name in ("omega", "momentum")} | {"axial": True}}
-    opened({"format": 1, "scene": (ROOT / "examples/feynman-plate.toml").read_text(), "view": view})
+    path = saved({"format": 1, "scene": (ROOT / "examples/feynman-plate.toml").read_text(), "view": view})
     page = new_page()
     page.page.add_init_script(WATCH)
-    page.open(next(tmp_path.glob("*.html")))
+    page.open(path)
     page.drawn()
     assert set(page.page.evaluate("window.drawn")) & {"L", "Ω"} == drawn
 

@@ -139,9 +139,8 @@ def test_invalid_documents_are_errors(document, message, opened):
     assert message in message_of(opened(document))
 
 
-def test_text_that_is_not_a_document(new_page, opened, tmp_path):
-    opened("asymmetric")
-    path = next(tmp_path.glob("*.html"))
+def test_text_that_is_not_a_document(new_page, saved):
+    path = saved("asymmetric")
     head, _, tail = path.read_text().partition('{"format"')
     path.write_text(head + '{"formt' + tail)
     page = new_page()
@@ -159,11 +158,11 @@ def test_motion_that_takes_too_long_is_an_error(opened):
     assert "takes too long" in message_of(page)
 
 
-def test_without_webgl_values_are_shown(new_page, opened, follow, tmp_path):
-    opened("t-handle")
+def test_without_webgl_values_are_shown(new_page, saved, follow):
+    path = saved("t-handle")
     page = new_page()
     page.page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
-    page.open(next(tmp_path.glob("*.html")))
+    page.open(path)
     assert page.page.get_by_text("WebGL 2 is missing or switched off").is_visible()
     page.compare(follow("t-handle"))
     page.page.keyboard.press("Space")

@@ -181,10 +181,10 @@ def test_address_holds_the_algebra_page(opened, new_page):
         ("nonsense", "it must begin with `v=1`, got `nonsense`"),
     ],
 )
-def test_malformed_address_is_reported_and_the_page_shown(fragment, message, new_page, opened, tmp_path):
-    opened(SCENE)
+def test_malformed_address_is_reported_and_the_page_shown(fragment, message, new_page, saved):
+    path = saved(SCENE)
     page = new_page()
-    page.page.goto(f"{next(tmp_path.glob('*.html')).as_uri()}#{fragment}")
+    page.page.goto(f"{path.as_uri()}#{fragment}")
     page.settled()
     alert = page.page.get_by_role("alert").inner_text()
     assert f"the part of the address after # was ignored: {message}" in alert
@@ -313,9 +313,8 @@ def test_saved_page_of_a_lesson_opens_at_its_step(opened, new_page, tmp_path):
     assert other.page.locator(".lesson").get_attribute("data-step") == "2"
 
 
-def test_several_viewers_leave_the_address_alone(opened, new_page, tmp_path):
-    opened(SCENE)
-    path = next(tmp_path.glob("*.html"))
+def test_several_viewers_leave_the_address_alone(saved, new_page):
+    path = saved(SCENE)
     path.write_text(
         path.read_text().replace("</polhode-viewer>", "</polhode-viewer><polhode-viewer></polhode-viewer>", 1)
     )

@@ -97,11 +97,11 @@ FORBIDDEN = {
 
 
 @pytest.mark.parametrize("how", FORBIDDEN)
-def test_page_without_workers_solves_its_scenes_itself(how, new_page, opened, follow, tmp_path):
-    opened("torsion spring")
+def test_page_without_workers_solves_its_scenes_itself(how, new_page, saved, follow):
+    path = saved("torsion spring")
     page = new_page()
     page.page.add_init_script(FORBIDDEN[how])
-    page.open(next(tmp_path.glob("*.html")))
+    page.open(path)
     page.compare(follow("torsion spring"))
     assert not page.page.evaluate(f"async () => (await {VIEWER}.ready).solver.available")
     ask(page, "[body")

@@ -177,12 +177,12 @@ def test_speed_can_be_typed(opened):
 
 
 @pytest.mark.slow
-def test_playback_has_the_shown_speed(opened, new_page, tmp_path):
-    opened("t-handle")
+def test_playback_has_the_shown_speed(saved, new_page):
+    path = saved("t-handle")
     page = new_page()
     # A clock that only the test advances.
     page.page.clock.install()
-    page.open(next(tmp_path.glob("*.html")))
+    page.open(path)
     page.page.get_by_role("button", name="Faster").click()
     speed = float(page.page.locator("#speed").input_value())
     page.page.get_by_role("button", name="Play").click()
@@ -194,16 +194,16 @@ def test_playback_has_the_shown_speed(opened, new_page, tmp_path):
     assert page.data("time") - before == pytest.approx(speed, abs=2 * speed / 60)
 
 
-def test_ready_page_has_its_picture(new_page, opened, tmp_path):
+def test_ready_page_has_its_picture(new_page, saved):
     """On a busy machine, frames come late, and so does what is created after the first one."""
-    opened("t-handle")
+    path = saved("t-handle")
     page = new_page()
     page.page.add_init_script(
         """const [later, soon] = [setTimeout, requestAnimationFrame];
         window.setTimeout = (act, wait) => later(act, wait > 20 ? wait + 500 : wait);
         window.requestAnimationFrame = (act) => later(() => soon(act), 500);"""
     )
-    page.open(next(tmp_path.glob("*.html")))
+    page.open(path)
     assert "canvas#" in page.page.evaluate(CONTROLS)
 
 

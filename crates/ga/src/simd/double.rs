@@ -37,6 +37,21 @@ pub fn two_product<const FMA: bool>(a: f64, b: f64) -> (f64, f64) {
     (hi, ((a1 * b1 - hi) + a1 * b2 + a2 * b1) + a2 * b2)
 }
 
+/// The sum of double-double numbers.
+#[inline(always)]
+pub fn add(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    let ((hi, e), (lo, f)) = (two_sum(a.0, b.0), two_sum(a.1, b.1));
+    let (hi, e) = quick_two_sum(hi, e + lo);
+    quick_two_sum(hi, e + f)
+}
+
+/// The product of double-double numbers.
+#[inline(always)]
+pub fn multiply<const FMA: bool>(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    let (hi, e) = two_product::<FMA>(a.0, b.0);
+    quick_two_sum(hi, e + a.0 * b.1 + a.1 * b.0)
+}
+
 /// `a b + c` where `a b` is exact, so that fusing the two changes nothing.
 #[inline(always)]
 fn exact_product_plus<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {

@@ -5,6 +5,7 @@ use crate::support::arrays::{Array, Rows, bad, numbers, one, threads};
 use crate::support::facts::dict;
 use crate::support::pool;
 use numpy::PyArrayMethods;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::exact::damped;
 use polhode_rigid::exact::lagrange;
@@ -69,6 +70,17 @@ fn states<'py>(
     filled(py, times.len(), PIECE, |rows, rotors, omegas| fill(&times[rows], rotors, omegas))
 }
 
+/// The same from a function that fills rows in lanes and threads.
+fn many_states<'py>(
+    py: Python<'py>,
+    times: &Rows<'py>,
+    horizons: [f64; 2],
+    at_many: impl Fn(Threads, &[f64], &mut [f64], &mut [f64]) + Sync,
+) -> States<'py> {
+    let threads = threads(7 * numbers(times)?.len())?;
+    states(py, times, horizons, |times, rotors, omegas| at_many(threads, times, rotors, omegas))
+}
+
 /// Fills the rows one by one.
 fn one_by_one(at: impl Fn(f64) -> (Rotor, Bivector)) -> impl Fn(&[f64], &mut [f64], &mut [f64]) {
     move |times, rotors, omegas| {
@@ -93,9 +105,7 @@ impl LagrangeTop {
     }
 
     fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> States<'py> {
-        let threads = threads(7 * numbers(&times)?.len())?;
-        let fill = |times: &[f64], r: &mut [f64], w: &mut [f64]| self.0.at_many(threads, times, r, w);
-        states(py, &times, [self.0.horizon(); 2], fill)
+        many_states(py, &times, [self.0.horizon(); 2], |threads, t, r, w| self.0.at_many(threads, t, r, w))
     }
 
     fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -116,9 +126,7 @@ impl DampedTop {
     }
 
     fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> States<'py> {
-        let threads = threads(7 * numbers(&times)?.len())?;
-        let fill = |times: &[f64], r: &mut [f64], w: &mut [f64]| self.0.at_many(threads, times, r, w);
-        states(py, &times, self.0.horizons(), fill)
+        many_states(py, &times, self.0.horizons(), |threads, t, r, w| self.0.at_many(threads, t, r, w))
     }
 }
 

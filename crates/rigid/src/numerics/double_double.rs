@@ -70,9 +70,7 @@ impl From<(f64, f64)> for DoubleDouble {
 impl Add for DoubleDouble {
     type Output = DoubleDouble;
     fn add(self, o: DoubleDouble) -> DoubleDouble {
-        let (s, t) = (DoubleDouble::two_sum(self.hi, o.hi), DoubleDouble::two_sum(self.lo, o.lo));
-        let s = DoubleDouble::quick_two_sum(s.hi, s.lo + t.hi);
-        DoubleDouble::quick_two_sum(s.hi, s.lo + t.lo)
+        double::add((self.hi, self.lo), (o.hi, o.lo)).into()
     }
 }
 
@@ -93,8 +91,7 @@ impl Sub for DoubleDouble {
 impl Mul for DoubleDouble {
     type Output = DoubleDouble;
     fn mul(self, o: DoubleDouble) -> DoubleDouble {
-        let p = DoubleDouble::two_product(self.hi, o.hi);
-        DoubleDouble::quick_two_sum(p.hi, p.lo + self.hi * o.lo + self.lo * o.hi)
+        double::multiply::<false>((self.hi, self.lo), (o.hi, o.lo)).into()
     }
 }
 

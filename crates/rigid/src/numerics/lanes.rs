@@ -1,7 +1,7 @@
 //! Arithmetic in lanes without branches: phase reduction, exponentials, sine and cosine.
 
 use super::double_double::DoubleDouble;
-use polhode_ga::simd::double::{quick_two_sum, sin_cos, two_product, two_sum};
+use polhode_ga::simd::double::{add, multiply, sin_cos, two_product, two_sum};
 use std::f64::consts::FRAC_PI_2;
 
 /// Adding 1.5·2⁵² rounds to an integer in the last bits, the nearest up to 2⁵¹.
@@ -70,6 +70,19 @@ pub(crate) fn half_period(turn: f64, rest: f64) -> HalfPeriod {
     HalfPeriod { odd: 1.0 - 2.0 * f64::abs(whole), part, side, from_middle, to_border }
 }
 
+/// 1/(k + first)!; the factorials up to 18! are exact.
+const fn reciprocal_factorials<const N: usize>(first: usize) -> [f64; N] {
+    let (mut c, mut factorial, mut k) = ([0.0; N], 1.0, 2);
+    while k < first + N {
+        factorial *= k as f64;
+        if k >= first {
+            c[k - first] = 1.0 / factorial;
+        }
+        k += 1;
+    }
+    c
+}
+
 /// `e^{−x}` and `e^{−x} − 1`, each to a few roundings, for x in [0, 705].
 ///
 /// `−x = n ln 2 + r` with `|r| <= ½ ln 2`; the series of `e^r − 1` ends below 2⁻⁵⁶ of it.
@@ -77,16 +90,7 @@ pub(crate) fn half_period(turn: f64, rest: f64) -> HalfPeriod {
 pub(crate) fn exp_minus(x: f64) -> (f64, f64) {
     /// ln 2 in two parts, the first of 32 bits, so that its products with n are exact.
     const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
-    /// 1/k! from 2 on; the factorials are exact.
-    const C: [f64; 12] = {
-        let (mut c, mut factorial, mut k) = ([0.0; 12], 1.0, 0);
-        while k < 12 {
-            factorial *= (k + 2) as f64;
-            c[k] = 1.0 / factorial;
-            k += 1;
-        }
-        c
-    };
+    const C: [f64; 12] = reciprocal_factorials(2);
     let shifted = INTEGER - x * std::f64::consts::LOG2_E;
     let n = shifted - INTEGER;
     let r = (-x - n * LN_2[0]) - n * LN_2[1];
@@ -101,21 +105,6 @@ pub(crate) fn exp_minus(x: f64) -> (f64, f64) {
 
 /// A double-double number `hi + lo`, as [`DoubleDouble`], in a lane.
 pub(crate) type Pair = (f64, f64);
-
-/// The sum of double-double numbers.
-#[inline(always)]
-pub(crate) fn sum_of_pairs(a: Pair, b: Pair) -> Pair {
-    let ((hi, e), (lo, f)) = (two_sum(a.0, b.0), two_sum(a.1, b.1));
-    let (hi, e) = quick_two_sum(hi, e + lo);
-    quick_two_sum(hi, e + f)
-}
-
-/// The product of double-double numbers.
-#[inline(always)]
-pub(crate) fn product_of_pairs<const FMA: bool>(a: Pair, b: Pair) -> Pair {
-    let (hi, e) = two_product::<FMA>(a.0, b.0);
-    quick_two_sum(hi, e + (a.0 * b.1 + a.1 * b.0))
-}
 
 /// `e^x` and `e^x − 1` in double-double precision, for |x| up to 720. With `x = n ln 2 + 2⁵ r` a short series gives
 /// `e^r − 1`, and `e^{2r} − 1 = (e^r − 1)(2 + (e^r − 1))` doubles the exponent without cancellation.
@@ -133,37 +122,28 @@ pub(crate) fn exp_of_pair<const FMA: bool>(x: Pair) -> [Pair; 2] {
         (0.001_388_888_888_888_889, -5.300_543_954_373_577e-20),
         (0.000_198_412_698_412_698_4, 1.720_955_829_342_070_5e-22),
     ];
-    /// 1/(k + 8)!; the factorials are exact.
-    const SMALL: [f64; 6] = {
-        let (mut c, mut factorial, mut k) = ([0.0; 6], 5040.0, 0);
-        while k < 6 {
-            factorial *= (k + 8) as f64;
-            c[k] = 1.0 / factorial;
-            k += 1;
-        }
-        c
-    };
+    const SMALL: [f64; 6] = reciprocal_factorials(8);
     let nearest = |x: f64| (x + INTEGER) - INTEGER;
     let n = if x.0.abs() <= 0.35 { 0.0 } else { nearest(x.0 * std::f64::consts::LOG2_E) };
-    let rest = sum_of_pairs(x, product_of_pairs::<FMA>(LN_2, (-n, 0.0)));
+    let rest = add(x, multiply::<FMA>(LN_2, (-n, 0.0)));
     let scale = 0.5 / (1 << (DOUBLINGS - 1)) as f64;
     let r = (rest.0 * scale, rest.1 * scale);
     // |r| < 0.011: the terms from r⁷/8! on are below 1e-18, where doubles are enough; those from r¹³/14! on are below
     // 1e-36.
     let mut series = (horner(&SMALL, r.0), 0.0);
     for k in (0..LARGE.len()).rev() {
-        series = sum_of_pairs(product_of_pairs::<FMA>(series, r), LARGE[k]);
+        series = add(multiply::<FMA>(series, r), LARGE[k]);
     }
-    let mut p = product_of_pairs::<FMA>(series, r);
+    let mut p = multiply::<FMA>(series, r);
     for _ in 0..DOUBLINGS {
-        p = product_of_pairs::<FMA>(p, sum_of_pairs(p, (2.0, 0.0)));
+        p = multiply::<FMA>(p, add(p, (2.0, 0.0)));
     }
     // 2ⁿ in two factors, for it may be less than the least normal number.
     let power_of_two = |n: f64| f64::from_bits((n + INTEGER).to_bits().wrapping_add(1023) << 52);
     let half = nearest(0.5 * n);
     let power = power_of_two(half) * power_of_two(n - half);
     let scaled = (p.0 * power, p.1 * power);
-    [sum_of_pairs((power, 0.0), scaled), sum_of_pairs(scaled, two_sum(power, -1.0))]
+    [add((power, 0.0), scaled), add(scaled, two_sum(power, -1.0))]
 }
 
 /// A polynomial, coefficients by rising powers.

@@ -29,9 +29,9 @@ COLUMNS = [
 LEGEND = """\
 Time per result, the best of several runs in turns; all libraries gave the same results before. "memory" is
 the time to move the inputs and outputs at the speed of NumPy's copy on all cores; "peer/ours" is the time of
-the fastest other library over ours. "calls" are our separate calls. numba, NumPy and JAX are formulas written
-by hand; Pauli is the same with 2×2 complex matrices. A dash means that a library lacks the operation; see the
-notes."""
+the fastest other library over ours, marked "behind" below 1. "calls" are our separate calls. numba, NumPy
+and JAX are formulas written by hand; Pauli is the same with 2×2 complex matrices. A dash means that a library
+lacks the operation; see the notes."""
 
 
 def figure(value: float | None) -> str:
@@ -63,11 +63,16 @@ def section(title: str, rows: list[Row], bandwidth: float) -> str:
         unit = UNITS[row.unit]
         figures = [figure(row.seconds[name] / unit if name in row.seconds else None) for name in held]
         memory = [figure(row.traffic / bandwidth / unit or None)] if limited else []
-        ahead = row.ahead()
-        lines.append(
-            [row.what, row.unit, *figures, *memory, f"{figure(ahead)}×" if ahead else "–", row.goal or "–"]
-        )
+        lines.append([row.what, row.unit, *figures, *memory, ratio(row), row.goal or "–"])
     return f"## {title}\n\n{aligned(lines)}\n{notes(rows)}"
+
+
+def ratio(row: Row) -> str:
+    """Format the time of the fastest other library over ours, with a mark where it is faster."""
+    ahead = row.ahead()
+    if ahead is None:
+        return "–"
+    return f"behind {figure(ahead)}×" if ahead < 1 else f"{figure(ahead)}×"
 
 
 def notes(rows: list[Row]) -> str:

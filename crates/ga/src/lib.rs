@@ -23,6 +23,22 @@
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
 //! `a' = R a ~R`; `S*R` applies `R` first. `dual(A) = A I⁻¹`, so the dual of `a∧b` is the cross product.
+//!
+//! # Example
+//!
+//! ```
+//! use polhode_ga::product::Product;
+//! use polhode_ga::{MathError, Multivector, Rotor, Vector};
+//!
+//! let (a, b) = (Vector([2.0, 0.0, 0.0]), Vector([1.0, 3.0, 0.0]));
+//! let ab = Multivector::from(a).product(Product::Geometric, b.into());
+//! assert_eq!(ab, Multivector::scalar(a.dot(b)) + a.wedge(b).into()); // ab = a·b + a∧b
+//! assert_eq!(a.wedge(b).dual(), a.cross(b));
+//!
+//! let turn = Rotor::from_vectors(a, b)?; // the least rotation from the direction of a to that of b
+//! assert!((turn.apply(a) / a.norm() - b / b.norm()).norm() < 1e-15);
+//! # Ok::<(), MathError>(())
+//! ```
 
 pub mod diagnostic;
 pub mod error;
@@ -39,3 +55,8 @@ pub use error::MathError;
 pub use g3::rotor::Rotor;
 pub use g3::values::{Bivector, Multivector, Trivector, Vector};
 pub use graded::Graded;
+
+/// The examples of README.md, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

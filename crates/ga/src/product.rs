@@ -4,6 +4,7 @@
 //! handout's dot is the lowest grade, `abs(r − s)`, scalars included (`3·a = 3a`); its wedge the highest.
 
 use crate::rows::tiles::Tiles;
+use crate::rows::written::Written;
 use crate::table::{Algebra, G3};
 use std::sync::OnceLock;
 
@@ -87,6 +88,8 @@ pub struct Grades(pub u16);
 impl Grades {
     /// The scalars alone.
     pub const SCALAR: Grades = Grades(1);
+    /// The vectors alone.
+    pub const VECTOR: Grades = Grades(2);
     /// The bivectors alone.
     pub const BIVECTOR: Grades = Grades(0b100);
     /// Scalars and bivectors, the grades of rotors.
@@ -135,6 +138,8 @@ pub struct Plan {
     pub terms: Vec<Term>,
     /// How it is run.
     pub(crate) engine: Engine,
+    /// The same product with its terms known to the compiler.
+    pub(crate) written: Option<Written>,
 }
 
 /// The ways to run a plan.
@@ -178,7 +183,8 @@ impl Plan {
             let tiles = if full { Tiles::new(algebra) } else { None };
             tiles.map_or(Engine::Terms, Engine::Tiles)
         };
-        Plan { sizes: (ia.len(), ib.len(), iout.len()), grades, terms: found, engine }
+        let sizes = (ia.len(), ib.len(), iout.len());
+        Plan { sizes, grades, terms: found, engine, written: None }.recognised()
     }
 
     /// The part of the product in some grades; zeros in those that it lacks.
@@ -189,8 +195,14 @@ impl Plan {
         let (from, to) = (self.grades.indices(algebra), grades.indices(algebra));
         let kept = |term: &Term| Some(Term { out: to.binary_search(&from[term.out]).ok()?, ..*term });
         let terms = self.terms.iter().filter_map(kept).collect();
-        let (na, nb, _) = self.sizes;
-        Plan { sizes: (na, nb, to.len()), grades, terms, engine: Engine::Terms }
+        let sizes = (self.sizes.0, self.sizes.1, to.len());
+        Plan { sizes, grades, terms, engine: Engine::Terms, written: None }.recognised()
+    }
+
+    /// The plan after a change of its terms.
+    pub(crate) fn recognised(self) -> Plan {
+        let terms = self.terms.iter().map(|t| (t.a, t.b, t.out, t.sign));
+        Plan { written: Written::of(self.sizes, terms), ..self }
     }
 
     /// The plan in [`G3`], made once for each product and pair of grades.

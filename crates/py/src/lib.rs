@@ -41,7 +41,9 @@ mod _native {
     use crate::mechanics::surfaces::{read_mesh, solid_surface};
 
     #[pymodule_export]
-    use crate::mechanics::closed_forms::{DampedTop, LagrangeTop, LarmorSphere, symmetric_top};
+    use crate::mechanics::closed_form::ClosedForm;
+    #[pymodule_export]
+    use crate::mechanics::closed_forms::{LagrangeTop, damped_tops, larmor_spheres, symmetric_top};
     #[pymodule_export]
     use crate::mechanics::torque::{Law, dipole_fields, orbit_directions, orbit_positions, torque_at};
 

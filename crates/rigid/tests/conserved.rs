@@ -54,7 +54,7 @@ fn case(moments: [f64; 3], torques: Vec<Torque>) -> Case {
 
 impl Case {
     fn names(&self) -> Vec<&'static str> {
-        Conserved::under(&self.body, &self.torques, &self.start).into_iter().map(Conserved::name).collect()
+        Conserved::under(&self.body, &self.torques, &self.start).map(Conserved::name).collect()
     }
 
     /// The change of a quantity over a step, relative to its scale.
@@ -76,8 +76,8 @@ impl Case {
     /// A quantity of another case is not reported, and changes.
     fn breaks(&self, other: &Case, broken: &str) {
         assert!(!self.names().contains(&broken), "{broken} is said to be conserved");
-        let quantity = Conserved::under(&other.body, &other.torques, &other.start);
-        let quantity = quantity.into_iter().find(|q| q.name() == broken).unwrap();
+        let mut quantity = Conserved::under(&other.body, &other.torques, &other.start);
+        let quantity = quantity.find(|q| q.name() == broken).unwrap();
         assert!(self.change(quantity) > 1e-7, "{broken} would hold: {:e}", self.change(quantity));
     }
 }

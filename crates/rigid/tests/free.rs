@@ -2,7 +2,7 @@
 
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use polhode_rigid::exact::free::{FreeMotion, TILE, Tile, Times, at_each};
+use polhode_rigid::exact::free::FreeMotion;
 use polhode_rigid::exact::regime::Regime;
 use proptest::prelude::*;
 
@@ -167,47 +167,6 @@ proptest! {
             prop_assert_eq!(omega.0, &omegas[3 * k..3 * k + 3]);
         }
     }
-}
-
-/// Many bodies at many times, from any row to any other, by any number of threads: the same bits.
-#[test]
-fn many_bodies_give_the_same_bits() {
-    let bodies: Vec<FreeMotion> = (0..TILE + 90)
-        .map(|k| {
-            let x = k as f64 % 91.0 / 64.0;
-            FreeMotion::in_principal_axes([1.0, 1.0 + x, 2.0], start(), Bivector([0.25, x, 1.0 - x]))
-        })
-        .collect();
-    let tiles: Vec<Tile> = bodies
-        .chunks(TILE)
-        .filter_map(|motions| Tile::new(motions.iter().copied().map(Ok::<_, ()>)).ok())
-        .collect();
-    for each in [1, 5, 70] {
-        // Common times; own ones, twice for all bodies.
-        let common: Vec<f64> = (0..each).map(|k| k as f64 * 12.5 - 100.0).collect();
-        let own: Vec<f64> = (0..2 * each * bodies.len()).map(|k| k as f64 * 0.125 - 100.0).collect();
-        for (times, list) in [(Times::Common(&common), &common), (Times::Own(&own, each), &own)] {
-            let all = list.len().max(bodies.len() * each);
-            for (rows, threads) in [(0..all, 1), (0..all, 3), (all / 3..all - 1, 2), (7..7, 2)] {
-                let (mut rotors, mut omegas) = (vec![0.0; 4 * rows.len()], vec![0.0; 3 * rows.len()]);
-                at_each(Threads::new(threads), &tiles, times, rows.clone(), &mut rotors, &mut omegas);
-                for (k, row) in rows.enumerate() {
-                    let (rotor, omega) = bodies[row / each % bodies.len()].at(list[row % list.len()]);
-                    assert_eq!(rotor.components(), rotors[4 * k..4 * k + 4]);
-                    assert_eq!(omega.0, omegas[3 * k..3 * k + 3]);
-                }
-            }
-        }
-    }
-}
-
-/// A tile takes the first motions, and reports the first error.
-#[test]
-fn tiles_report_the_first_error() {
-    let body = FreeMotion::in_principal_axes([1.0, 2.0, 3.0], start(), Bivector([0.25, -0.5, 1.0]));
-    let made = |bad: usize| (0..2 * TILE).map(move |k| if k >= bad { Err(k) } else { Ok(body) });
-    assert_eq!(Tile::new(made(TILE)).map(|tile| tile.horizons().len()), Ok(TILE));
-    assert_eq!(Tile::new(made(17)).map(|_| ()), Err((17, 17)));
 }
 
 /// Each branch of the separatrix starts and ends at the right pole.

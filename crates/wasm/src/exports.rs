@@ -12,6 +12,7 @@ use crate::acting::acting as acting_json;
 use crate::formulas;
 use crate::laws;
 use crate::merged::merged;
+use crate::opened::crowd::Slice;
 use crate::opened::{self, Files, Opened};
 use crate::recorded::Recorded;
 use crate::rows::ROW;
@@ -126,6 +127,12 @@ fn scene(mut rooms: impl Iterator<Item = Vec<u8>>) -> Outcome<(String, String, F
     Ok((scene, name, files))
 }
 
+const RECORDED: &str = "this motion is a recording";
+
+fn unknown(handle: usize) -> String {
+    format!("no motion has the handle {handle}")
+}
+
 impl State {
     fn add(&mut self, motion: Loaded) -> i32 {
         let free = self.motions.iter().position(Option::is_none);
@@ -138,16 +145,21 @@ impl State {
     }
 
     fn get(&self, handle: usize) -> Outcome<&Loaded> {
-        self.motions
-            .get(handle)
-            .and_then(Option::as_ref)
-            .ok_or_else(|| format!("no motion has the handle {handle}"))
+        self.motions.get(handle).and_then(Option::as_ref).ok_or_else(|| unknown(handle))
     }
 
     fn computed(&self, handle: usize) -> Outcome<&Opened> {
         match self.get(handle)? {
             Loaded::Computed(opened) => Ok(opened),
-            Loaded::Recorded(..) => Err("this motion is a recording".to_owned()),
+            Loaded::Recorded(..) => Err(RECORDED.to_owned()),
+        }
+    }
+
+    fn computed_mut(&mut self, handle: usize) -> Outcome<&mut Opened> {
+        match self.motions.get_mut(handle) {
+            Some(Some(Loaded::Computed(opened))) => Ok(opened),
+            Some(Some(Loaded::Recorded(..))) => Err(RECORDED.to_owned()),
+            _ => Err(unknown(handle)),
         }
     }
 
@@ -290,13 +302,48 @@ pub extern "C" fn plane_angle() -> i32 {
     })
 }
 
-/// Rotors of the first bodies of an ensemble, at most `count`, at a time. The first call computes their motions, for
-/// at most `budget` seconds.
+/// Rotors of the first bodies of an ensemble, at most `count`, at a time, with NaN for those that are not known. The first
+/// call computes their motions, for at most `budget` seconds, unless they were [`join`]ed.
 #[unsafe(no_mangle)]
 pub extern "C" fn bodies(handle: usize, time: f64, count: usize, budget: f64) -> i32 {
     reply_with(|state, _| {
-        let rotors = state.computed(handle)?.bodies(time, count, &mut within(budget))?;
-        Ok((0, bytes(rotors.into_iter().flatten())))
+        let crowd = state.computed(handle)?.bodies(count, &mut within(budget))?;
+        Ok((0, bytes(crowd.at(time).into_iter().flatten())))
+    })
+}
+
+/// Why the first of the computed [`bodies`] that are not known is not, with its number; empty if all are.
+#[unsafe(no_mangle)]
+pub extern "C" fn bodies_problem(handle: usize) -> i32 {
+    reply_with(|state, _| match state.get(handle)? {
+        Loaded::Computed(opened) => Ok((0, opened.bodies_problem().into())),
+        Loaded::Recorded(..) => Ok((0, Vec::new())),
+    })
+}
+
+/// Computes the bodies of an ensemble without a closed form from number `from` up to `to`, for at most `budget` seconds.
+/// Replies with their rotors for [`join`], then with the text of [`bodies_problem`]; returns where the text begins.
+#[unsafe(no_mangle)]
+pub extern "C" fn slice(handle: usize, from: usize, to: usize, budget: f64) -> i32 {
+    reply_with(|state, _| {
+        let slice = Slice::new(state.computed(handle)?, from..to, &mut within(budget))?;
+        let mut reply = bytes(slice.rotors.into_iter().flatten());
+        let size = reply.len();
+        reply.extend(slice.problem.into_bytes());
+        Ok((size as i32, reply))
+    })
+}
+
+/// Takes the text of [`bodies_problem`], and the rotors of consecutive [`slice`]s from the first body on, which another
+/// core may have computed; they are the bodies of the motion from now on.
+#[unsafe(no_mangle)]
+pub extern "C" fn join(handle: usize) -> i32 {
+    reply_with(|state, rooms| {
+        let mut rooms = rooms.into_iter();
+        let problem = text(rooms.next())?;
+        let rotors = rooms.flat_map(|room| floats(&room).as_chunks().0.to_vec()).collect();
+        state.computed_mut(handle)?.join(Slice { rotors, problem });
+        Ok((0, Vec::new()))
     })
 }
 

@@ -1,6 +1,7 @@
 //! Motions, facts and surfaces for the page.
 
 use crate::about::about;
+use crate::opened::crowd::Slice;
 use crate::opened::{Files, Opened};
 use crate::recorded::Recorded;
 use crate::rows::ROW;
@@ -55,7 +56,7 @@ fn states_begin_at_the_start_time() {
     let swarm =
         opened(&format!("{late}{}", SWARM.replace("attitude = 'uniform'\n", "").replace("0.1", "1e-12")));
     for (time, row) in [5.0, 7.0].into_iter().zip(&rows) {
-        let rotor = swarm.bodies(time, 1, &mut || true).unwrap()[0];
+        let rotor = swarm.bodies(1, &mut || true).unwrap().at(time)[0];
         assert!((0..4).all(|k| (rotor[k] - row[1 + k]).abs() < 1e-8), "{time}: {rotor:?}");
     }
 }
@@ -138,15 +139,39 @@ fn recordings_are_interpolated_between_rows() {
 #[test]
 fn bodies_of_an_ensemble() {
     let exact = opened(&format!("{FREE}{SWARM}"));
-    let rotors = exact.bodies(1.0, 5, &mut || true).unwrap();
+    let rotors = exact.bodies(5, &mut || true).unwrap().at(1.0);
     assert_eq!(rotors.len(), 5);
     let stepped =
         opened(&format!("{DAMPED}{}", SWARM.replace("attitude = 'uniform'\n", "").replace("0.1", "1e-12")));
     let alone = stepped.states(&[2.0]).unwrap()[0];
-    for rotor in stepped.bodies(2.0, 100, &mut || true).unwrap() {
+    for rotor in stepped.bodies(100, &mut || true).unwrap().at(2.0) {
         assert!((0..4).all(|k| (rotor[k] - alone[1 + k]).abs() < 1e-8), "{rotor:?}");
     }
-    assert!(opened(FREE).bodies(0.0, 5, &mut || true).unwrap_err().contains("no table [ensemble]"));
+    assert!(opened(FREE).bodies(5, &mut || true).err().unwrap().contains("no table [ensemble]"));
+}
+
+/// Slices give the bits of one core, and a body that cannot be computed is named.
+#[test]
+fn slices_of_an_ensemble() {
+    let scene = format!("{DAMPED}{SWARM}");
+    let mut of = opened(&scene);
+    let bits = |of: &Opened| {
+        let crowd = of.bodies(100, &mut || true).unwrap();
+        crowd.at(1.3).iter().map(|rotor| rotor.map(f64::to_bits)).collect::<Vec<_>>()
+    };
+    let cuts = [0, 1, 9, 13, 100];
+    let slices = cuts.windows(2).map(|cut| Slice::new(&of, cut[0]..cut[1], &mut || true).unwrap());
+    let rotors = slices.flat_map(|slice| slice.rotors).collect();
+    of.join(Slice { rotors, problem: String::new() });
+    assert_eq!(bits(&of).len(), 20);
+    assert_eq!(bits(&of), bits(&opened(&scene)));
+
+    let mut of = opened(&scene.replace("duration = 2", "duration = 1e3"));
+    let late = Slice::new(&of, 5..8, &mut || false).unwrap();
+    assert!(late.problem.starts_with("body 5: this motion takes too long"), "{}", late.problem);
+    of.join(late);
+    assert!(bits(&of).concat().iter().all(|&bits| f64::from_bits(bits).is_nan()));
+    assert!(of.bodies_problem().starts_with("body 5"));
 }
 
 #[test]

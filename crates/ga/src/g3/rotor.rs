@@ -45,11 +45,13 @@ impl Rotor {
     }
 
     /// From components of norm 1 to rounding, which is not checked.
+    #[inline]
     pub fn from_unit_components([s, x, y, z]: [f64; 4]) -> Rotor {
         Rotor { scalar: s, bivector: Bivector([x, y, z]) }
     }
 
     /// The components `(1, e2e3, e3e1, e1e2)`.
+    #[inline]
     pub fn components(self) -> [f64; 4] {
         let [x, y, z] = self.bivector.0;
         [self.scalar, x, y, z]
@@ -139,14 +141,17 @@ impl Rotor {
         Rotor { scalar: s, bivector: Bivector([-x, -y, -z]) }
     }
 
-    /// The matrix of `x ↦ R x ~R` on columns.
+    /// The matrix of `x ↦ R x ~R` on columns: `(w² − b²) x + 2 b (b·x) + 2w b x x` for the quaternion `w + b`.
+    ///
+    /// The squares on the diagonal are subtracted, so that turns by 90° have exact zeros there; `1 − 2(y² + z²)` would
+    /// leave a rounding.
     pub fn to_matrix(self) -> [[f64; 3]; 3] {
-        let columns = [0, 1, 2].map(|j| {
-            let mut e = Vector::default();
-            e.0[j] = 1.0;
-            self.apply(e).0
-        });
-        [0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i]))
+        let [w, x, y, z] = self.to_quaternion_wxyz();
+        [
+            [(w * w + x * x) - (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), (w * w + y * y) - (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), (w * w + z * z) - (x * x + y * y)],
+        ]
     }
 
     /// From the unit quaternion `(w, x, y, z)`, Hamilton's, active.
@@ -209,6 +214,7 @@ impl Rotor {
     }
 
     /// `R a ~R`. With `q` the axial vector of the quaternion: `a + 2s q x a + 2 q x (q x a)`.
+    #[inline]
     pub fn apply(self, a: Vector) -> Vector {
         let q = -self.bivector.dual();
         let t = q.cross(a) * 2.0;

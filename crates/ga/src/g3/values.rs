@@ -36,6 +36,7 @@ macro_rules! operator {
     ($trait:ident::$method:ident($a:ident: $left:ty $(, $b:ident: $right:ty)?) -> $output:ty $value:block) => {
         impl $trait$(<$right>)? for $left {
             type Output = $output;
+            #[inline]
             fn $method(self $(, $b: $right)?) -> $output {
                 let $a = self;
                 $value
@@ -107,17 +108,20 @@ pub(crate) fn norm(components: &[f64]) -> f64 {
     scale * components.iter().map(|x| (x / scale) * (x / scale)).sum::<f64>().sqrt()
 }
 
+#[inline]
 fn dot3(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The components of `a x b`; also of `a∧b`, and of `−A×B` for bivectors.
+#[inline]
 fn cross3(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 impl Vector {
     /// `a·b`.
+    #[inline]
     pub fn dot(self, b: Vector) -> f64 {
         dot3(self.0, b.0)
     }
@@ -128,6 +132,7 @@ impl Vector {
     }
 
     /// The vector cross product, `a x b = −I a∧b` (handout eq. 1.24).
+    #[inline]
     pub fn cross(self, b: Vector) -> Vector {
         self.wedge(b).dual()
     }
@@ -144,6 +149,7 @@ impl Vector {
     }
 
     /// `I a`, the plane perpendicular to `a` (handout eq. 1.20).
+    #[inline]
     pub fn undual(self) -> Bivector {
         Bivector(self.0)
     }
@@ -151,16 +157,19 @@ impl Vector {
 
 impl Bivector {
     /// `A·B = ⟨AB⟩`: minus the dot product of the components, since planes square to −1.
+    #[inline]
     pub fn dot(self, b: Bivector) -> f64 {
         -dot3(self.0, b.0)
     }
 
     /// `A×B = ½(AB − BA)` (handout eq. 1.17 and 4.21): not the cross product, but minus its components.
+    #[inline]
     pub fn commutator(self, b: Bivector) -> Bivector {
         Bivector(cross3(b.0, self.0))
     }
 
     /// `B I⁻¹`, the axial vector: the dual of `a∧b` is `a x b`.
+    #[inline]
     pub fn dual(self) -> Vector {
         Vector(self.0)
     }
@@ -205,12 +214,14 @@ impl Multivector {
     }
 
     /// `M I⁻¹`.
+    #[inline]
     pub fn dual(self) -> Multivector {
         let m = self.0;
         Multivector([m[7], m[4], m[5], m[6], -m[1], -m[2], -m[3], -m[0]])
     }
 
     /// `M I`.
+    #[inline]
     pub fn undual(self) -> Multivector {
         -self.dual()
     }

@@ -3,7 +3,7 @@
 use crate::g3::rotor::Rotor;
 use crate::simd::threads::Threads;
 use crate::simd::traverse::sweep;
-use crate::simd::{ByRow, Element, Kernel, LANES, Lane, Path, by_lanes};
+use crate::simd::{ByRow, Element, Kernel, LANES, Lane, Path, Short, by_lanes};
 use std::array::from_fn;
 
 /// `S R` for rows of rotor components, as [`Rotor::compose`].
@@ -19,6 +19,17 @@ impl ByRow for Compose {
 
     fn row(&self, s: &[f64], r: &[f64], out: &mut [f64]) {
         out.copy_from_slice(&product(from_fn(|k| s[k]), from_fn(|k| r[k])));
+    }
+
+    fn in_registers<T: Element>(&self, path: Path, s: &[T], r: &[T], out: &mut [T], streamed: bool) -> usize {
+        path.short::<Compose, T, 4, 4, 4>(s, r, out, streamed)
+    }
+}
+
+impl Short<4, 4, 4> for Compose {
+    #[inline(always)]
+    fn value(s: [f64; 4], r: [f64; 4]) -> [f64; 4] {
+        product(s, r)
     }
 }
 

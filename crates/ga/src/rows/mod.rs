@@ -5,3 +5,4 @@ pub mod curve;
 pub mod product;
 pub mod rotor_functions;
 pub(crate) mod tiles;
+pub(crate) mod written;

@@ -184,7 +184,12 @@ macro_rules! circular_map {
         impl Map<1, 0, 1> for $name {
             #[inline(always)]
             fn short<const W: usize, const FMA: bool>([x]: [&[f64; W]; 1], _: [&[f64; W]; 0]) -> [[f64; W]; 1] {
-                [x.map(|x| $value(circular::<FMA>(x)))]
+                // A loop, because the closure of a map would not be compiled for the instructions of this path.
+                let mut out = [0.0; W];
+                for l in 0..W {
+                    out[l] = $value(circular::<FMA>(x[l]));
+                }
+                [out]
             }
 
             fn long([x]: [f64; 1], _: [f64; 0]) -> [f64; 1] {

@@ -17,12 +17,14 @@ pub(crate) mod payne_hanek;
 mod squares;
 pub mod threads;
 pub(crate) mod traverse;
+mod workers;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 use lanes::Work;
 use map::BUILT_WITH_FMA;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 #[cfg(target_arch = "aarch64")]
 use neon::Registers;
@@ -82,6 +84,11 @@ pub(crate) trait ByRow: Sync {
     /// Below this number of rows, transposing them into lanes does not pay.
     const FEW: usize = 8;
 
+    /// Computes the first rows of `out` in registers, for a kernel that is [`Short`]; returns their number.
+    fn in_registers<T: Element>(&self, _: Path, _: &[T], _: &[T], _out: &mut [T], _streamed: bool) -> usize {
+        0
+    }
+
     /// One row. `out` may hold anything before.
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]);
 }
@@ -97,6 +104,29 @@ pub(crate) trait Kernel<const W: usize = LANES>: Sync {
     #[inline(always)]
     fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         self.block(a, b, out);
+    }
+}
+
+/// A function of two rows of three or four numbers each, the same bits as the kernel that it belongs to.
+///
+/// It is computed in registers, where rows are transposed as they are read and written: half the time of rows that go
+/// through lanes in memory.
+pub(crate) trait Short<const A: usize, const B: usize, const OUT: usize> {
+    /// One row. `#[inline(always)]` down to the arithmetic.
+    fn value(a: [f64; A], b: [f64; B]) -> [f64; OUT];
+
+    /// `W` rows by their columns.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    fn values<const W: usize>(a: [[f64; W]; A], b: [[f64; W]; B]) -> [[f64; W]; OUT] {
+        let mut out = [[0.0; W]; OUT];
+        for l in 0..W {
+            let value = Self::value(std::array::from_fn(|k| a[k][l]), std::array::from_fn(|k| b[k][l]));
+            for k in 0..OUT {
+                out[k][l] = value[k];
+            }
+        }
+        out
     }
 }
 
@@ -188,8 +218,10 @@ impl Path {
     }
 
     /// The widest instructions of this machine.
+    #[inline]
     pub fn best() -> Path {
-        Path::available().next_back().unwrap_or(Path(Level::Portable))
+        static BEST: OnceLock<Path> = OnceLock::new();
+        *BEST.get_or_init(|| Path::available().next_back().unwrap_or(Path(Level::Portable)))
     }
 
     /// Whether this is the portable path, without hand-written transposes.
@@ -250,6 +282,33 @@ impl Path {
             for (x, lane) in values.iter_mut().zip(lanes) {
                 *x = T::nearest(lane.0[done + row]);
             }
+        }
+    }
+
+    /// Applies a function to the first rows, in registers, past the caches if `streamed`; returns their number, 0 where
+    /// the path cannot. A factor has one row for all, or as many as `out`.
+    pub fn short<K: Short<A, B, OUT>, T: Element, const A: usize, const B: usize, const OUT: usize>(
+        self,
+        a: &[T],
+        b: &[T],
+        out: &mut [T],
+        streamed: bool,
+    ) -> usize {
+        const { assert!(A / 5 + B / 5 + OUT / 5 == 0 && A > 2 && B > 2 && OUT > 2, "three or four numbers") };
+        let total = out.len() / OUT;
+        let one = [a.len() == A, b.len() == B];
+        assert!((one[0] || a.len() == total * A) && (one[1] || b.len() == total * B), "rows fit together");
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = streamed;
+        // The numbers of rows fit.
+        match self.0 {
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::avx2::short::<T, K, A, B, OUT>(a, b, one, out, streamed) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::avx512::short::<T, K, A, B, OUT>(a, b, one, out, streamed) },
+            _ => 0,
         }
     }
 

@@ -10,10 +10,6 @@ pub(super) fn run<T: Work>(work: T) -> T::Output {
     work.run::<true>()
 }
 
-/// Hardware prefetching suffices.
-#[inline(always)]
-fn prefetch_ahead<T>(_: *const T) {}
-
 squares::registers! {
     float64x2_t load_2 store_2 (p, x)
         f64 vld1q_f64(p), vst1q_f64(p, x);
@@ -33,7 +29,33 @@ fn transpose([r0, r1]: [float64x2_t; 2]) -> [float64x2_t; 2] {
     [vtrn1q_f64(r0, r1), vtrn2q_f64(r0, r1)]
 }
 
-squares!("neon", 2, zero, load_2, store_2, transpose, gather, scatter);
+/// Two rows of two numbers that begin `size` numbers apart, transposed.
+///
+/// # Safety
+/// The numbers are within one object.
+#[inline]
+#[target_feature(enable = "neon")]
+unsafe fn read_square<T: Element>(rows: *const T, size: usize) -> [float64x2_t; 2] {
+    // SAFETY: as the caller promises.
+    unsafe { transpose([T::load_2(rows), T::load_2(rows.add(size))]) }
+}
+
+/// Writes the columns of two rows of two numbers, which begin `size` numbers apart.
+///
+/// # Safety
+/// There is room for the numbers.
+#[inline]
+#[target_feature(enable = "neon")]
+unsafe fn write_square<T: Element>(columns: [float64x2_t; 2], rows: *mut T, size: usize) {
+    let [first, second] = transpose(columns);
+    // SAFETY: as the caller promises.
+    unsafe {
+        T::store_2(rows, first);
+        T::store_2(rows.add(size), second);
+    }
+}
+
+squares!("neon", 2, zero, load_2, store_2, read_square, write_square, gather, scatter);
 
 /// A plain copy: there is no way past the caches.
 #[target_feature(enable = "neon")]

@@ -46,7 +46,7 @@ macro_rules! registers {
 /// group is processed only if the next row exists. Both return the number of rows that they processed.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 macro_rules! squares {
-    ($feature:tt, $n:literal, $zero:ident, $load:ident, $store:ident, $transpose:ident, $gather:ident, $scatter:ident) => {
+    ($feature:tt, $n:literal, $zero:ident, $load:ident, $store:ident, $read:ident, $write:ident, $gather:ident, $scatter:ident) => {
         /// # Safety
         /// The numbers fit the lanes, which are at least one.
         #[target_feature(enable = $feature)]
@@ -59,16 +59,8 @@ macro_rules! squares {
             let mut done = 0;
             while (done + $n - 1) * size + last + $n <= rows.len() && done + $n <= W {
                 for column in (0..size).step_by($n).map(|column| column.min(last)) {
-                    let mut square = [$zero(); $n];
-                    for i in 0..$n {
-                        // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
-                        unsafe {
-                            let row = rows.as_ptr().add((done + i) * size + column);
-                            prefetch_ahead(row);
-                            square[i] = T::$load(row);
-                        }
-                    }
-                    let square = $transpose(square);
+                    // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
+                    let square = unsafe { $read(rows.as_ptr().add(done * size + column), size) };
                     for k in 0..$n {
                         if k < size {
                             // SAFETY: `done + $n <= W`.
@@ -100,11 +92,8 @@ macro_rules! squares {
                             square[k] = unsafe { f64::$load(lanes[column + k].0.as_ptr().add(done)) };
                         }
                     }
-                    let square = $transpose(square);
-                    for i in 0..$n {
-                        // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
-                        unsafe { T::$store(rows.as_mut_ptr().add((done + i) * size + column), square[i]) };
-                    }
+                    // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
+                    unsafe { $write(square, rows.as_mut_ptr().add(done * size + column), size) };
                 }
                 done += $n;
             }

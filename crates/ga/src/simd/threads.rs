@@ -2,9 +2,14 @@
 //!
 //! A row depends only on its own numbers, so results have the same bits for any number of threads.
 
+use super::workers::together;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
+use std::time::{Duration, Instant};
+
+/// The available parallelism is asked for again after this time: to ask takes 30 µs.
+const KNOWN: Duration = Duration::from_millis(100);
 
 /// The number of threads that may share the rows of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,9 +24,19 @@ impl Threads {
         Threads(count.clamp(1, 1024))
     }
 
-    /// The parallelism available to this process.
+    /// The parallelism available to this process, now or a moment ago.
     pub fn available() -> Threads {
-        thread::available_parallelism().map_or(Threads::ONE, |count| Threads::new(count.get()))
+        static LATEST: Mutex<Option<(Threads, Instant)>> = Mutex::new(None);
+        let ask = || thread::available_parallelism().map_or(Threads::ONE, |count| Threads::new(count.get()));
+        // A lock that is held may have been so when this process was forked. WebAssembly has no clock.
+        let latest = if cfg!(target_family = "wasm") { None } else { LATEST.try_lock().ok() };
+        let Some(mut latest) = latest else { return ask() };
+        if let Some((threads, asked)) = *latest
+            && asked.elapsed() < KNOWN
+        {
+            return threads;
+        }
+        latest.insert((ask(), Instant::now())).0
     }
 
     /// The number.
@@ -29,8 +44,8 @@ impl Threads {
         self.0
     }
 
-    /// Splits rows into one contiguous range for each thread, of at least `least` rows. Starting a thread takes some
-    /// 30 µs; a range should take longer.
+    /// Splits rows into one contiguous range for each thread, of at least `least` rows. To wake a thread takes some 10 µs,
+    /// to start one 30 µs; a range should take longer.
     pub fn ranges(self, rows: usize, least: usize) -> impl ExactSizeIterator<Item = Range<usize>> {
         let count = self.0.min(rows / least.max(1)).max(1);
         (0..count).map(move |i| i * rows / count..(i + 1) * rows / count)
@@ -59,7 +74,7 @@ impl Threads {
     }
 }
 
-/// Calls `work` for each item, in a thread of its own if one can be started.
+/// Calls `work` for each item, by as many threads as there are items and the system provides.
 pub fn for_each<I: Send>(items: impl ExactSizeIterator<Item = I> + Send, work: impl Fn(I) + Sync) {
     let count = items.len();
     if count <= 1 {
@@ -67,19 +82,10 @@ pub fn for_each<I: Send>(items: impl ExactSizeIterator<Item = I> + Send, work: i
     }
     let items = Mutex::new(items);
     let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let worker = || {
+    together(count - 1, &|| {
         while let Some(item) = next() {
             work(item);
         }
-    };
-    thread::scope(|scope| {
-        // If no more threads can be started, the existing ones do all the work.
-        for _ in 1..count {
-            if thread::Builder::new().spawn_scoped(scope, worker).is_err() {
-                break;
-            }
-        }
-        worker();
     });
 }
 

@@ -11,7 +11,7 @@ use std::ops::{ControlFlow, Range};
 pub(crate) const STREAMED: usize = 16 << 20;
 
 /// Numbers per thread from which another thread pays.
-pub(crate) const SHARED: usize = 1 << 19;
+pub(crate) const SHARED: usize = 1 << 17;
 
 /// Whether factors and product together exceed the caches.
 pub(crate) fn beyond_caches<T>(a: &[T], b: &[T], out: &[T]) -> bool {
@@ -180,7 +180,14 @@ fn sweep_piece<T: Element, const W: usize, K: Kernel<W> + ByRow>(
     b: Factor<T>,
     (out, nout): (&mut [T], usize),
 ) {
-    let total = out.len() / nout;
+    let few = out.len() / nout < K::FEW;
+    let done = if few { 0 } else { kernel.in_registers(path, a.data, b.data, out, streamed) };
+    let rows = done..out.len() / nout;
+    let out = &mut out[done * nout..];
+    if rows.is_empty() {
+        return;
+    }
+    let (a, b, total) = (a.piece(rows.clone()), b.piece(rows.clone()), rows.len());
     if total < K::FEW || K::FAST_ROWS && path.is_portable() {
         return by_rows(kernel, a, b, (out, nout));
     }

@@ -2,7 +2,7 @@
 
 use super::lanes::Work;
 use super::squares::{self, squares};
-use super::{Element, Lane};
+use super::{Element, Lane, Short};
 use std::arch::x86_64::*;
 
 /// A cache line. A local one aligns the stack frame to cache lines, so that no spilled register spans two.
@@ -35,6 +35,123 @@ macro_rules! run_and_stream {
     };
 }
 
+/// `Short` functions by groups of `$width` rows, read and written by `columns` and `rows_of` of the module.
+macro_rules! short {
+    ($feature:literal, $width:literal, $register:ty, $zero:ident, $all:ident, $load:ident, $store:ident) => {
+        /// The columns of `$width` rows of `SIZE` numbers.
+        ///
+        /// # Safety
+        /// The numbers are within one object.
+        #[inline]
+        #[target_feature(enable = $feature)]
+        unsafe fn read<T: Element, const SIZE: usize>(rows: *const T) -> [$register; SIZE] {
+            let mut registers = [$zero(); SIZE];
+            for r in 0..SIZE {
+                // SAFETY: as the caller promises.
+                unsafe {
+                    let from = rows.add(r * $width);
+                    prefetch_ahead(from);
+                    registers[r] = T::$load(from);
+                }
+            }
+            columns(registers)
+        }
+
+        /// One row for all, as columns.
+        #[target_feature(enable = $feature)]
+        fn filled<T: Element, const SIZE: usize>(row: &[T]) -> [$register; SIZE] {
+            let mut columns = [$zero(); SIZE];
+            for (column, &x) in columns.iter_mut().zip(row) {
+                *column = $all(x.into());
+            }
+            columns
+        }
+
+        /// Applies a function to groups of `$width` rows, and returns the number of rows.
+        ///
+        /// # Safety
+        /// `a` and `b` have as many rows as `out`, or one row where `one` says so.
+        #[target_feature(enable = $feature)]
+        pub unsafe fn short<
+            T: Element,
+            K: Short<A, B, OUT>,
+            const A: usize,
+            const B: usize,
+            const OUT: usize,
+        >(
+            a: &[T],
+            b: &[T],
+            one: [bool; 2],
+            out: &mut [T],
+            streamed: bool,
+        ) -> usize {
+            // SAFETY: passed on.
+            unsafe {
+                match (one == [false, false], streamed) {
+                    (true, false) => groups::<T, K, A, B, OUT, true, false>(a, b, one, out),
+                    (true, true) => groups::<T, K, A, B, OUT, true, true>(a, b, one, out),
+                    (false, false) => groups::<T, K, A, B, OUT, false, false>(a, b, one, out),
+                    (false, true) => groups::<T, K, A, B, OUT, false, true>(a, b, one, out),
+                }
+            }
+        }
+
+        /// `MANY`: neither factor has one row for all.
+        ///
+        /// # Safety
+        /// As for [`short`].
+        #[target_feature(enable = $feature)]
+        unsafe fn groups<
+            T: Element,
+            K: Short<A, B, OUT>,
+            const A: usize,
+            const B: usize,
+            const OUT: usize,
+            const MANY: bool,
+            const STREAMED: bool,
+        >(
+            a: &[T],
+            b: &[T],
+            one: [bool; 2],
+            out: &mut [T],
+        ) -> usize {
+            let count = out.len() / ($width * OUT);
+            let Some(mut writer) = Writer::<STREAMED>::new(out) else { return 0 };
+            let (one_a, one_b) = (filled::<T, A>(a), filled::<T, B>(b));
+            for number in 0..count {
+                let (mut x, mut y) = ([[0.0; $width]; A], [[0.0; $width]; B]);
+                let a = a.as_ptr().wrapping_add($width * A * number);
+                let b = b.as_ptr().wrapping_add($width * B * number);
+                // SAFETY: the rows are there, and a register holds `$width` numbers.
+                unsafe {
+                    let x_columns = if MANY || !one[0] { read::<T, A>(a) } else { one_a };
+                    let y_columns = if MANY || !one[1] { read::<T, B>(b) } else { one_b };
+                    for k in 0..A {
+                        f64::$store(x[k].as_mut_ptr(), x_columns[k]);
+                    }
+                    for k in 0..B {
+                        f64::$store(y[k].as_mut_ptr(), y_columns[k]);
+                    }
+                }
+                let values = K::values::<$width>(x, y);
+                let mut columns = [$zero(); OUT];
+                for k in 0..OUT {
+                    // SAFETY: a register holds `$width` numbers.
+                    columns[k] = unsafe { f64::$load(values[k].as_ptr()) };
+                }
+                let rows = rows_of(columns);
+                for r in 0..OUT {
+                    // SAFETY: there is room for `count` groups.
+                    unsafe { writer.write(out.as_mut_ptr().add($width * (OUT * number + r)), rows[r]) };
+                }
+            }
+            // SAFETY: it wrote `count` groups.
+            unsafe { writer.finish(out.as_mut_ptr().add($width * OUT * count)) };
+            count * $width
+        }
+    };
+}
+
 /// Prefetches the cache line 4 KiB ahead: beyond the end of a page, where hardware prefetching stops.
 #[inline(always)]
 fn prefetch_ahead<T>(from: *const T) {
@@ -62,11 +179,121 @@ pub(super) fn fence() {
     unsafe { _mm_sfence() };
 }
 
+pub(super) mod avx512;
+
 pub(super) mod avx2 {
     use super::*;
 
     run_and_stream!("avx2,fma", 4, _mm256_loadu_pd, _mm256_stream_pd);
-    squares!("avx2", 4, _mm256_setzero_pd, load_4, store_4, transpose, gather, scatter);
+    squares!("avx2", 4, _mm256_setzero_pd, load_4, store_4, read_square, write_square, gather, scatter);
+
+    short!("avx2,fma", 4, __m256d, _mm256_setzero_pd, _mm256_set1_pd, load_4, store_4);
+
+    /// Writes rows register by register; past the caches only [`super::super::traverse`] does.
+    struct Writer<const STREAMED: bool>;
+
+    impl<const STREAMED: bool> Writer<STREAMED> {
+        fn new<T>(_: &[T]) -> Option<Self> {
+            (!STREAMED).then_some(Writer)
+        }
+
+        /// # Safety
+        /// There is room for the register.
+        #[inline]
+        #[target_feature(enable = "avx2")]
+        unsafe fn write<T: Element>(&mut self, to: *mut T, register: __m256d) {
+            // SAFETY: passed on.
+            unsafe { T::store_4(to, register) };
+        }
+
+        /// # Safety
+        /// `end` is the end of what was written.
+        unsafe fn finish<T: Element>(self, _: *mut T) {}
+    }
+
+    /// Four rows of `SIZE` numbers, 3 or 4, fill `SIZE` registers without gaps. Of three, the numbers of a column have
+    /// different places: they are blended into one register and permuted.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn columns<const SIZE: usize>(registers: [__m256d; SIZE]) -> [__m256d; SIZE] {
+        let mut columns = registers;
+        match *columns.as_mut_slice() {
+            [ref mut r0, ref mut r1, ref mut r2] => {
+                let (x, y, z) = (*r0, *r1, *r2);
+                *r0 = _mm256_permute4x64_pd::<0x6c>(_mm256_blend_pd::<0b0010>(
+                    _mm256_blend_pd::<0b0100>(x, y),
+                    z,
+                ));
+                *r1 = _mm256_permute4x64_pd::<0xb1>(_mm256_blend_pd::<0b0100>(
+                    _mm256_blend_pd::<0b1001>(x, y),
+                    z,
+                ));
+                *r2 = _mm256_permute4x64_pd::<0xc6>(_mm256_blend_pd::<0b1001>(
+                    _mm256_blend_pd::<0b0010>(x, y),
+                    z,
+                ));
+            }
+            [ref mut r0, ref mut r1, ref mut r2, ref mut r3] => {
+                [*r0, *r1, *r2, *r3] = transpose([*r0, *r1, *r2, *r3]);
+            }
+            _ => unreachable!("rows of three or four numbers"),
+        }
+        columns
+    }
+
+    /// The inverse of [`columns`].
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn rows_of<const SIZE: usize>(columns: [__m256d; SIZE]) -> [__m256d; SIZE] {
+        let mut rows = columns;
+        match *rows.as_mut_slice() {
+            [ref mut c0, ref mut c1, ref mut c2] => {
+                let x = _mm256_permute4x64_pd::<0x6c>(*c0);
+                let y = _mm256_permute4x64_pd::<0xb1>(*c1);
+                let z = _mm256_permute4x64_pd::<0xc6>(*c2);
+                *c0 = _mm256_blend_pd::<0b0100>(_mm256_blend_pd::<0b0010>(x, y), z);
+                *c1 = _mm256_blend_pd::<0b0010>(_mm256_blend_pd::<0b1001>(x, y), z);
+                *c2 = _mm256_blend_pd::<0b1001>(_mm256_blend_pd::<0b0100>(x, y), z);
+            }
+            [ref mut c0, ref mut c1, ref mut c2, ref mut c3] => {
+                [*c0, *c1, *c2, *c3] = transpose([*c0, *c1, *c2, *c3]);
+            }
+            _ => unreachable!("rows of three or four numbers"),
+        }
+        rows
+    }
+
+    /// Four rows of four numbers that begin `size` numbers apart, transposed.
+    ///
+    /// # Safety
+    /// The numbers are within one object.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn read_square<T: Element>(rows: *const T, size: usize) -> [__m256d; 4] {
+        let mut square = [_mm256_setzero_pd(); 4];
+        for i in 0..4 {
+            // SAFETY: as the caller promises.
+            unsafe {
+                let row = rows.add(i * size);
+                prefetch_ahead(row);
+                square[i] = T::load_4(row);
+            }
+        }
+        transpose(square)
+    }
+
+    /// Writes the columns of four rows of four numbers, which begin `size` numbers apart.
+    ///
+    /// # Safety
+    /// There is room for the numbers.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    unsafe fn write_square<T: Element>(columns: [__m256d; 4], rows: *mut T, size: usize) {
+        for (i, row) in transpose(columns).into_iter().enumerate() {
+            // SAFETY: as the caller promises.
+            unsafe { T::store_4(rows.add(i * size), row) };
+        }
+    }
 
     /// Four rows of four numbers, transposed: pairs of rows, then of pairs.
     #[inline]
@@ -79,184 +306,6 @@ pub(super) mod avx2 {
             _mm256_permute2f128_pd::<0x20>(a1, b1),
             _mm256_permute2f128_pd::<0x31>(a0, b0),
             _mm256_permute2f128_pd::<0x31>(a1, b1),
-        ]
-    }
-}
-
-pub(super) mod avx512 {
-    use super::*;
-
-    run_and_stream!("avx512f,fma", 8, _mm512_loadu_pd, _mm512_stream_pd);
-    squares!("avx512f", 8, _mm512_setzero_pd, load_8, store_8, transpose, gather_squares, scatter_squares);
-
-    /// Calls a function of the constant number of lanes below eight, or the other one.
-    macro_rules! by_size {
-        ($size:expr, $few:ident, $many:ident, $arguments:tt) => {
-            match $size {
-                1 => $few::<T, W, 1> $arguments,
-                2 => $few::<T, W, 2> $arguments,
-                3 => $few::<T, W, 3> $arguments,
-                4 => $few::<T, W, 4> $arguments,
-                5 => $few::<T, W, 5> $arguments,
-                6 => $few::<T, W, 6> $arguments,
-                7 => $few::<T, W, 7> $arguments,
-                _ => $many $arguments,
-            }
-        };
-    }
-
-    /// # Safety
-    /// The numbers fit the lanes, which are at least one.
-    #[target_feature(enable = "avx512f")]
-    pub unsafe fn gather<T: Element, const W: usize>(rows: &[T], lanes: &mut [Lane<W>]) -> usize {
-        // SAFETY: passed on.
-        unsafe { by_size!(lanes.len(), gather_few, gather_squares, (rows, lanes)) }
-    }
-
-    /// # Safety
-    /// The numbers fit the lanes, which are at least one.
-    #[target_feature(enable = "avx512f")]
-    pub unsafe fn scatter<T: Element, const W: usize>(lanes: &[Lane<W>], rows: &mut [T]) -> usize {
-        // SAFETY: passed on.
-        unsafe { by_size!(lanes.len(), scatter_few, scatter_squares, (lanes, rows)) }
-    }
-
-    /// Eight rows of `SIZE` numbers fill `SIZE` registers without gaps: number `k` of row `i` is number
-    /// `i SIZE + k` of them all.
-    ///
-    /// # Safety
-    /// The numbers fit the `SIZE` lanes.
-    #[target_feature(enable = "avx512f")]
-    unsafe fn gather_few<T: Element, const W: usize, const SIZE: usize>(
-        rows: &[T],
-        lanes: &mut [Lane<W>],
-    ) -> usize {
-        let whole = rows.len() / (8 * SIZE);
-        for group in 0..whole {
-            let mut registers = [_mm512_setzero_pd(); SIZE];
-            for r in 0..SIZE {
-                // SAFETY: `8 SIZE` numbers from `8 SIZE group` on are within the rows.
-                unsafe {
-                    let from = rows.as_ptr().add((group * SIZE + r) * 8);
-                    prefetch_ahead(from);
-                    registers[r] = T::load_8(from);
-                }
-            }
-            for (lane, &x) in lanes.iter_mut().zip(&pick(registers, &Picks::<SIZE>::GATHER)) {
-                // SAFETY: `group < W / 8`, since the numbers fit the lanes.
-                unsafe { _mm512_storeu_pd(lane.0.as_mut_ptr().add(group * 8), x) };
-            }
-        }
-        whole * 8
-    }
-
-    /// The inverse of [`gather_few`].
-    ///
-    /// # Safety
-    /// The numbers fit the `SIZE` lanes.
-    #[target_feature(enable = "avx512f")]
-    unsafe fn scatter_few<T: Element, const W: usize, const SIZE: usize>(
-        lanes: &[Lane<W>],
-        rows: &mut [T],
-    ) -> usize {
-        let whole = rows.len() / (8 * SIZE);
-        for group in 0..whole {
-            let mut registers = [_mm512_setzero_pd(); SIZE];
-            for (x, lane) in registers.iter_mut().zip(lanes) {
-                // SAFETY: `group < W / 8`, since the numbers fit the lanes.
-                *x = unsafe { _mm512_loadu_pd(lane.0.as_ptr().add(group * 8)) };
-            }
-            let registers = pick(registers, &Picks::<SIZE>::SCATTER);
-            for r in 0..SIZE {
-                // SAFETY: `8 SIZE` numbers from `8 SIZE group` on are within the rows.
-                unsafe { T::store_8(rows.as_mut_ptr().add((group * SIZE + r) * 8), registers[r]) };
-            }
-        }
-        whole * 8
-    }
-
-    /// Indices of the permutes that pick each result register from `SIZE` sources, one source at a time. For source `s`,
-    /// index `i` is `8 + at` if number `i` of the result is number `at` of `s`, and otherwise keeps the number. The first
-    /// permute combines sources 0 and 1.
-    type Indices<const SIZE: usize> = [[[i64; 8]; SIZE]; SIZE];
-
-    struct Picks<const SIZE: usize>;
-
-    impl<const SIZE: usize> Picks<SIZE> {
-        /// Number `i` of lane `k` is number `i SIZE + k` of the registers.
-        const GATHER: Indices<SIZE> = picks(true);
-
-        /// Number `i SIZE + k` of the registers is number `i` of lane `k`.
-        const SCATTER: Indices<SIZE> = picks(false);
-    }
-
-    const fn picks<const SIZE: usize>(gather: bool) -> Indices<SIZE> {
-        let mut indices = [[[0; 8]; SIZE]; SIZE];
-        let mut n = 0;
-        while n < 8 * SIZE {
-            let (i, k) = (n / SIZE, n % SIZE);
-            if gather {
-                set(&mut indices[k], i, n / 8, n % 8);
-            } else {
-                set(&mut indices[n / 8], n % 8, k, i);
-            }
-            n += 1;
-        }
-        indices
-    }
-
-    /// Number `i` of the result is number `at` of the source `from`.
-    const fn set<const SIZE: usize>(indices: &mut [[i64; 8]; SIZE], i: usize, from: usize, at: usize) {
-        let mut source = 1;
-        while source < SIZE {
-            indices[source][i] = if source == from {
-                8 + at as i64
-            } else if source == 1 && from == 0 {
-                at as i64
-            } else {
-                i as i64
-            };
-            source += 1;
-        }
-    }
-
-    #[inline]
-    #[target_feature(enable = "avx512f")]
-    fn pick<const SIZE: usize>(sources: [__m512d; SIZE], indices: &Indices<SIZE>) -> [__m512d; SIZE] {
-        let mut picked = [sources[0]; SIZE];
-        for r in 0..SIZE {
-            for s in 1..SIZE {
-                // SAFETY: eight integers of 64 bits.
-                let index = unsafe { _mm512_loadu_epi64(indices[r][s].as_ptr()) };
-                picked[r] = _mm512_permutex2var_pd(picked[r], index, sources[s]);
-            }
-        }
-        picked
-    }
-
-    /// Eight rows of eight numbers, transposed: pairs of rows, then of pairs, then of fours.
-    #[inline]
-    #[target_feature(enable = "avx512f")]
-    fn transpose([r0, r1, r2, r3, r4, r5, r6, r7]: [__m512d; 8]) -> [__m512d; 8] {
-        let (a0, a1) = (_mm512_unpacklo_pd(r0, r1), _mm512_unpackhi_pd(r0, r1));
-        let (b0, b1) = (_mm512_unpacklo_pd(r2, r3), _mm512_unpackhi_pd(r2, r3));
-        let (c0, c1) = (_mm512_unpacklo_pd(r4, r5), _mm512_unpackhi_pd(r4, r5));
-        let (d0, d1) = (_mm512_unpacklo_pd(r6, r7), _mm512_unpackhi_pd(r6, r7));
-        // Each of a0 … d1 holds four columns of two rows, two numbers side by side; 0x88 takes the first
-        // and third of both, 0xdd the second and fourth.
-        let (p0, p2) = (_mm512_shuffle_f64x2::<0x88>(a0, b0), _mm512_shuffle_f64x2::<0xdd>(a0, b0));
-        let (p1, p3) = (_mm512_shuffle_f64x2::<0x88>(a1, b1), _mm512_shuffle_f64x2::<0xdd>(a1, b1));
-        let (q0, q2) = (_mm512_shuffle_f64x2::<0x88>(c0, d0), _mm512_shuffle_f64x2::<0xdd>(c0, d0));
-        let (q1, q3) = (_mm512_shuffle_f64x2::<0x88>(c1, d1), _mm512_shuffle_f64x2::<0xdd>(c1, d1));
-        [
-            _mm512_shuffle_f64x2::<0x88>(p0, q0),
-            _mm512_shuffle_f64x2::<0x88>(p1, q1),
-            _mm512_shuffle_f64x2::<0x88>(p2, q2),
-            _mm512_shuffle_f64x2::<0x88>(p3, q3),
-            _mm512_shuffle_f64x2::<0xdd>(p0, q0),
-            _mm512_shuffle_f64x2::<0xdd>(p1, q1),
-            _mm512_shuffle_f64x2::<0xdd>(p2, q2),
-            _mm512_shuffle_f64x2::<0xdd>(p3, q3),
         ]
     }
 }

@@ -28,8 +28,8 @@ pub(crate) struct Program {
     pub(crate) rows: Option<RowRunner>,
 }
 
-/// Rows between checks for signals.
-const PIECE: usize = 1 << 17;
+/// Work between checks for signals, as weights of rows: some milliseconds.
+const PIECE: usize = 1 << 25;
 
 /// An operation: name, operands, constant or input, grades of the value as bits, whether it is a rotor, and its place in
 /// the text.
@@ -161,8 +161,9 @@ impl Program {
             return Err(bad("the arrays do not fit the program"));
         }
         let threads = threads(rows.saturating_mul(runner.weight()) / 16)?;
-        for first in (0..rows).step_by(PIECE) {
-            let piece = first..rows.min(first + PIECE);
+        let most = (PIECE / runner.weight()).max(1);
+        for first in (0..rows).step_by(most) {
+            let piece = first..rows.min(first + most);
             let done = py.detach(|| runner.run(threads, data, &mut [&mut *out], piece));
             done.map_err(|error| self.row_error(py, &error, batch))?;
             py.check_signals()?;
@@ -185,8 +186,9 @@ impl Program {
             return Err(bad("the arrays do not fit the program"));
         }
         let threads = threads(count.saturating_mul(runner.weight()) / 16)?;
-        for first in (0..count).step_by(PIECE) {
-            let piece = first..count.min(first + PIECE);
+        let most = (PIECE / runner.weight()).max(1);
+        for first in (0..count).step_by(most) {
+            let piece = first..count.min(first + most);
             if !py.detach(|| runner.run(threads, data, &mut *out, piece)) {
                 return Ok(false);
             }

@@ -1,9 +1,11 @@
 //! Inertia and bodies.
 
-use crate::support::arrays::{Array, Out, Rows, bad, line, map_rows, numbers, one, table};
+use crate::support::arrays::{Array, Out, Rows, bad, line, map_rows, numbers, one, place, table, threads};
+use numpy::PyUntypedArrayMethods;
+use polhode_ga::simd::threads::for_each;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::inertia;
-use polhode_rigid::{Amount, Solid, TriangleMesh, body};
+use polhode_rigid::{Amount, BodyError, Solid, TriangleMesh, body};
 use pyo3::prelude::*;
 use std::convert::Infallible;
 use std::path::PathBuf;
@@ -23,6 +25,33 @@ fn square(matrix: &Rows<'_>) -> PyResult<[[f64; 3]; 3]> {
     Ok([0, 3, 6].map(|i| [m[i], m[i + 1], m[i + 2]]))
 }
 
+/// The inertias of rows of N numbers, computed in threads without the GIL. An error names the place of the first wrong row
+/// in the batch.
+fn of_rows<const N: usize>(
+    py: Python<'_>,
+    rows: &Rows<'_>,
+    inertia: impl Fn([f64; N]) -> Result<inertia::Inertia, BodyError> + Sync,
+) -> PyResult<Vec<Inertia>> {
+    let batch = rows.shape().split_last().map_or(&[][..], |(_, batch)| batch);
+    let all = numbers(rows)?.as_chunks::<N>().0;
+    let threads = threads(all.len() * N)?;
+    let mut pieces: Vec<_> = threads.ranges(all.len(), LEAST).map(|rows| (rows, Ok(Vec::new()))).collect();
+    py.detach(|| {
+        for_each(pieces.iter_mut(), |(rows, made)| {
+            let row = |row: usize| inertia(all[row]).map(Inertia).map_err(|error| (row, error));
+            *made = rows.clone().map(row).collect::<Result<Vec<Inertia>, _>>();
+        });
+    });
+    let mut inertias = Vec::with_capacity(all.len());
+    for (_, made) in pieces {
+        inertias.extend(made.map_err(|(row, error)| bad(format!("{}{error}", place(row, batch))))?);
+    }
+    Ok(inertias)
+}
+
+/// Fewer inertias take less time than a thread.
+const LEAST: usize = 1 << 10;
+
 /// A rotor from its row of components.
 pub(crate) fn rotor(row: &Rows<'_>) -> PyResult<Rotor> {
     Rotor::from_components(one(row)?).map_err(bad)
@@ -38,6 +67,20 @@ impl Inertia {
     #[staticmethod]
     fn from_matrix(matrix: Rows<'_>) -> PyResult<Inertia> {
         inertia::Inertia::from_matrix(square(&matrix)?).map(Inertia).map_err(bad)
+    }
+
+    /// From moments (…, 3), in their order.
+    #[staticmethod]
+    fn all_from_principal_moments(py: Python<'_>, moments: Rows<'_>) -> PyResult<Vec<Inertia>> {
+        of_rows(py, &moments, inertia::Inertia::from_principal_moments)
+    }
+
+    /// From matrices (…, 9), in their order.
+    #[staticmethod]
+    fn all_from_matrices(py: Python<'_>, matrices: Rows<'_>) -> PyResult<Vec<Inertia>> {
+        of_rows(py, &matrices, |m: [f64; 9]| {
+            inertia::Inertia::from_matrix([0, 3, 6].map(|i| [m[i], m[i + 1], m[i + 2]]))
+        })
     }
 
     #[staticmethod]

@@ -178,7 +178,15 @@ fn dictionary<'py>(py: Python<'py>, summary: Summary) -> PyResult<Bound<'py, PyD
             names.len() - 1
         })
     };
-    let codes: Vec<usize> = summary.methods.iter().map(|name| code(name)).collect();
+    let mut last = ("", code(summary.methods.first().copied().unwrap_or_default()));
+    let mut codes: Vec<i64> = Vec::with_capacity(summary.methods.len());
+    for name in &summary.methods {
+        // Most bodies have the method of the one before.
+        if !std::ptr::eq(last.0, *name) {
+            last = (name, code(name));
+        }
+        codes.push(last.1 as i64);
+    }
     let counts = |k: usize| PyArray1::from_iter(py, summary.steps.iter().map(|counts| counts[k] as i64));
     let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
     for (name, rows) in &summary.drifts {

@@ -2,7 +2,8 @@
 //!
 //! A row without a motion is NaN and not an error, because derivatives may be evaluated there.
 
-use super::free::{flat, pieces};
+use super::closed_form::pieces;
+use super::free::flat;
 use crate::support::arrays::{Array, Rows, bad, numbers, table};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};

@@ -1,6 +1,7 @@
 //! Bodies, laws and motions.
 
 pub(crate) mod bodies;
+pub(crate) mod closed_form;
 pub(crate) mod closed_forms;
 pub(crate) mod columns;
 pub(crate) mod ensemble;

@@ -1,7 +1,7 @@
 //! Simulation of one body.
 
 use super::bodies::{Inertia, rotor};
-use super::closed_forms::check_times;
+use super::closed_form::check_times;
 use super::forces_and_events::{Event, Force};
 use super::law_value::{LawValue, failed};
 use super::torque::Law;

@@ -110,7 +110,7 @@ fn follow<'a, const W: usize, const F: bool>(
 
 impl<'a> WaitingRun<'a> {
     fn new(mut member: Member<'a>, scheduler: &Scheduler<'a>) -> WaitingRun<'a> {
-        let torques = mem::take(&mut member.torques);
+        let torques = mem::take(&mut member.torques).into_owned();
         let mut run = BodyRun::new(member, &torques, scheduler);
         let at = run.begin_sweep();
         WaitingRun { fastest: run.rate(&at), run, torques, at }

@@ -1,24 +1,27 @@
-//! Free bodies of an ensemble, in closed form.
+//! Bodies of an ensemble in closed form.
 
 use super::member::{Member, Outcome};
 use super::scheduler::Scheduler;
 use crate::exact::free::FreeMotion;
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
-use crate::run::closed_form::{ElapsedTime, check_kept};
+use crate::run::closed_form::{ClosedForm, ElapsedTime, check_kept};
+use crate::state::carried::Carried;
 use crate::state::checks::check_horizons;
 use crate::state::phase::Phase;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use std::borrow::Cow;
 
+/// The name of the method in certificates.
+const METHOD: &str = "exact";
+
 impl<'a> Scheduler<'a> {
     /// Writes the motion of a free body, with the times in lanes; its momentum and energy are those of the start.
     pub fn free(&self, mut member: Member<'a>) {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
         let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);
-        let method = "exact";
         if let Err(error) = check_horizons(start.time, self.times, [motion.horizon(); 2]) {
-            return self.fail(body, own, method, error);
+            return self.fail(body, own, METHOD, error);
         }
         let since = ElapsedTime::new(start.time, gyrostat, &[]);
         let elapsed: Cow<'_, [f64]> = match start.time {
@@ -50,9 +53,33 @@ impl<'a> Scheduler<'a> {
         }
         let drifts = monitor.finish();
         if let Err(error) = check_kept(&drifts) {
-            return self.fail(body, own, method, error);
+            return self.fail(body, own, METHOD, error);
         }
-        let certificate = Certificate { method, drifts, norm_drift, ..Certificate::default() };
+        let certificate = Certificate { method: METHOD, drifts, norm_drift, ..Certificate::default() };
+        self.count(&mut 0, 1.0, 1);
+        self.record([Outcome { body, certificate, failure: None }]);
+    }
+
+    /// Writes the motion of a body under a torque, by the rules for a single body.
+    pub fn exact(&self, mut member: Member<'a>, closed: &ClosedForm) {
+        let Member { body, frame, gyrostat, start, ref torques, ref mut own, .. } = member;
+        if let Err(error) = check_horizons(start.time, self.times, closed.horizons()) {
+            return self.fail(body, own, METHOD, error);
+        }
+        let mut monitor = DriftMonitor::new(gyrostat, torques, start);
+        let mut norm_drift = 0.0_f64;
+        for (index, Carried { phase, .. }) in closed.at_many(self.times).iter().enumerate() {
+            monitor.record(phase);
+            norm_drift = norm_drift.max(off_unit(phase.rotor));
+            own.write(index, (frame, &gyrostat, torques), phase, &self.center(body, phase.time));
+        }
+        let drifts = monitor.finish();
+        if let Err(error) = check_kept(&drifts) {
+            return self.fail(body, own, METHOD, error);
+        }
+        let error_estimate = closed.neglected(self.times);
+        let certificate =
+            Certificate { method: METHOD, error_estimate, drifts, norm_drift, ..Certificate::default() };
         self.count(&mut 0, 1.0, 1);
         self.record([Outcome { body, certificate, failure: None }]);
     }

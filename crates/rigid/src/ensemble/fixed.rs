@@ -1,9 +1,12 @@
 //! Fixed-step integration of bodies in SIMD lanes.
 
+use super::columns::Record;
 use super::laws::{LaneForcing, Laws};
-use super::member::{Member, Outcome, Plan, SIDE_BY_SIDE};
+use super::member::{Member, Plan, SIDE_BY_SIDE, of};
+use super::monitor::{LaneMonitor, LanePoint};
+use super::observe::{LaneBodies, LanePhases, LanePoints};
 use super::scheduler::Scheduler;
-use super::steppers::{Advance, Components, Kicks, Segment, Stepper, of};
+use super::steppers::{Advance, Components, Kicks, Segment, Stepper};
 use crate::error::SimulateError;
 use crate::laws::torque::{Torque, damping_rate};
 use crate::methods::Method;
@@ -11,16 +14,16 @@ use crate::methods::classical::Bodies;
 use crate::methods::momentum::fixed_momentum;
 use crate::methods::splitting::turns::Turns;
 use crate::run::Progress;
-use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
 use crate::run::engine::Engine;
 use crate::run::limits::span;
 use crate::run::stops::{aliasing_warning, is_aliased};
 use crate::run::sweep::is_finite;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
-use crate::state::phase::Phase;
+use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::simd::lanes::{Work, fastest};
 use std::array;
+use std::borrow::Cow;
 
 /// Steps between checks for finite states and calls of `progress`.
 const BETWEEN_CHECKS: u64 = 1024;
@@ -38,7 +41,7 @@ impl Work for FixedSteps<'_, '_> {
 
     #[inline(always)]
     fn run<const F: bool>(mut self) {
-        let torques: Vec<Vec<Torque>> =
+        let torques: Vec<Cow<[Torque]>> =
             self.members.iter_mut().map(|m| std::mem::take(&mut m.torques)).collect();
         let laws = |l: usize| &torques[if l < torques.len() { l } else { 0 }][..];
         let damping = |l: usize| damping_rate(laws(l));
@@ -71,12 +74,21 @@ impl Work for FixedSteps<'_, '_> {
 }
 
 impl FixedSteps<'_, '_> {
-    fn advance_all<const F: bool, S: Stepper>(self, stepper: &mut S, torques: &[Vec<Torque>]) {
+    fn advance_all<const F: bool, S: Stepper>(self, stepper: &mut S, torques: &[Cow<[Torque]>]) {
         let FixedSteps { scheduler, plan, mut members, progress } = self;
         let Plan { start, step, method, .. } = plan;
         let times = scheduler.times;
-        let mut monitors: Vec<DriftMonitor> =
-            members.iter().zip(torques).map(|(m, t)| DriftMonitor::new(m.gyrostat, t, m.start)).collect();
+        let (bodies, gyrostats): (_, Vec<Gyrostat>) =
+            (LaneBodies::new(&members), members.iter().map(|member| member.gyrostat).collect());
+        let point = |points: &LanePoints, l: usize, time: f64| {
+            LanePoint::new(points, l, (&gyrostats[l], &torques[l]), time)
+        };
+        let mut monitor = LaneMonitor::default();
+        let at_start = bodies.points(LanePhases::starts(&members));
+        (0..members.len()).for_each(|l| monitor.follow(l, &point(&at_start, l, start)));
+        // Their products with the numbers of a moderate state are finite.
+        let sizes = members.iter().flat_map(|m| m.gyrostat.moments.into_iter().chain(m.gyrostat.wheel.0));
+        let are_moderate = moderate(sizes);
         let mut failures: [Option<(f64, SimulateError)>; SIDE_BY_SIDE] = [const { None }; SIDE_BY_SIDE];
         let mut norm_drifts = [0.0_f64; SIDE_BY_SIDE];
         let (mut steps, mut longest, mut so_far) = (0, 0.0_f64, 0);
@@ -100,10 +112,16 @@ impl FixedSteps<'_, '_> {
                             Advance::<_, F> { stepper, state: &mut state, segment, steps: part.clone() };
                         fastest(advance);
                         steps += last - first;
+                        let are_finite = are_moderate && S::numbers(&state).all(|x| moderate(*x));
                         for (l, member) in members.iter().enumerate() {
-                            let now = stepper.phase(&member.gyrostat, &state, l, segment.begin(last));
+                            if are_finite {
+                                break;
+                            }
+                            let phase =
+                                |state, step| stepper.phases(&bodies, state).phase(l, segment.begin(step));
+                            let now = phase(&state, last);
                             if !lost[l] && !is_finite(&Carried::new(now, Center::default())) {
-                                let from = stepper.phase(&member.gyrostat, &before, l, segment.begin(first));
+                                let from = phase(&before, first);
                                 lost[l] = true;
                                 let part = (&segment, part.clone());
                                 let failure = diagnose(method, member, &torques[l], from, part);
@@ -119,17 +137,20 @@ impl FixedSteps<'_, '_> {
                     }
                 }
                 time = times[index];
+                let points = bodies.points(stepper.phases(&bodies, &state));
                 for (l, member) in members.iter_mut().enumerate() {
                     if lost[l] {
                         member.own.unknown(index);
                         continue;
                     }
-                    let phase = stepper.phase(&member.gyrostat, &state, l, time);
-                    norm_drifts[l] = norm_drifts[l].max(off_unit(phase.rotor));
-                    monitors[l].record(&phase);
-                    let center = scheduler.center(member.body, time);
-                    let of = (member.frame, &member.gyrostat, &torques[l][..]);
-                    member.own.write(index, of, &phase, &center);
+                    let point = point(&points, l, time);
+                    norm_drifts[l] = norm_drifts[l].max(points.off_unit.0[l]);
+                    monitor.record(l, &point);
+                    let (rotor, omega) = points.in_body(l);
+                    member.own.put(index, rotor, omega, point.momentum, point.energy);
+                    if member.own.centers.is_some() {
+                        member.own.place(index, &scheduler.center(member.body, time));
+                    }
                 }
             }
         }
@@ -138,28 +159,28 @@ impl FixedSteps<'_, '_> {
         let first = &members[0];
         let is_aliased = |law: &&Torque| is_aliased(law, &first.gyrostat, &first.start, [begin, end], step);
         let aliased = torques[0].iter().filter(is_aliased);
-        let mut warnings: Vec<String> = aliased.map(|law| aliasing_warning(law, step)).collect();
-        let failures = failures.into_iter();
-        let outcomes = members.iter().zip(monitors).zip(failures).zip(norm_drifts);
-        scheduler.record(outcomes.map(|(((member, monitor), failure), norm_drift)| Outcome {
-            body: member.body,
-            certificate: Certificate {
-                method: method.name(),
-                step: longest,
-                steps,
-                evaluations: steps * plan.evaluations(),
-                error_estimate: None,
-                drifts: monitor.finish(),
-                norm_drift,
-                warnings: std::mem::take(&mut warnings),
-            },
-            failure,
-        }));
+        let columns = &scheduler.columns;
+        columns.warn(first.body, aliased.map(|law| aliasing_warning(law, step)));
+        let (method, evaluations) = (columns.method(method.name()), steps * plan.evaluations());
+        for (l, Member { body, .. }) in members.iter().enumerate() {
+            let (estimate, norm_drift) = (f64::NAN, norm_drifts[l]);
+            columns.record(*body, Record { method, longest, steps, evaluations, estimate, norm_drift });
+            monitor.finish(l).for_each(|(quantity, numbers)| columns.drift(*body, quantity, numbers));
+        }
+        for (member, failure) in members.iter().zip(failures) {
+            failure.into_iter().for_each(|failure| columns.fail(member.body, failure));
+        }
     }
 }
 
+/// Whether products of two such numbers are finite.
+#[inline]
+fn moderate(numbers: impl IntoIterator<Item = f64>) -> bool {
+    numbers.into_iter().fold(true, |all, x| all & (x.abs() < 1e100))
+}
+
 /// Ascending times at which the laws are not smooth; all bodies share such laws.
-fn breaks(torques: &[Vec<Torque>], extra: &[f64]) -> Vec<f64> {
+fn breaks(torques: &[Cow<[Torque]>], extra: &[f64]) -> Vec<f64> {
     let laws = torques[0].iter().flat_map(|law| law.breaks());
     let mut breaks: Vec<f64> = laws.chain(extra).copied().collect();
     breaks.sort_by(f64::total_cmp);

@@ -3,16 +3,23 @@
 //! Laws of one kind are merged where their parameters add up. Shared orbits and tables are
 //! evaluated once per time.
 
+mod gain;
+mod orbits;
+mod table;
+
 use crate::laws::forcing::{Forcing, Place};
 use crate::laws::formula::Formulas;
-use crate::laws::torque::lanes::{Three, gradient, in_lanes, quadratic, seen, turn_from};
-use crate::laws::torque::{Axes, Gains, Orbit, Table, Torque};
+use crate::laws::torque::lanes::{Three, add, in_lanes, quadratic, seen, turn_from};
+use crate::laws::torque::{Axes, Gains, Torque};
 use crate::state::phase::vertical;
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::simd::lanes::{Lanes, Work, cross, fastest, mapped};
-use polhode_ga::{Bivector, Rotor, Vector};
+use gain::Gain;
+use orbits::Orbits;
+use polhode_ga::simd::lanes::{Lanes, Work, cross, fastest};
+use polhode_ga::{Bivector, Rotor};
 use std::array;
 use std::sync::Arc;
+use table::CachedTable;
 
 /// Free bodies without wheels.
 pub(crate) struct NoForcing;
@@ -49,6 +56,10 @@ pub(super) struct Gradient<const W: usize, const F: bool> {
 impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
+
+    fn ahead(&mut self, times: impl Iterator<Item = f64>) {
+        self.orbits.foresee(times);
+    }
 
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
@@ -103,15 +114,13 @@ enum Law<'t, const W: usize, const F: bool> {
     ConstantBody(Three<W, F>),
     ConstantSpace(Three<W, F>),
     QuadraticDamping(Lanes<W, F>),
-    /// By rows of d.
-    ViscousDamping([Three<W, F>; 3]),
+    ViscousDamping(Gain<W, F>),
     Magnetic {
         dipole: Three<W, F>,
         field: Three<W, F>,
     },
-    /// By rows of k.
     Spring {
-        stiffness: [Three<W, F>; 3],
+        stiffness: Gain<W, F>,
         rest: [Lanes<W, F>; 4],
     },
     Larmor(Three<W, F>),
@@ -120,22 +129,6 @@ enum Law<'t, const W: usize, const F: bool> {
     Formula(Box<Formulas<'t, W, F>>),
     /// Lane by lane.
     Other([&'t Torque; W]),
-}
-
-/// The orbits of all bodies, with their latest positions.
-struct Orbits<const W: usize> {
-    orbits: [Orbit; W],
-    shared: bool,
-    times: [f64; W],
-    /// Directions u, whose third component is 0, and `3n² (a/r)³`.
-    places: [[f64; W]; 3],
-}
-
-/// A table with its last value, at a time of a step with this middle.
-struct CachedTable<'t> {
-    table: &'t Table,
-    at: [f64; 2],
-    torque: [f64; 3],
 }
 
 /// The numbers of a law computed in lanes; empty for others.
@@ -164,8 +157,8 @@ fn lanes<const N: usize, const W: usize, const F: bool>(
     in_lanes(|l| array::from_fn(|k| each[l].get(first + k).copied().unwrap_or_default()))
 }
 
-fn square<const W: usize, const F: bool>(each: &[Vec<f64>; W], first: usize) -> [Three<W, F>; 3] {
-    array::from_fn(|row| lanes(each, first + 3 * row))
+fn gain<const W: usize, const F: bool>(each: &[Vec<f64>; W], first: usize) -> Gain<W, F> {
+    Gain::new(array::from_fn(|row| lanes(each, first + 3 * row)))
 }
 
 impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
@@ -180,22 +173,18 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
             Torque::ConstantBody(_) => Law::ConstantBody(lanes(&own, 0)),
             Torque::ConstantSpace(_) => Law::ConstantSpace(lanes(&own, 0)),
             Torque::QuadraticDamping(_) => Law::QuadraticDamping(lanes::<1, W, F>(&own, 0)[0]),
-            Torque::ViscousDamping(_) => Law::ViscousDamping(square(&own, 0)),
+            Torque::ViscousDamping(_) => Law::ViscousDamping(gain(&own, 0)),
             Torque::Magnetic { .. } => Law::Magnetic { dipole: lanes(&own, 0), field: lanes(&own, 3) },
-            Torque::TorsionSpring { .. } => Law::Spring { stiffness: square(&own, 0), rest: lanes(&own, 9) },
+            Torque::TorsionSpring { .. } => Law::Spring { stiffness: gain(&own, 0), rest: lanes(&own, 9) },
             Torque::Control { .. } => {
-                let spring = Law::Spring { stiffness: square(&own, 0), rest: lanes(&own, 9) };
-                return vec![spring, Law::ViscousDamping(square(&own, 13))];
+                let spring = Law::Spring { stiffness: gain(&own, 0), rest: lanes(&own, 9) };
+                return vec![spring, Law::ViscousDamping(gain(&own, 13))];
             }
             Torque::Larmor(_) => Law::Larmor(lanes(&own, 0)),
             Torque::Tabulated(table) => {
                 let same =
                     |law: &&Torque| matches!(law, Torque::Tabulated(other) if Arc::ptr_eq(table, other));
-                if each.iter().all(same) {
-                    Law::Tabulated(CachedTable { table, at: [f64::NAN; 2], torque: [f64::NAN; 3] })
-                } else {
-                    Law::Other(each)
-                }
+                if each.iter().all(same) { Law::Tabulated(CachedTable::new(table)) } else { Law::Other(each) }
             }
             Torque::Formula(_) | Torque::Registered(_) => {
                 let known = each.map(Torque::formula);
@@ -233,92 +222,10 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
             | (Law::ConstantSpace(a), Law::ConstantSpace(b))
             | (Law::Larmor(a), Law::Larmor(b)) => add(a, b),
             (Law::QuadraticDamping(a), Law::QuadraticDamping(b)) => *a += *b,
-            (Law::ViscousDamping(a), Law::ViscousDamping(b)) => {
-                for k in 0..3 {
-                    add(&mut a[k], &b[k]);
-                }
-            }
+            (Law::ViscousDamping(a), Law::ViscousDamping(b)) => a.join(b),
             _ => return false,
         }
         true
-    }
-}
-
-#[inline(always)]
-fn add<const W: usize, const F: bool>(a: &mut Three<W, F>, b: &Three<W, F>) {
-    for k in 0..3 {
-        a[k] += b[k];
-    }
-}
-
-impl<const W: usize> Orbits<W> {
-    fn new(each: [&Torque; W]) -> Option<Orbits<W>> {
-        let mut orbits = [Orbit::circular(0.0); W];
-        for (l, law) in each.into_iter().enumerate() {
-            let Torque::GravityGradient(orbit) = law else { return None };
-            orbits[l] = *orbit;
-        }
-        let shared = orbits.iter().all(|orbit| *orbit == orbits[0]);
-        Some(Orbits { orbits, shared, times: [f64::NAN; W], places: [[0.0; W]; 3] })
-    }
-
-    #[inline(always)]
-    fn torque<const F: bool>(&mut self, moments: &Three<W, F>, at: &Place<W, F>) -> Three<W, F> {
-        let mut elsewhere = false;
-        for l in 0..W {
-            elsewhere |= at.time.0[l] != self.times[l];
-        }
-        if elsewhere {
-            self.go_to(&at.time.0);
-        }
-        let [x, y, strength] = self.places;
-        gradient(moments, &seen(&at.rotor, &[Lanes(x), Lanes(y), Lanes::ZERO]), Lanes(strength))
-    }
-
-    /// Updates the positions to these times.
-    fn go_to(&mut self, times: &[f64; W]) {
-        self.times = *times;
-        if self.shared && times.iter().all(|time| *time == times[0]) {
-            let place = place(&self.orbits[0], times[0]);
-            for k in 0..3 {
-                self.places[k] = [place[k]; W];
-            }
-            return;
-        }
-        for l in 0..W {
-            let place = place(&self.orbits[l], times[l]);
-            for k in 0..3 {
-                self.places[k][l] = place[k];
-            }
-        }
-    }
-}
-
-/// Two components of u, and the strength of the field.
-fn place(orbit: &Orbit, time: f64) -> [f64; 3] {
-    let (Vector([x, y, _]), nearness) = orbit.place(time);
-    [x, y, 3.0 * orbit.rate() * orbit.rate() * nearness]
-}
-
-impl CachedTable<'_> {
-    /// The torques at the places of all bodies, NaN where the table has none.
-    fn at<const W: usize, const F: bool>(
-        &mut self,
-        place: &Place<W, F>,
-        middle: &Lanes<W, F>,
-    ) -> Three<W, F> {
-        let mut torques = [Lanes::ZERO; 3];
-        for l in 0..W {
-            let at = [place.time.0[l], middle.0[l]];
-            if at != self.at {
-                self.at = at;
-                self.torque = self.table.within(at[0], at[1]).map_or([f64::NAN; 3], |torque| torque.0);
-            }
-            for k in 0..3 {
-                torques[k].0[l] = self.torque[k];
-            }
-        }
-        torques
     }
 }
 
@@ -365,9 +272,11 @@ fn lane_by_lane<const W: usize, const F: bool>(
     })
 }
 
-/// The torque of a law, compiled outside the stages of the steps, which would repeat its code.
+/// The torque of a law, compiled outside the stages of the steps, which would repeat its code, and apart from a loop over
+/// laws, out of which the compiler would take work for laws that are not there.
 struct Term<'a, 't, const W: usize, const F: bool> {
     law: &'a mut Law<'t, W, F>,
+    gyrostats: &'a [Gyrostat; W],
     moments: &'a Three<W, F>,
     wheel: &'a Three<W, F>,
     at: &'a Place<W, F>,
@@ -383,7 +292,7 @@ impl<const W: usize, const F: bool> Work for Term<'_, '_, W, F> {
         if FUSED != F {
             return [Lanes::ZERO; 3];
         }
-        let Term { law, moments, wheel, at, middle } = self;
+        let Term { law, gyrostats, moments, wheel, at, middle } = self;
         match law {
             // γ∧c: its axial vector is γ x c.
             Law::Heavy(c) => cross(&vertical(&at.rotor), c),
@@ -391,15 +300,9 @@ impl<const W: usize, const F: bool> Work for Term<'_, '_, W, F> {
             Law::ConstantBody(torque) => *torque,
             Law::ConstantSpace(torque) => seen(&at.rotor, torque),
             Law::QuadraticDamping(k) => quadratic(*k, &at.omega),
-            Law::ViscousDamping(d) => {
-                let [x, y, z] = mapped(d, &at.omega);
-                [-x, -y, -z]
-            }
+            Law::ViscousDamping(d) => d.against(&at.omega),
             Law::Magnetic { dipole, field } => cross(dipole, &seen(&at.rotor, field)),
-            Law::Spring { stiffness, rest } => {
-                let [x, y, z] = mapped(stiffness, &turn_from(rest, &at.rotor));
-                [-x, -y, -z]
-            }
+            Law::Spring { stiffness, rest } => stiffness.against(&turn_from(rest, &at.rotor)),
             Law::Larmor(b) => {
                 let mut momentum = *wheel;
                 for k in 0..3 {
@@ -412,7 +315,7 @@ impl<const W: usize, const F: bool> Work for Term<'_, '_, W, F> {
                 if cached.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
             }
             Law::Formula(formulas) => formulas.torque(at),
-            Law::Other(_) => [Lanes::ZERO; 3],
+            Law::Other(each) => lane_by_lane(gyrostats, each, at, middle),
         }
     }
 }
@@ -425,15 +328,23 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
         self.middle = middle;
     }
 
+    fn ahead(&mut self, times: impl Iterator<Item = f64>) {
+        // Of several planets the first.
+        let planet = self.laws.iter_mut().find_map(|law| match law {
+            Law::GravityGradient(orbits) => Some(orbits),
+            _ => None,
+        });
+        if let Some(orbits) = planet {
+            orbits.foresee(times);
+        }
+    }
+
+    #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
         let Laws { gyrostats, moments, wheel, laws, middle } = self;
         let mut sum = [Lanes::ZERO; 3];
         for law in laws {
-            let torque = match law {
-                Law::Other(each) => lane_by_lane(gyrostats, each, at, middle),
-                law => fastest(Term { law, moments, wheel, at, middle }),
-            };
-            add(&mut sum, &torque);
+            add(&mut sum, &fastest(Term { law, gyrostats, moments, wheel, at, middle }));
         }
         sum
     }

@@ -5,10 +5,12 @@ use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::methods::splitting::turns::Kind;
 use crate::run::certificate::Certificate;
+use crate::run::closed_form::ClosedForm;
 use crate::run::limits::StepBounds;
 use crate::run::output::BodyOutput;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor};
+use std::borrow::Cow;
 
 /// Bodies in lanes: two registers of the widest machines, to hide latency.
 pub(super) const SIDE_BY_SIDE: usize = 16;
@@ -23,7 +25,7 @@ pub(super) struct Member<'a> {
     /// From principal axes to those of the body.
     pub frame: Rotor,
     pub gyrostat: Gyrostat,
-    pub torques: Vec<Torque>,
+    pub torques: Cow<'a, [Torque]>,
     /// At the start, rad/s.
     pub omega: Bivector,
     pub start: Phase,
@@ -32,12 +34,19 @@ pub(super) struct Member<'a> {
     pub own: BodyOutput<'a>,
 }
 
+/// The member of a lane; lanes without a body hold the first one.
+pub(super) fn of<'m, 'a>(members: &'m [Member<'a>], lane: usize) -> &'m Member<'a> {
+    members.get(lane).unwrap_or(&members[0])
+}
+
 /// Solution strategy of a body without a given step.
 pub(super) enum Strategy {
     /// In the lanes.
     Lanes,
     /// In closed form, for a free body.
     Free,
+    /// In closed form, under a torque.
+    Exact(Box<ClosedForm>),
     /// As a single body.
     Single,
 }

@@ -8,10 +8,13 @@
 mod adaptive;
 pub mod bins;
 mod body_run;
+mod columns;
 mod exact;
 mod fixed;
 pub(crate) mod laws;
 mod member;
+mod monitor;
+mod observe;
 mod output;
 pub mod reduce;
 mod scheduler;
@@ -135,7 +138,15 @@ impl Ensemble {
         let rows = rows.into_iter().chain(self.laws.iter().map(|law| law.0.len()));
         let rows = rows.chain(self.forces.iter().map(|force| force.0.len()));
         assert!(rows.into_iter().all(|n| n == 1 || n == self.starts.len()), "one for all, or one for each");
-        Scheduler::new(self, times, options, outputs).work(threads, progress)
+        let shared = self.shared_laws();
+        Scheduler::new(self, shared.as_deref(), times, options, outputs).work(threads, progress)
+    }
+
+    /// The laws in principal axes, if all bodies share them and an inertia.
+    fn shared_laws(&self) -> Option<Vec<Torque>> {
+        let alike = self.inertias.is_one() && self.laws.iter().all(|law| law.is_one());
+        let frame = self.inertias.of(0).principal_frame();
+        alike.then(|| self.laws.iter().map(|law| law.of(0).clone().in_axes(frame)).collect())
     }
 
     /// Checks input that concerns all bodies.

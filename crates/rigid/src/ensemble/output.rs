@@ -2,6 +2,8 @@
 
 use super::Failure;
 use crate::run::output::BodyOutput;
+use std::mem;
+use std::ops::Range;
 
 /// Arrays for the states of all bodies at all times, body by body: rows of rotors (4), angular velocities in body axes
 /// (3), momenta in space (3), energies (1) and, optionally, positions (3) and velocities (3).
@@ -41,20 +43,60 @@ pub struct Summary {
     pub warnings: Vec<String>,
 }
 
-impl<'a> Outputs<'a> {
-    /// The arrays of each body, for a number of times.
-    pub(crate) fn each(self, times: usize) -> impl Iterator<Item = BodyOutput<'a>> + Send {
-        let mut centers = self.centers.map(|centers| centers.map(|rows| rows.chunks_mut(3 * times)));
-        let own = self.rotors.chunks_mut(4 * times).zip(self.omegas.chunks_mut(3 * times));
-        let own = own.zip(self.momenta.chunks_mut(3 * times)).zip(self.energies.chunks_mut(times));
-        own.map(move |(((rotors, omegas), momenta), energies)| BodyOutput {
-            rotors,
-            omegas,
-            momenta,
-            energies,
-            centers: centers
-                .as_mut()
-                .and_then(|[places, velocities]| Some([places.next()?, velocities.next()?])),
-        })
+/// Successive bodies with their output arrays.
+#[derive(Debug)]
+pub(super) struct Share<'a> {
+    bodies: Range<usize>,
+    times: usize,
+    arrays: BodyOutput<'a>,
+}
+
+impl<'a> Share<'a> {
+    /// All bodies, for a number of times.
+    pub fn all(outputs: Outputs<'a>, times: usize) -> Share<'a> {
+        let Outputs { rotors, omegas, momenta, energies, centers } = outputs;
+        let bodies = 0..energies.len().checked_div(times).unwrap_or(0);
+        Share { bodies, times, arrays: BodyOutput { rotors, omegas, momenta, energies, centers } }
     }
+
+    pub fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Takes the first bodies away; fewer if there are not as many.
+    pub fn take_first(&mut self, count: usize) -> Share<'a> {
+        let first = self.bodies.start;
+        let bodies = first..first + count.min(self.bodies.len());
+        self.bodies.start = bodies.end;
+        let points = self.times * bodies.len();
+        let arrays = BodyOutput {
+            rotors: front(&mut self.arrays.rotors, 4 * points),
+            omegas: front(&mut self.arrays.omegas, 3 * points),
+            momenta: front(&mut self.arrays.momenta, 3 * points),
+            energies: front(&mut self.arrays.energies, points),
+            centers: match &mut self.arrays.centers {
+                Some([places, velocities]) => {
+                    Some([front(places, 3 * points), front(velocities, 3 * points)])
+                }
+                None => None,
+            },
+        };
+        Share { bodies, times: self.times, arrays }
+    }
+}
+
+impl<'a> Iterator for Share<'a> {
+    type Item = (usize, BodyOutput<'a>);
+
+    fn next(&mut self) -> Option<(usize, BodyOutput<'a>)> {
+        let share = self.take_first(1);
+        share.bodies.clone().next().map(|body| (body, share.arrays))
+    }
+}
+
+/// Takes the first numbers away, or all if there are not as many.
+fn front<'a>(numbers: &mut &'a mut [f64], count: usize) -> &'a mut [f64] {
+    let (first, rest) = mem::take(numbers).split_at_mut_checked(count).unwrap_or_default();
+    *numbers = rest;
+    first
 }

@@ -1,8 +1,9 @@
 //! Scheduler: assigns the bodies of an ensemble to threads and collects their outcomes.
 
 use super::Ensemble;
-use super::member::{METHOD, Member, Outcome, Plan, Strategy};
-use super::output::Outputs;
+use super::columns::{Columns, lock};
+use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy};
+use super::output::{Outputs, Share};
 use crate::error::SimulateError;
 use crate::laws::force::Force;
 use crate::laws::torque::{Torque, wheel};
@@ -17,22 +18,20 @@ use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::Vector;
 use std::borrow::Cow;
-use std::iter::Enumerate;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Condvar, Mutex, OnceLock};
 
 /// Parts into which the progress of a body is divided.
 const PARTS: f64 = 1024.0;
-
-type Queue<'a> = Enumerate<Box<dyn Iterator<Item = BodyOutput<'a>> + Send + 'a>>;
 
 /// State shared by the threads.
 pub(super) struct Scheduler<'a> {
     pub ensemble: &'a Ensemble,
     pub times: &'a [f64],
     pub options: &'a Options,
-    queue: Mutex<Queue<'a>>,
-    pub(super) outcomes: Mutex<Vec<Outcome>>,
+    /// Unassigned bodies.
+    queue: Mutex<Share<'a>>,
+    pub(super) columns: Columns,
     pub(super) stopped: AtomicBool,
     /// In parts of bodies.
     done: AtomicU64,
@@ -40,46 +39,55 @@ pub(super) struct Scheduler<'a> {
     pub(super) running: Mutex<usize>,
     pub(super) ended: Condvar,
     /// The laws in principal axes, if all bodies share them and an inertia.
-    shared: Option<Vec<Torque>>,
+    shared: Option<&'a [Torque]>,
     /// Their samples in time, if all bodies also start at one time.
     samples: Option<OnceLock<Samples>>,
-}
-
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl<'a> Scheduler<'a> {
     pub fn new(
         ensemble: &'a Ensemble,
+        shared: Option<&'a [Torque]>,
         times: &'a [f64],
         options: &'a Options,
         outputs: Outputs<'a>,
     ) -> Scheduler<'a> {
-        let each: Box<dyn Iterator<Item = BodyOutput<'a>> + Send + 'a> =
-            Box::new(outputs.each(times.len().max(1)));
-        let alike = ensemble.inertias.is_one() && ensemble.laws.iter().all(|law| law.is_one());
+        let all = Share::all(outputs, times.len());
         let same_start = ensemble.starts.iter().all(|start| start.time == ensemble.starts[0].time);
-        let frame = ensemble.inertias.of(0).principal_frame();
-        let turned = || ensemble.laws.iter().map(|law| law.of(0).clone().in_axes(frame)).collect();
         Scheduler {
             ensemble,
             times,
             options,
-            queue: Mutex::new(each.enumerate()),
-            outcomes: Mutex::new(Vec::with_capacity(ensemble.starts.len())),
+            columns: Columns::new(all.len()),
+            queue: Mutex::new(all),
             stopped: AtomicBool::new(false),
             done: AtomicU64::new(0),
             running: Mutex::new(0),
             ended: Condvar::new(),
-            shared: alike.then(turned),
-            samples: (alike && same_start).then(OnceLock::new),
+            shared,
+            samples: (shared.is_some() && same_start).then(OnceLock::new),
         }
+    }
+
+    /// The next unassigned bodies: those that fit into the lanes, or a part of the last ones, of which the others of
+    /// `threads` get as many.
+    pub fn next_bodies(&self, threads: usize) -> Option<Share<'a>> {
+        if self.is_stopped() {
+            return None;
+        }
+        let mut queue = lock(&self.queue);
+        let count = queue.len().div_ceil(threads.max(1)).min(SIDE_BY_SIDE);
+        if count == 0 { None } else { Some(queue.take_first(count)) }
+    }
+
+    /// Whether the run was stopped.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
     }
 
     /// The next unassigned body, with its output arrays.
     pub fn next_body(&self) -> Option<(usize, BodyOutput<'a>)> {
-        if self.stopped.load(Ordering::Relaxed) { None } else { lock(&self.queue).next() }
+        if self.is_stopped() { None } else { lock(&self.queue).next() }
     }
 
     /// The next body for adaptive steps in lanes. Bodies before it that lanes do not support are solved at once.
@@ -101,6 +109,10 @@ impl<'a> Scheduler<'a> {
                     self.free(member);
                     self.report(progress);
                 }
+                Strategy::Exact(closed) => {
+                    self.exact(member, &closed);
+                    self.report(progress);
+                }
                 Strategy::Single => self.run_single(body, member.own, progress),
             }
         }
@@ -108,27 +120,26 @@ impl<'a> Scheduler<'a> {
     }
 
     /// The plan of a body for equal steps in lanes, if they are supported.
-    pub fn plan(&self, body: usize, step: f64) -> Option<Plan> {
+    pub fn plan(&self, member: &Member, step: f64) -> Option<Plan> {
+        let Member { gyrostat, torques, start, .. } = member;
         if !self.ensemble.in_lanes(true) {
             return None;
         }
-        let method = self.options.method.unwrap_or_else(|| self.ensemble.problem(body).best());
+        let best = || Method::best(gyrostat, torques, false, start);
+        let method = self.options.method.unwrap_or_else(best);
         let kind = match method {
             Method::Classical => None,
             Method::Splitting(sequence) => {
-                let torques = self.torques(body);
-                let moments = self.ensemble.inertias.of(body).principal_moments();
-                let gyrostat = Gyrostat { moments, wheel: wheel(&torques) };
-                let kind = Kind::of(&gyrostat);
+                let kind = Kind::of(gyrostat);
                 let exact_drift = sequence.is_nystrom() && !kind.is_symmetric();
-                if exact_drift || method.unfit(&gyrostat, &torques).is_some() {
+                if exact_drift || method.unfit(gyrostat, torques).is_some() {
                     return None;
                 }
                 Some(kind)
             }
             _ => return None,
         };
-        Some(Plan { start: self.ensemble.starts[body].time, step, method, kind })
+        Some(Plan { start: start.time, step, method, kind })
     }
 
     /// Solution strategy of a body without a given step.
@@ -146,13 +157,20 @@ impl<'a> Scheduler<'a> {
             let (center, acceleration) = (Center::default(), Vector::default());
             let fall = UniformAcceleration { time: start.time, start: center, acceleration };
             let closed = ClosedForm::of(*gyrostat, start.rotor, *omega, torques, fall);
-            if closed.is_some() || self.options.exact { Strategy::Single } else { Strategy::Lanes }
+            let most = self.options.rtol.filter(|_| !self.options.exact).unwrap_or(f64::INFINITY);
+            match closed {
+                Some(closed) if closed.neglected(self.times).unwrap_or(0.0) <= most => {
+                    Strategy::Exact(Box::new(closed))
+                }
+                None if !self.options.exact => Strategy::Lanes,
+                _ => Strategy::Single,
+            }
         }
     }
 
     /// The laws of a body in principal axes.
-    fn torques(&self, body: usize) -> Cow<'_, [Torque]> {
-        if let Some(shared) = &self.shared {
+    fn torques(&self, body: usize) -> Cow<'a, [Torque]> {
+        if let Some(shared) = self.shared {
             return shared.into();
         }
         let frame = self.ensemble.inertias.of(body).principal_frame();
@@ -162,7 +180,7 @@ impl<'a> Scheduler<'a> {
     pub fn member(&self, body: usize, own: BodyOutput<'a>) -> Member<'a> {
         let (inertia, start) = (self.ensemble.inertias.of(body), &self.ensemble.starts[body]);
         let frame = inertia.principal_frame();
-        let torques = self.torques(body).into_owned();
+        let torques = self.torques(body);
         let gyrostat = Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) };
         let omega = frame.reverse().apply_bivector(start.omega);
         let (rotor, momentum) = (start.rotor * frame, gyrostat.momentum(omega));
@@ -230,7 +248,7 @@ impl<'a> Scheduler<'a> {
     }
 
     pub fn record(&self, outcomes: impl IntoIterator<Item = Outcome>) {
-        lock(&self.outcomes).extend(outcomes);
+        outcomes.into_iter().for_each(|outcome| self.columns.take(outcome));
     }
 
     /// Counts a number of bodies as done to this fraction; `so_far` holds the parts of each counted before.
@@ -247,6 +265,6 @@ impl<'a> Scheduler<'a> {
         if !progress(Progress { pass: 1, fraction }) {
             self.stopped.store(true, Ordering::Relaxed);
         }
-        !self.stopped.load(Ordering::Relaxed)
+        !self.is_stopped()
     }
 }

@@ -1,14 +1,13 @@
 //! Fixed-step methods for bodies in SIMD lanes.
 
 use super::laws::Laws;
-use super::member::{Member, SIDE_BY_SIDE as W};
+use super::member::{Member, SIDE_BY_SIDE as W, of};
+use super::observe::{LaneBodies, LanePhases};
 use crate::laws::forcing::Forcing;
 use crate::laws::torque::lanes::in_lanes;
 use crate::methods::classical::{self, Bodies, State};
-use crate::methods::splitting::turns::{Spin, Turns};
-use crate::state::phase::{Gyrostat, Phase};
+use crate::methods::splitting::turns::{Spin, Turns, stage_times};
 use polhode_ga::simd::lanes::{Lanes, Work};
-use polhode_ga::{Bivector, Rotor};
 use std::ops::Range;
 
 /// Number of steps whose times are computed together, with one division.
@@ -32,6 +31,21 @@ impl Segment {
             self.from + (self.to - self.from) * (step as f64 / self.count as f64)
         }
     }
+
+    /// The times at which a step and the next ones begin, with the bits of [`Segment::begin`].
+    #[inline(always)]
+    fn begins(&self, first: u64) -> [f64; TIMED + 1] {
+        let mut times = [self.begin(first + TIMED as u64); TIMED + 1];
+        let (from, span, start, count) = (self.from, self.to - self.from, first as f64, self.count as f64);
+        for k in 0..TIMED {
+            times[k] = from + span * ((start + k as f64) / count);
+        }
+        let left = (self.count - first) as usize;
+        if left < TIMED {
+            times[left] = self.to;
+        }
+        times
+    }
 }
 
 /// A fixed-step method.
@@ -42,11 +56,14 @@ pub(super) trait Stepper {
     /// The states at the start; lanes without a body hold the first one's.
     fn start(&self, members: &[Member]) -> Self::State;
 
-    /// Steps from each time to the next. `#[inline(always)]`.
-    fn advance(&mut self, state: &mut Self::State, times: &[f64]);
+    /// A number of steps, from each time to the next. `#[inline(always)]`.
+    fn advance(&mut self, state: &mut Self::State, times: &[f64; TIMED + 1], count: usize);
 
-    /// The point of the body of a lane.
-    fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase;
+    /// All numbers of a state, lane by lane.
+    fn numbers(state: &Self::State) -> impl Iterator<Item = &[f64; W]>;
+
+    /// The rotors and momenta of the bodies.
+    fn phases(&self, bodies: &LaneBodies, state: &Self::State) -> LanePhases;
 }
 
 /// Some of the steps of a segment, compiled apart from the work between them so that the steps have all registers.
@@ -65,12 +82,9 @@ impl<S: Stepper, const F: bool> Work for Advance<'_, S, F> {
         // The caller is on the same path; other paths are not compiled.
         if FUSED == F {
             for first in self.steps.clone().step_by(TIMED) {
-                let mut times = [0.0; TIMED + 1];
-                for k in 0..=TIMED {
-                    times[k] = self.segment.begin(first + k as u64);
-                }
+                let times = self.segment.begins(first);
                 let count = TIMED.min((self.steps.end - first) as usize);
-                self.stepper.advance(self.state, &times[..count + 1]);
+                self.stepper.advance(self.state, &times, count);
             }
         }
     }
@@ -89,11 +103,6 @@ pub(super) struct Kicks<'t, const F: bool> {
     pub laws: Laws<'t, W, F>,
 }
 
-/// The member of each lane.
-pub(super) fn of<'m, 'a>(members: &'m [Member<'a>], lane: usize) -> &'m Member<'a> {
-    members.get(lane).unwrap_or(&members[0])
-}
-
 impl<E: Forcing<W, F>, const F: bool> Stepper for Components<E, F> {
     type State = State<7, W, F>;
 
@@ -106,17 +115,29 @@ impl<E: Forcing<W, F>, const F: bool> Stepper for Components<E, F> {
     }
 
     #[inline(always)]
-    fn advance(&mut self, state: &mut Self::State, times: &[f64]) {
+    fn advance(&mut self, state: &mut Self::State, times: &[f64; TIMED + 1], count: usize) {
+        let steps = times[..=count].windows(2);
+        self.forcing.ahead(steps.flat_map(|t| classical::stage_times(t[0], t[1] - t[0])));
         // Copies, which the compiler may keep in registers.
-        let (bodies, mut now) = (self.bodies, *state);
-        for k in 1..times.len() {
-            classical::step(&bodies, &mut self.forcing, &mut now, times[k - 1], times[k] - times[k - 1]);
+        let (bodies, mut now) = (self.bodies, classical::halved(state));
+        // One division of many lanes instead of many of one.
+        let mut lengths = [[0.0; TIMED]; 2];
+        for k in 0..TIMED {
+            lengths[0][k] = times[k + 1] - times[k];
+            lengths[1][k] = lengths[0][k] / 6.0;
         }
-        *state = now;
+        for k in 0..count {
+            classical::step(&bodies, &mut self.forcing, &mut now, times[k], [lengths[0][k], lengths[1][k]]);
+        }
+        *state = classical::doubled(&now);
     }
 
-    fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase {
-        classical::phase(body, &state.map(|lanes| lanes.0[lane]), time)
+    fn numbers(state: &Self::State) -> impl Iterator<Item = &[f64; W]> {
+        state.iter().map(|lanes| &lanes.0)
+    }
+
+    fn phases(&self, bodies: &LaneBodies, [s, x, y, z, p, q, r]: &Self::State) -> LanePhases {
+        LanePhases { rotor: [s.0, x.0, y.0, z.0], momentum: bodies.momentum([*p, *q, *r]) }
     }
 }
 
@@ -132,19 +153,21 @@ impl<const F: bool> Stepper for Kicks<'_, F> {
     }
 
     #[inline(always)]
-    fn advance(&mut self, state: &mut Self::State, times: &[f64]) {
+    fn advance(&mut self, state: &mut Self::State, times: &[f64; TIMED + 1], count: usize) {
+        let (stages, steps) = (self.stages, times[..=count].windows(2));
+        self.laws.ahead(steps.flat_map(|t| stage_times(stages, t[0], t[1] - t[0])));
         let mut now = *state;
-        for k in 1..times.len() {
-            self.turns.step(self.stages, &mut self.laws, &mut now, times[k - 1], times[k] - times[k - 1]);
+        for k in 0..count {
+            self.turns.step(self.stages, &mut self.laws, &mut now, times[k], times[k + 1] - times[k]);
         }
         *state = now;
     }
 
-    fn phase(&self, _: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase {
-        Phase {
-            rotor: Rotor::from_unit_components(state.rotor.map(|lanes| lanes.0[lane])),
-            momentum: Bivector(state.momentum.map(|lanes| lanes.0[lane])),
-            time,
-        }
+    fn numbers(state: &Self::State) -> impl Iterator<Item = &[f64; W]> {
+        state.rotor.iter().chain(&state.momentum).map(|lanes| &lanes.0)
+    }
+
+    fn phases(&self, _: &LaneBodies, state: &Self::State) -> LanePhases {
+        LanePhases { rotor: state.rotor.map(|lanes| lanes.0), momentum: state.momentum.map(|lanes| lanes.0) }
     }
 }

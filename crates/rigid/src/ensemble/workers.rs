@@ -1,19 +1,18 @@
 //! Worker threads of an ensemble: solve its bodies and summarise the outcomes.
 
-use super::Failure;
 use super::adaptive::AdaptedSteps;
+use super::columns::lock;
 use super::fixed::FixedSteps;
-use super::member::{Member, Outcome, Plan, SIDE_BY_SIDE};
+use super::member::{Member, Plan, SIDE_BY_SIDE};
 use super::output::Summary;
-use super::scheduler::{Scheduler, lock};
+use super::scheduler::Scheduler;
 use crate::error::SimulateError;
-use crate::laws::conserved::Conserved;
 use crate::run::Progress;
 use polhode_ga::simd::lanes::fastest;
 use polhode_ga::simd::threads::Threads;
 use std::sync::atomic::Ordering;
-use std::thread;
 use std::time::Duration;
+use std::{iter, thread};
 
 /// Interval at which an idle thread reports the progress of the others.
 const BETWEEN_REPORTS: Duration = Duration::from_millis(20);
@@ -24,7 +23,7 @@ const MOST_WAITING: usize = 64;
 impl Scheduler<'_> {
     /// Solves all bodies.
     pub fn work(
-        &self,
+        self,
         threads: Threads,
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Summary, SimulateError> {
@@ -33,24 +32,29 @@ impl Scheduler<'_> {
             for _ in 1..count {
                 *lock(&self.running) += 1;
                 // If no more threads can be created, the existing ones do all the work.
-                if thread::Builder::new().spawn_scoped(scope, || self.work_loop(&mut |_| true)).is_err() {
+                if thread::Builder::new()
+                    .spawn_scoped(scope, || self.work_loop(count, &mut |_| true))
+                    .is_err()
+                {
                     *lock(&self.running) -= 1;
                 }
             }
             *lock(&self.running) += 1;
-            self.work_loop(progress);
+            self.work_loop(count, progress);
             self.wait(progress);
         });
         if self.stopped.load(Ordering::Relaxed) {
             return Err(SimulateError::Interrupted);
         }
-        Ok(summary(std::mem::take(&mut *lock(&self.outcomes))))
+        Ok(self.columns.finish())
     }
 
     /// Solves bodies until none is left.
-    fn work_loop(&self, progress: &mut dyn FnMut(Progress) -> bool) {
+    fn work_loop(&self, threads: usize, progress: &mut dyn FnMut(Progress) -> bool) {
         match self.options.step {
-            Some(step) => self.equal_steps(step.min(self.options.max_step.unwrap_or(step)), progress),
+            Some(step) => {
+                self.equal_steps(step.min(self.options.max_step.unwrap_or(step)), threads, progress)
+            }
             None => fastest(AdaptedSteps { scheduler: self, progress }),
         }
         *lock(&self.running) -= 1;
@@ -70,12 +74,14 @@ impl Scheduler<'_> {
     }
 
     /// Integrates bodies by equal steps.
-    fn equal_steps(&self, step: f64, progress: &mut dyn FnMut(Progress) -> bool) {
+    fn equal_steps(&self, step: f64, threads: usize, progress: &mut dyn FnMut(Progress) -> bool) {
         // Bodies wait for others with the same plan.
         let mut waiting: Vec<(Plan, Vec<Member>)> = Vec::new();
-        while let Some((body, own)) = self.next_body() {
-            let Some(plan) = self.plan(body, step) else {
-                self.run_single(body, own, progress);
+        let shares = iter::from_fn(|| self.next_bodies(threads));
+        for (body, own) in shares.flatten().take_while(|_| !self.is_stopped()) {
+            let member = self.member(body, own);
+            let Some(plan) = self.plan(&member, step) else {
+                self.run_single(body, member.own, progress);
                 continue;
             };
             let place = waiting.iter().position(|(alike, _)| *alike == plan).unwrap_or_else(|| {
@@ -86,7 +92,7 @@ impl Scheduler<'_> {
                 waiting.push((plan, Vec::with_capacity(SIDE_BY_SIDE)));
                 waiting.len() - 1
             });
-            waiting[place].1.push(self.member(body, own));
+            waiting[place].1.push(member);
             if waiting[place].1.len() == SIDE_BY_SIDE {
                 let (plan, members) = waiting.swap_remove(place);
                 fastest(FixedSteps { scheduler: self, plan, members, progress });
@@ -96,33 +102,4 @@ impl Scheduler<'_> {
             fastest(FixedSteps { scheduler: self, plan, members, progress });
         }
     }
-}
-
-/// Collects the outcomes by body.
-fn summary(mut outcomes: Vec<Outcome>) -> Summary {
-    outcomes.sort_by_key(|outcome| outcome.body);
-    let count = outcomes.len();
-    let mut all = Summary::default();
-    for (row, Outcome { body, certificate, failure }) in outcomes.into_iter().enumerate() {
-        all.methods.push(certificate.method);
-        all.steps.push([certificate.steps, certificate.evaluations]);
-        all.longest.push(certificate.step);
-        all.estimates.push(certificate.error_estimate.unwrap_or(f64::NAN));
-        all.norm_drifts.push(certificate.norm_drift);
-        for warning in certificate.warnings {
-            if !all.warnings.contains(&warning) {
-                all.warnings.push(warning);
-            }
-        }
-        for (quantity, start, change) in certificate.drifts {
-            let name = Conserved::name(quantity);
-            let place = all.drifts.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
-                all.drifts.push((name, vec![[f64::NAN; 2]; count]));
-                all.drifts.len() - 1
-            });
-            all.drifts[place].1[row] = [start, change];
-        }
-        all.failures.extend(failure.map(|(time, error)| Failure { body, time, error }));
-    }
-    all
 }

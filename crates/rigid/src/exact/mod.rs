@@ -1,8 +1,12 @@
 //! Motions in closed form.
 
 pub mod damped;
+pub mod flow;
 pub mod free;
 pub mod lagrange;
+mod lanes;
 pub mod larmor;
+pub mod many;
+pub mod motion;
 pub mod regime;
 pub mod symmetric;

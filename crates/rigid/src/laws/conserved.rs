@@ -58,53 +58,66 @@ struct Field {
     c: Vector,
 }
 
+/// The names of all quantities, in the order in which [`Conserved::under`] gives them.
+pub const NAMES: [&str; 8] = [
+    "energy",
+    "angular_momentum",
+    "vertical_angular_momentum",
+    "axial_angular_momentum",
+    "spin_angular_momentum",
+    "kovalevskaya_integral",
+    "goryachev_chaplygin_integral",
+    "jacobi_integral",
+];
+
 impl Conserved {
     /// The quantities that a set of laws conserves, for a motion with this start.
-    pub fn under(body: &Gyrostat, torques: &[Torque], start: &Phase) -> Vec<Conserved> {
+    pub fn under(
+        body: &Gyrostat,
+        torques: &[Torque],
+        start: &Phase,
+    ) -> impl Iterator<Item = Conserved> + use<> {
+        Conserved::all_under(body, torques, start).into_iter().flatten()
+    }
+
+    /// The same, without allocating memory for them.
+    fn all_under(body: &Gyrostat, torques: &[Torque], start: &Phase) -> [Option<Conserved>; 6] {
         let acting: Vec<&Torque> = torques.iter().filter(|t| acts(t)).collect();
         let keeps_size = acting.iter().all(|t| matches!(t, Torque::Larmor(_)));
-        let mut found = Vec::new();
         let motors = |t: &Torque| if let Torque::Wheels(wheels) = t { Some(wheels.is_idle()) } else { None };
         let motors: Vec<bool> = torques.iter().filter_map(motors).collect();
-        if acting.iter().all(|t| is_conservative(t, body)) && motors.iter().all(|idle| *idle) {
-            found.push(Conserved::Energy);
-        }
-        if keeps_size {
-            found.push(Conserved::AngularMomentum);
-        }
-        if let (false, Some(axis)) = (acting.is_empty(), shared_axis(&acting)) {
-            found.push(Conserved::AxialAngularMomentum(axis));
-        }
+        let energy = acting.iter().all(|t| is_conservative(t, body)) && motors.iter().all(|idle| *idle);
+        let energy = energy.then_some(Conserved::Energy);
+        let size = keeps_size.then_some(Conserved::AngularMomentum);
+        let axial = shared_axis(&acting).map(Conserved::AxialAngularMomentum);
         if !motors.is_empty() {
-            return found;
+            return [energy, size, axial, None, None, None];
         }
         let wheel = body.wheel != Default::default();
-        if (wheel || !acting.is_empty())
-            && let Some(axis) = spin_axis(body, &acting)
-        {
-            found.push(Conserved::SpinAngularMomentum(axis));
+        let spins = wheel || !acting.is_empty();
+        let spin = if spins { spin_axis(body, &acting).map(Conserved::SpinAngularMomentum) } else { None };
+        let field = if wheel { None } else { field(&acting) };
+        let heavy = field.and_then(|field| of_heavy_body(body, field, start));
+        [energy, size, axial, spin, heavy, jacobi(&acting)]
+    }
+
+    /// Its place in [`NAMES`].
+    pub fn number(self) -> usize {
+        match self {
+            Conserved::Energy => 0,
+            Conserved::AngularMomentum => 1,
+            Conserved::AxialAngularMomentum(axis) if axis == E3 => 2,
+            Conserved::AxialAngularMomentum(_) => 3,
+            Conserved::SpinAngularMomentum(_) => 4,
+            Conserved::Kovalevskaya(_) => 5,
+            Conserved::GoryachevChaplygin(_) => 6,
+            Conserved::Jacobi(_) => 7,
         }
-        if let Some(field) = field(&acting)
-            && !wheel
-        {
-            found.extend(of_heavy_body(body, field, start));
-        }
-        found.extend(jacobi(&acting));
-        found
     }
 
     /// Its name in reports and files.
     pub fn name(self) -> &'static str {
-        match self {
-            Conserved::Energy => "energy",
-            Conserved::AngularMomentum => "angular_momentum",
-            Conserved::AxialAngularMomentum(axis) if axis == E3 => "vertical_angular_momentum",
-            Conserved::AxialAngularMomentum(_) => "axial_angular_momentum",
-            Conserved::SpinAngularMomentum(_) => "spin_angular_momentum",
-            Conserved::Kovalevskaya(_) => "kovalevskaya_integral",
-            Conserved::GoryachevChaplygin(_) => "goryachev_chaplygin_integral",
-            Conserved::Jacobi(_) => "jacobi_integral",
-        }
+        NAMES[self.number()]
     }
 
     /// Its value, in principal axes.
@@ -141,22 +154,23 @@ impl Conserved {
     /// The scale of relative changes: the size of its terms, or what the energy allows them to reach for a start at
     /// rest.
     pub fn scale(self, body: &Gyrostat, torques: &[Torque], start: &Phase) -> f64 {
-        let kinetic = body.kinetic(start.momentum);
-        let range: f64 = torques.iter().map(|t| t.potential_range()).sum();
-        let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
+        let kinetic = || body.kinetic(start.momentum);
+        let energy = || kinetic() + torques.iter().map(|t| t.size(body)).sum::<f64>();
+        let range = || torques.iter().map(|t| t.potential_range()).sum::<f64>();
+        let size = || momentum(torques, start).norm();
         // `T <= T0 + range`: `|ω|² i <= 2T` of the slowest turn for an energy, `|I(ω)|² <= 2 i T` of the
         // heaviest.
-        let size = momentum(torques, start).norm();
-        let momentum = size + (2.0 * largest * range).sqrt();
+        let momentum = || {
+            let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
+            size() + (2.0 * largest * range()).sqrt()
+        };
         match self {
-            Conserved::Energy => kinetic + torques.iter().map(|t| t.size(body)).sum::<f64>(),
-            Conserved::AngularMomentum => size,
-            Conserved::AxialAngularMomentum(_) | Conserved::SpinAngularMomentum(_) => momentum,
-            Conserved::Kovalevskaya(plane) => plane.square_rate(body, kinetic + range).powi(2),
-            Conserved::GoryachevChaplygin(plane) => plane.square_rate(body, kinetic + range).powf(1.5),
-            Conserved::Jacobi(n) => {
-                kinetic + torques.iter().map(|t| t.size(body)).sum::<f64>() + n.abs() * momentum
-            }
+            Conserved::Energy => energy(),
+            Conserved::AngularMomentum => size(),
+            Conserved::AxialAngularMomentum(_) | Conserved::SpinAngularMomentum(_) => momentum(),
+            Conserved::Kovalevskaya(plane) => plane.square_rate(body, kinetic() + range()).powi(2),
+            Conserved::GoryachevChaplygin(plane) => plane.square_rate(body, kinetic() + range()).powf(1.5),
+            Conserved::Jacobi(n) => energy() + n.abs() * momentum(),
         }
     }
 }

@@ -22,20 +22,24 @@ impl DoubleDouble {
         DoubleDouble { hi: 0.159_154_943_091_895_35, lo: -9.839_338_337_591_243e-18 };
 
     /// `a + b` without error.
+    #[inline]
     pub fn two_sum(a: f64, b: f64) -> DoubleDouble {
         double::two_sum(a, b).into()
     }
 
     /// `a + b` without error for `|a| >= |b|`.
+    #[inline]
     fn quick_two_sum(a: f64, b: f64) -> DoubleDouble {
         double::quick_two_sum(a, b).into()
     }
 
     /// `a b` without error.
+    #[inline]
     pub fn two_product(a: f64, b: f64) -> DoubleDouble {
         double::two_product::<false>(a, b).into()
     }
 
+    #[inline]
     pub fn sqrt(self) -> DoubleDouble {
         if self.hi <= 0.0 {
             return DoubleDouble::ZERO;
@@ -46,22 +50,26 @@ impl DoubleDouble {
         DoubleDouble::quick_two_sum(root, rest.hi / (2.0 * root))
     }
 
+    #[inline]
     pub fn value(self) -> f64 {
         self.hi + self.lo
     }
 
+    #[inline]
     pub fn abs(self) -> DoubleDouble {
         if self.hi < 0.0 { -self } else { self }
     }
 }
 
 impl From<f64> for DoubleDouble {
+    #[inline]
     fn from(hi: f64) -> DoubleDouble {
         DoubleDouble { hi, lo: 0.0 }
     }
 }
 
 impl From<(f64, f64)> for DoubleDouble {
+    #[inline]
     fn from((hi, lo): (f64, f64)) -> DoubleDouble {
         DoubleDouble { hi, lo }
     }
@@ -69,6 +77,7 @@ impl From<(f64, f64)> for DoubleDouble {
 
 impl Add for DoubleDouble {
     type Output = DoubleDouble;
+    #[inline]
     fn add(self, o: DoubleDouble) -> DoubleDouble {
         double::add((self.hi, self.lo), (o.hi, o.lo)).into()
     }
@@ -76,6 +85,7 @@ impl Add for DoubleDouble {
 
 impl Neg for DoubleDouble {
     type Output = DoubleDouble;
+    #[inline]
     fn neg(self) -> DoubleDouble {
         DoubleDouble { hi: -self.hi, lo: -self.lo }
     }
@@ -83,6 +93,7 @@ impl Neg for DoubleDouble {
 
 impl Sub for DoubleDouble {
     type Output = DoubleDouble;
+    #[inline]
     fn sub(self, o: DoubleDouble) -> DoubleDouble {
         self + -o
     }
@@ -90,6 +101,7 @@ impl Sub for DoubleDouble {
 
 impl Mul for DoubleDouble {
     type Output = DoubleDouble;
+    #[inline]
     fn mul(self, o: DoubleDouble) -> DoubleDouble {
         double::multiply::<false>((self.hi, self.lo), (o.hi, o.lo)).into()
     }
@@ -98,6 +110,7 @@ impl Mul for DoubleDouble {
 impl Div for DoubleDouble {
     type Output = DoubleDouble;
     /// The remainder `hi − q o.hi` of a rounded quotient is exact; a second rounded quotient corrects q.
+    #[inline]
     fn div(self, o: DoubleDouble) -> DoubleDouble {
         let q = self.hi / o.hi;
         let product = DoubleDouble::two_product(q, o.hi);

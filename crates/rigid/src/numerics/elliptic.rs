@@ -91,33 +91,68 @@ pub(crate) fn mean(mut g: f64) -> f64 {
     0.5 * (a + g)
 }
 
+/// Most steps of a mean. Convergence is quadratic: 13 steps from k' = 1e-300.
+const STEPS: usize = 32;
+
 /// `M = AGM(1, k')` and `Σ Q_n`, of which `K = π/2M` and `Π(n) − K = (K/2) (n/(1 − n)) Σ Q_n`, for positive
 /// k', `p² = 1 − n >= 1`, in double-double precision.
-///
-/// With `p_0 = p`, `Q_0 = 1` and the means `a_j, g_j` (DLMF 19.8.6)
-/// `p_{j+1} = (p_j² + a_j g_j) / 2p_j`, `Q_{j+1} = ½ Q_j (p_j² − a_j g_j) / (p_j² + a_j g_j)`.
 pub(crate) fn mean_and_sum(kc: Wide, p2: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
-    // The root of any k' is in the range of floats.
-    let (mut a, mut g, mut root) = (DoubleDouble::ONE, kc.narrow(), kc.sqrt().narrow());
-    let (mut p2, mut p) = (p2, p2.sqrt());
-    let (mut term, mut sum) = (DoubleDouble::ONE, DoubleDouble::ZERO);
-    // Convergence is quadratic: 13 steps from k' = 1e-300.
-    for _ in 0..32 {
-        sum = sum + term;
-        let product = root * root;
-        let whole = p2 + product;
-        term = term * (p2 - product) / (whole * 2.0.into());
-        let met = (a - g).abs().hi <= 1e-17 * a.hi;
-        a = (a + g) * 0.5.into();
-        if met && term.hi.abs() <= 1e-33 {
-            break;
+    let means = Means::new(kc);
+    (means.mean(), means.sum(p2))
+}
+
+/// The steps of `AGM(1, k')`, for [`mean_and_sum`] with several p².
+pub(crate) struct Means {
+    mean: DoubleDouble,
+    /// `a_j g_j`.
+    products: [DoubleDouble; STEPS],
+    /// Number of steps until the two means are equal.
+    count: usize,
+}
+
+impl Means {
+    pub fn new(kc: Wide) -> Means {
+        // The root of any k' is in the range of floats.
+        let (mut a, mut g, mut root) = (DoubleDouble::ONE, kc.narrow(), kc.sqrt().narrow());
+        let mut products = [DoubleDouble::ZERO; STEPS];
+        let mut count = 0;
+        for product in &mut products {
+            (*product, count) = (root * root, count + 1);
+            let met = (a - g).abs().hi <= 1e-17 * a.hi;
+            a = (a + g) * 0.5.into();
+            if met {
+                break;
+            }
+            g = root;
+            root = (a * g).sqrt();
         }
-        g = root;
-        root = (a * g).sqrt();
-        p = whole / (p * 2.0.into());
-        p2 = p * p;
+        Means { mean: a, products, count }
     }
-    (a, sum)
+
+    /// M.
+    pub fn mean(&self) -> DoubleDouble {
+        self.mean
+    }
+
+    /// `Σ Q_n`. With `p_0 = p`, `Q_0 = 1` and the means `a_j, g_j` (DLMF 19.8.6)
+    /// `p_{j+1} = (p_j² + a_j g_j) / 2p_j`, `Q_{j+1} = ½ Q_j (p_j² − a_j g_j) / (p_j² + a_j g_j)`.
+    pub fn sum(&self, p2: DoubleDouble) -> DoubleDouble {
+        let (mut p2, mut p) = (p2, p2.sqrt());
+        let (mut term, mut sum) = (DoubleDouble::ONE, DoubleDouble::ZERO);
+        for step in 0..STEPS {
+            sum = sum + term;
+            // Once the means are equal, so are all further ones.
+            let product = if step < self.count { self.products[step] } else { self.mean * self.mean };
+            let whole = p2 + product;
+            term = term * (p2 - product) / (whole * 2.0.into());
+            if step + 1 >= self.count && term.hi.abs() <= 1e-33 {
+                break;
+            }
+            p = whole / (p * 2.0.into());
+            p2 = p * p;
+        }
+        sum
+    }
 }
 
 #[cfg(test)]

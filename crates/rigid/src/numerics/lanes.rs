@@ -1,7 +1,7 @@
 //! Arithmetic in lanes without branches: phase reduction, exponentials, sine and cosine.
 
 use super::double_double::DoubleDouble;
-use polhode_ga::simd::double::{add, multiply, sin_cos, two_product, two_sum};
+use polhode_ga::simd::double::{add, multiply, quick_two_sum, sin_cos, two_product, two_sum};
 use std::f64::consts::FRAC_PI_2;
 
 /// Adding 1.5·2⁵² rounds to an integer in the last bits, the nearest up to 2⁵¹.
@@ -22,8 +22,21 @@ impl Phase {
     #[inline(always)]
     pub fn turns<const FMA: bool>(&self, t: f64) -> (f64, f64) {
         let (product, error) = two_product::<FMA>(self.rate.hi, t);
+        self.reduced(product, error + self.rate.lo * t)
+    }
+
+    /// The same at a time in double-double precision.
+    #[inline(always)]
+    pub fn turns_at_pair<const FMA: bool>(&self, (t, rest): Pair) -> (f64, f64) {
+        let (product, error) = two_product::<FMA>(self.rate.hi, t);
+        self.reduced(product, error + (self.rate.lo * t + self.rate.hi * rest))
+    }
+
+    /// The phase from a product and a small rest.
+    #[inline(always)]
+    fn reduced(&self, product: f64, rest: f64) -> (f64, f64) {
+        let small = rest + self.start[1];
         let rest = product - ((product + INTEGER) - INTEGER);
-        let small = (error + self.rate.lo * t) + self.start[1];
         let (sum, e) = two_sum(rest, self.start[0]);
         let (sum, e) = two_sum(sum, small + e);
         (sum - ((sum + INTEGER) - INTEGER), e)
@@ -106,44 +119,63 @@ pub(crate) fn exp_minus(x: f64) -> (f64, f64) {
 /// A double-double number `hi + lo`, as [`DoubleDouble`], in a lane.
 pub(crate) type Pair = (f64, f64);
 
-/// `e^x` and `e^x − 1` in double-double precision, for |x| up to 720. With `x = n ln 2 + 2⁵ r` a short series gives
+/// `e^x` and `e^x − 1` in double-double precision, for |x| up to 720. With `x = n ln 2 + 2⁶ r` a short series gives
 /// `e^r − 1`, and `e^{2r} − 1 = (e^r − 1)(2 + (e^r − 1))` doubles the exponent without cancellation.
 #[inline(always)]
 pub(crate) fn exp_of_pair<const FMA: bool>(x: Pair) -> [Pair; 2] {
     const LN_2: Pair = (std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17);
-    const DOUBLINGS: usize = 5;
+    const DOUBLINGS: usize = 6;
     /// 1/(k + 1)!
-    const LARGE: [Pair; 7] = [
+    const LARGE: [Pair; 6] = [
         (1.0, 0.0),
         (0.5, 0.0),
         (0.166_666_666_666_666_66, 9.251_858_538_542_97e-18),
         (0.041_666_666_666_666_664, 2.312_964_634_635_742_7e-18),
         (0.008_333_333_333_333_333, 1.156_482_317_317_871_4e-19),
         (0.001_388_888_888_888_889, -5.300_543_954_373_577e-20),
-        (0.000_198_412_698_412_698_4, 1.720_955_829_342_070_5e-22),
     ];
-    const SMALL: [f64; 6] = reciprocal_factorials(8);
-    let nearest = |x: f64| (x + INTEGER) - INTEGER;
+    const SMALL: [f64; 6] = reciprocal_factorials(7);
     let n = if x.0.abs() <= 0.35 { 0.0 } else { nearest(x.0 * std::f64::consts::LOG2_E) };
     let rest = add(x, multiply::<FMA>(LN_2, (-n, 0.0)));
     let scale = 0.5 / (1 << (DOUBLINGS - 1)) as f64;
     let r = (rest.0 * scale, rest.1 * scale);
-    // |r| < 0.011: the terms from r⁷/8! on are below 1e-18, where doubles are enough; those from r¹³/14! on are below
+    // |r| < 0.0055: the terms from r⁶/7! on are below 1e-17, where doubles are enough; those from r¹²/13! on are below
     // 1e-36.
     let mut series = (horner(&SMALL, r.0), 0.0);
     for k in (0..LARGE.len()).rev() {
-        series = add(multiply::<FMA>(series, r), LARGE[k]);
+        series = add_smaller(LARGE[k], multiply::<FMA>(series, r));
     }
     let mut p = multiply::<FMA>(series, r);
     for _ in 0..DOUBLINGS {
-        p = multiply::<FMA>(p, add(p, (2.0, 0.0)));
+        // 2p + p².
+        let double = (p.0 + p.0, p.1 + p.1);
+        let (square, error) = two_product::<FMA>(p.0, p.0);
+        p = add_smaller(double, (square, error + double.0 * p.1));
     }
     // 2ⁿ in two factors, for it may be less than the least normal number.
-    let power_of_two = |n: f64| f64::from_bits((n + INTEGER).to_bits().wrapping_add(1023) << 52);
     let half = nearest(0.5 * n);
     let power = power_of_two(half) * power_of_two(n - half);
     let scaled = (p.0 * power, p.1 * power);
-    [add((power, 0.0), scaled), add(scaled, two_sum(power, -1.0))]
+    [add_smaller((power, 0.0), scaled), add(scaled, two_sum(power, -1.0))]
+}
+
+/// The nearest integer.
+#[inline(always)]
+fn nearest(x: f64) -> f64 {
+    (x + INTEGER) - INTEGER
+}
+
+/// 2ⁿ of a normal number.
+#[inline(always)]
+fn power_of_two(n: f64) -> f64 {
+    f64::from_bits((n + INTEGER).to_bits().wrapping_add(1023) << 52)
+}
+
+/// The sum of double-double numbers of which the first is larger, to twice the precision of the larger one.
+#[inline(always)]
+fn add_smaller(a: Pair, b: Pair) -> Pair {
+    let (hi, error) = quick_two_sum(a.0, b.0);
+    quick_two_sum(hi, error + (a.1 + b.1))
 }
 
 /// A polynomial, coefficients by rising powers.

@@ -15,11 +15,13 @@ pub(crate) struct Wide {
 }
 
 /// 2^n, if it is a normal number.
+#[inline]
 pub(crate) fn exp2(n: i64) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 
 /// Times a power of two, without rounding unless the result is subnormal.
+#[inline]
 fn scaled(x: DoubleDouble, power: f64) -> DoubleDouble {
     DoubleDouble { hi: x.hi * power, lo: x.lo * power }
 }
@@ -29,6 +31,7 @@ impl Wide {
     pub const ONE: Wide = Wide { x: DoubleDouble::ONE, exponent: 0 };
 
     /// `x · 2^exponent` of a normal number x, or 0.
+    #[inline]
     pub fn normal(x: DoubleDouble, exponent: i64) -> Wide {
         if x.hi == 0.0 {
             return Wide::ZERO;
@@ -43,18 +46,22 @@ impl Wide {
     }
 
     /// x and the exponent.
+    #[inline]
     pub fn parts(self) -> (DoubleDouble, i64) {
         (self.x, self.exponent)
     }
 
+    #[inline]
     pub fn is_zero(self) -> bool {
         self.x.hi == 0.0
     }
 
+    #[inline]
     pub fn is_negative(self) -> bool {
         self.x.hi < 0.0
     }
 
+    #[inline]
     pub fn is_positive(self) -> bool {
         self.x.hi > 0.0
     }
@@ -63,11 +70,13 @@ impl Wide {
         self.x.hi.is_finite()
     }
 
+    #[inline]
     pub fn abs(self) -> Wide {
         if self.is_negative() { -self } else { self }
     }
 
     /// 0 for a negative number.
+    #[inline]
     pub fn sqrt(self) -> Wide {
         if !self.is_positive() {
             return Wide::ZERO;
@@ -78,6 +87,7 @@ impl Wide {
     }
 
     /// In the range of floating point: 0 below it, infinite above.
+    #[inline]
     pub fn narrow(self) -> DoubleDouble {
         // In two steps, of which at most the second leaves the normal numbers.
         let exponent = self.exponent.clamp(-1500, 1500);
@@ -87,12 +97,14 @@ impl Wide {
     }
 
     /// Rounded to the range of floating point.
+    #[inline]
     pub fn value(self) -> f64 {
         self.narrow().value()
     }
 }
 
 impl From<DoubleDouble> for Wide {
+    #[inline]
     fn from(x: DoubleDouble) -> Wide {
         // Subnormal numbers become normal.
         if x.hi.abs() < exp2(-900) { Wide::normal(scaled(x, exp2(900)), -900) } else { Wide::normal(x, 0) }
@@ -100,18 +112,21 @@ impl From<DoubleDouble> for Wide {
 }
 
 impl From<f64> for Wide {
+    #[inline]
     fn from(x: f64) -> Wide {
         DoubleDouble::from(x).into()
     }
 }
 
 impl PartialEq for Wide {
+    #[inline]
     fn eq(&self, o: &Wide) -> bool {
         self.partial_cmp(o) == Some(Ordering::Equal)
     }
 }
 
 impl PartialOrd for Wide {
+    #[inline]
     fn partial_cmp(&self, o: &Wide) -> Option<Ordering> {
         (*self - *o).x.hi.partial_cmp(&0.0)
     }
@@ -119,6 +134,7 @@ impl PartialOrd for Wide {
 
 impl Add for Wide {
     type Output = Wide;
+    #[inline]
     fn add(self, o: Wide) -> Wide {
         let (large, small) =
             if self.is_zero() || !o.is_zero() && o.exponent > self.exponent { (o, self) } else { (self, o) };
@@ -132,6 +148,7 @@ impl Add for Wide {
 
 impl Neg for Wide {
     type Output = Wide;
+    #[inline]
     fn neg(self) -> Wide {
         Wide { x: -self.x, ..self }
     }
@@ -139,6 +156,7 @@ impl Neg for Wide {
 
 impl Sub for Wide {
     type Output = Wide;
+    #[inline]
     fn sub(self, o: Wide) -> Wide {
         self + -o
     }
@@ -146,6 +164,7 @@ impl Sub for Wide {
 
 impl Mul for Wide {
     type Output = Wide;
+    #[inline]
     fn mul(self, o: Wide) -> Wide {
         Wide::normal(self.x * o.x, self.exponent + o.exponent)
     }
@@ -153,6 +172,7 @@ impl Mul for Wide {
 
 impl Div for Wide {
     type Output = Wide;
+    #[inline]
     fn div(self, o: Wide) -> Wide {
         Wide::normal(self.x / o.x, self.exponent - o.exponent)
     }

@@ -33,6 +33,17 @@ pub(crate) fn off_unit(rotor: Rotor) -> f64 {
     (rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs()
 }
 
+/// The size to which changes are relative; 1 for 0, because drift from zero without other terms is absolute.
+pub(crate) fn nonzero(scale: f64) -> f64 {
+    if scale == 0.0 { 1.0 } else { scale }
+}
+
+/// The larger of two drifts; NaN if one is, which `f64::max` would lose.
+#[inline(always)]
+pub(crate) fn larger(known: f64, drift: f64) -> f64 {
+    if drift <= known || known.is_nan() { known } else { drift }
+}
+
 /// Tracks the conserved quantities along a run.
 pub(crate) struct DriftMonitor<'a> {
     body: Gyrostat,
@@ -51,17 +62,13 @@ struct Tracked {
 impl<'a> DriftMonitor<'a> {
     pub fn new(body: Gyrostat, torques: &'a [Torque], start: Phase) -> DriftMonitor<'a> {
         let follow = |quantity: Conserved| {
-            // Drift from zero without other terms is absolute.
-            let scale = match quantity.scale(&body, torques, &start) {
-                0.0 => 1.0,
-                scale => scale,
-            };
+            let scale = nonzero(quantity.scale(&body, torques, &start));
             Tracked { quantity, start: quantity.value(&body, torques, &start), scale, drift: 0.0 }
         };
         DriftMonitor {
             body,
             torques,
-            quantities: Conserved::under(&body, torques, &start).into_iter().map(follow).collect(),
+            quantities: Conserved::under(&body, torques, &start).map(follow).collect(),
         }
     }
 
@@ -77,11 +84,7 @@ impl<'a> DriftMonitor<'a> {
     pub fn record(&mut self, state: &Phase) {
         for tracked in &mut self.quantities {
             let value = tracked.quantity.value(&self.body, self.torques, state);
-            let drift = (value - tracked.start).abs() / tracked.scale;
-            // f64::max loses a NaN.
-            if !(drift <= tracked.drift || tracked.drift.is_nan()) {
-                tracked.drift = drift;
-            }
+            tracked.drift = larger(tracked.drift, (value - tracked.start).abs() / tracked.scale);
         }
     }
 

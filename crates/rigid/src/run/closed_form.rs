@@ -6,6 +6,7 @@ use crate::exact::damped::DampedTop;
 use crate::exact::free::FreeMotion;
 use crate::exact::lagrange::LagrangeTop;
 use crate::exact::larmor::LarmorSphere;
+use crate::exact::motion::ExactMotion;
 use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
 use crate::methods::runge_kutta::RungeKutta;
@@ -13,25 +14,19 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
+use std::sync::Arc;
 
 /// Largest turn in rad of a step whose error is rounding.
 const LONGEST_TURN: f64 = 0.1;
-
-/// A rotation in closed form, in principal axes.
-#[derive(Clone, Debug)]
-pub(crate) enum Rotation {
-    Free(Box<FreeMotion>),
-    Lagrange(Box<LagrangeTop>),
-    Damped(Box<DampedTop>),
-    Larmor(LarmorSphere),
-}
 
 /// Rotation and uniformly accelerated translation in closed form.
 #[derive(Clone, Debug)]
 pub(crate) struct ClosedForm {
     body: Gyrostat,
-    rotation: Rotation,
+    /// In principal axes.
+    rotation: Arc<dyn ExactMotion>,
     fall: UniformAcceleration,
     since: ElapsedTime,
 }
@@ -51,21 +46,12 @@ impl ClosedForm {
 
     /// How far from the start, in s, the phase is known backwards and forwards.
     pub fn horizons(&self) -> [f64; 2] {
-        match &self.rotation {
-            Rotation::Free(motion) => [motion.horizon(); 2],
-            Rotation::Lagrange(motion) => [motion.horizon(); 2],
-            Rotation::Damped(motion) => motion.horizons(),
-            Rotation::Larmor(motion) => [motion.horizon(); 2],
-        }
+        self.rotation.horizons()
     }
 
     /// The error at these times of treating moments that differ by rounding as equal; none without such an error.
     pub fn neglected(&self, times: &[f64]) -> Option<f64> {
-        let at = |time: f64| match &self.rotation {
-            Rotation::Free(_) | Rotation::Damped(_) => 0.0,
-            Rotation::Lagrange(motion) => motion.neglected(self.since.elapsed(time).hi),
-            Rotation::Larmor(motion) => motion.neglected(self.since.elapsed(time).hi),
-        };
+        let at = |time: f64| self.rotation.neglected(self.since.elapsed(time).hi);
         // A completely different motion has no larger error.
         Some(times.iter().map(|&time| at(time)).fold(0.0, f64::max).min(1.0)).filter(|&error| error > 0.0)
     }
@@ -74,21 +60,46 @@ impl ClosedForm {
     pub fn at(&self, time: f64) -> Carried {
         // None of the laws depends on time.
         let DoubleDouble { hi: elapsed, lo: rest } = self.since.elapsed(time);
-        let (rotor, omega) = match &self.rotation {
-            Rotation::Free(motion) => motion.at(elapsed),
-            Rotation::Lagrange(motion) => motion.at(elapsed),
-            Rotation::Damped(motion) => motion.at(elapsed),
-            Rotation::Larmor(motion) => motion.at(elapsed),
-        };
+        let (rotor, omega) = self.rotation.at(elapsed);
+        self.later(rotor, omega, time, rest)
+    }
+
+    /// The points of the motion at times in s, with the times in lanes: the same bits as [`ClosedForm::at`].
+    pub fn at_many(&self, times: &[f64]) -> Vec<Carried> {
+        /// Times whose states stay in the caches.
+        const TOGETHER: usize = 1024;
+        let mut points = Vec::with_capacity(times.len());
+        let room = times.len().min(TOGETHER);
+        let (mut rotors, mut omegas) = (vec![[0.0; 4]; room], vec![[0.0; 3]; room]);
+        for times in times.chunks(TOGETHER) {
+            let elapsed: Vec<f64> = times.iter().map(|&time| self.since.elapsed(time).hi).collect();
+            let (rotors, omegas) = (&mut rotors[..times.len()], &mut omegas[..times.len()]);
+            let rows = (rotors.as_flattened_mut(), omegas.as_flattened_mut());
+            self.rotation.at_many(Threads::ONE, &elapsed, rows.0, rows.1);
+            points.extend(times.iter().zip(rotors).zip(omegas).map(|((&time, rotor), omega)| {
+                let rest = self.since.elapsed(time).lo;
+                self.later(Rotor::from_unit_components(*rotor), Bivector(*omega), time, rest)
+            }));
+        }
+        points
+    }
+
+    /// The point at a time, from the state at the rounded time since the start and the remainder.
+    fn later(&self, rotor: Rotor, omega: Bivector, time: f64, rest: f64) -> Carried {
         let phase = Phase { rotor, momentum: self.body.momentum(omega), time };
         Carried::new(self.since.later(phase, rest), self.fall.at(time))
     }
 }
 
 /// The closed form of the rotation under these laws, if there is one.
-fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]) -> Option<Rotation> {
+fn rotation(
+    moments: [f64; 3],
+    rotor: Rotor,
+    omega: Bivector,
+    torques: &[Torque],
+) -> Option<Arc<dyn ExactMotion>> {
     let Some(first) = torques.first() else {
-        return Some(Rotation::Free(Box::new(FreeMotion::in_principal_axes(moments, rotor, omega))));
+        return Some(Arc::new(FreeMotion::in_principal_axes(moments, rotor, omega)));
     };
     let inertia = Inertia::from_principal_moments(moments).ok()?;
     // Laws of one kind add up.
@@ -96,17 +107,17 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
         Torque::Heavy(_) => {
             let add = |sum, t: &Torque| if let Torque::Heavy(c) = t { Some(sum + *c) } else { None };
             let c = torques.iter().try_fold(Vector::default(), add)?;
-            LagrangeTop::new(&inertia, rotor, omega, c).ok().map(Box::new).map(Rotation::Lagrange)
+            Some(Arc::new(LagrangeTop::new(&inertia, rotor, omega, c).ok()?))
         }
         Torque::Damping(_) => {
             let each = torques.iter().map(|t| if let Torque::Damping(g) = t { Some(*g) } else { None });
             let damping = each.sum::<Option<f64>>()?;
-            DampedTop::new(&inertia, rotor, omega, damping).ok().map(Box::new).map(Rotation::Damped)
+            Some(Arc::new(DampedTop::new(&inertia, rotor, omega, damping).ok()?))
         }
         Torque::Larmor(_) => {
             let add = |sum, t: &Torque| if let Torque::Larmor(b) = t { Some(sum + *b) } else { None };
             let b = torques.iter().try_fold(Vector::default(), add)?;
-            LarmorSphere::new(&inertia, rotor, omega, b).ok().map(Rotation::Larmor)
+            Some(Arc::new(LarmorSphere::new(&inertia, rotor, omega, b).ok()?))
         }
         _ => None,
     }

@@ -355,7 +355,7 @@ impl Problem {
 
     /// The closed form at all times, as a sweep without steps. An error if it drifts in a conserved quantity.
     fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Sweep, SimulateError> {
-        let states: Vec<Carried> = times.iter().map(|&time| closed.at(time)).collect();
+        let states = closed.at_many(times);
         let mut monitor = DriftMonitor::new(self.body, &self.torques, self.start().phase);
         states.iter().for_each(|state| monitor.record(&state.phase));
         let drifts = monitor.finish();

@@ -119,10 +119,7 @@ impl Motion {
     pub fn exactly(&self, times: &[f64]) -> Option<Result<States, SimulateError>> {
         let Engine::ClosedForm(closed) = &self.engine else { return None };
         let known = check_horizons(self.problem.time, times, closed.horizons());
-        Some(known.map(|()| {
-            let states: Vec<Carried> = times.iter().map(|&t| closed.at(t)).collect();
-            self.problem.states(&states)
-        }))
+        Some(known.map(|()| self.problem.states(&closed.at_many(times))))
     }
 
     /// The output time nearest to a time on the way from the start; none if that is the start itself.

@@ -4,7 +4,7 @@ use crate::laws::conserved::{energy, momentum};
 use crate::laws::torque::Torque;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::Rotor;
+use polhode_ga::{Bivector, Rotor};
 
 /// Output arrays of one body.
 #[derive(Debug)]
@@ -26,12 +26,17 @@ impl BodyOutput<'_> {
         center: &Center,
     ) {
         let momentum = phase.rotor.apply_bivector(momentum(torques, phase));
-        self.rotors[4 * index..][..4].copy_from_slice(&(phase.rotor * frame.reverse()).components());
         let omega = frame.apply_bivector(body.omega(phase.momentum));
+        self.put(index, phase.rotor * frame.reverse(), omega, momentum, energy(body, torques, phase));
+        self.place(index, center);
+    }
+
+    /// Writes a point: rotor from body axes to space, angular velocity in body axes, momentum in space, and energy.
+    pub fn put(&mut self, index: usize, rotor: Rotor, omega: Bivector, momentum: Bivector, energy: f64) {
+        self.rotors[4 * index..][..4].copy_from_slice(&rotor.components());
         self.omegas[3 * index..][..3].copy_from_slice(&omega.0);
         self.momenta[3 * index..][..3].copy_from_slice(&momentum.0);
-        self.energies[index] = energy(body, torques, phase);
-        self.place(index, center);
+        self.energies[index] = energy;
     }
 
     /// Writes the centre of mass.

@@ -3,7 +3,7 @@
 pub mod crowd;
 
 use crate::rows::{ROW, rows};
-use crowd::Crowd;
+use crowd::{Crowd, Slice};
 use polhode_rigid::body::mesh::MeshError;
 use polhode_rigid::run::{Motion, Problem, Progress, Setup};
 use polhode_rigid::scene::Law;
@@ -56,14 +56,7 @@ impl Opened {
         let surface = scene.surface_with(&source).and_then(Result::ok);
         let problem = scene.problem(&body, &laws);
         let motion = problem.simulate(&scene.times(), scene.options(), &mut |_: Progress| go_on());
-        let motion = motion.map_err(|error| match error {
-            SimulateError::Interrupted => {
-                "this motion takes too long to compute in the page; shorten [run] duration, \
-                                           increase [run] rtol, or use `polhode run` or `polhode view`"
-                    .to_owned()
-            }
-            error => error.to_string(),
-        })?;
+        let motion = motion.map_err(in_words)?;
         let setup = scene.setup(&body, &laws);
         Ok(Opened { scene, body, laws, setup, problem, motion, surface, crowd: OnceCell::new() })
     }
@@ -77,10 +70,34 @@ impl Opened {
         states.map(|states| rows(&states)).map_err(|error| error.to_string())
     }
 
-    /// Rotors of the first bodies of the ensemble at a time, at most `count`.
-    pub fn bodies(&self, time: f64, count: usize, go_on: GoOn) -> Result<Vec<[f64; 4]>, String> {
-        let crowd = self.crowd.get_or_init(|| Crowd::new(self, count, go_on));
-        crowd.as_ref().map(|crowd| crowd.at(time)).map_err(String::clone)
+    /// The first bodies of the ensemble, at most `count`; the first call computes them, unless [`Opened::join`] was called.
+    pub fn bodies(&self, count: usize, go_on: GoOn) -> Result<&Crowd, String> {
+        self.crowd.get_or_init(|| Crowd::new(self, count, go_on)).as_ref().map_err(String::clone)
+    }
+
+    /// Why the first of the computed bodies that are not known is not, with its number; empty if all are.
+    pub fn bodies_problem(&self) -> &str {
+        match self.crowd.get() {
+            Some(Ok(crowd)) => crowd.problem(),
+            _ => "",
+        }
+    }
+
+    /// Takes the first bodies of the ensemble as other cores computed them.
+    pub fn join(&mut self, slice: Slice) {
+        self.crowd = Ok(Crowd::of_slice(self, slice)).into();
+    }
+}
+
+/// The error of a motion in the words of the page.
+fn in_words(error: SimulateError) -> String {
+    match error {
+        SimulateError::Interrupted => {
+            "this motion takes too long to compute in the page; shorten [run] duration, \
+                                       increase [run] rtol, or use `polhode run` or `polhode view`"
+                .to_owned()
+        }
+        error => error.to_string(),
     }
 }
 

@@ -273,7 +273,7 @@ impl Builder<'_> {
             }
         }
         let size = plan.sizes.2;
-        self.push(Work::Product(plan), &operands, size)
+        self.push(Work::Product(plan.recognised()), &operands, size)
     }
 }
 

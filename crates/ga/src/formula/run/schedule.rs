@@ -23,6 +23,8 @@ pub(crate) struct Schedule {
     pub tasks: Vec<Task>,
     /// The first lane of each result.
     pub results: Vec<usize>,
+    /// The lanes of the inputs that stay filled, empty for others.
+    pub inputs: Vec<Range<usize>>,
     /// The number of lanes.
     pub lanes: usize,
 }
@@ -82,7 +84,9 @@ impl Runner {
     /// Lanes for the values of steps, and for inputs that are maps; `known` are the inputs that are the same for all rows.
     /// Lanes are reused after the last use of their value, so that all stay in the first-level cache. Fails if a step that
     /// depends only on known inputs has no value.
-    pub(crate) fn schedule(&self, known: &[Option<Given>]) -> Result<Schedule, (Id, MathError)> {
+    ///
+    /// With `stay` the other inputs have lanes of their own, filled by the caller; tasks only read those that are results.
+    pub(crate) fn schedule(&self, known: &[Option<Given>], stay: bool) -> Result<Schedule, (Id, MathError)> {
         let fixed = self.fixed(&known.iter().map(Option::is_some).collect::<Vec<_>>());
         let given = |i: usize| known[i].unwrap_or(Given::Determinant(f64::NAN));
         let values = self.values(given, |id| fixed[id])?;
@@ -92,7 +96,13 @@ impl Runner {
         }
         self.results.iter().for_each(|&id| last[id] = usize::MAX);
         let mut lanes = Lanes::default();
-        let mut schedule = Schedule { fixed: Vec::new(), tasks: Vec::new(), results: Vec::new(), lanes: 0 };
+        let mut schedule = Schedule {
+            fixed: Vec::new(),
+            tasks: Vec::new(),
+            results: Vec::new(),
+            inputs: vec![0..0; self.inputs.len()],
+            lanes: 0,
+        };
         let mut places = vec![0..0; self.steps.len()];
         let mut of_maps = vec![0..0; self.inputs.len()];
         // Values common to all rows keep their lanes.
@@ -106,7 +116,21 @@ impl Runner {
                 schedule.fixed.push((of_maps[input].start, map.numbers().to_vec()));
             }
         }
+        if stay {
+            for input in (0..known.len()).filter(|&input| known[input].is_none()) {
+                schedule.inputs[input] = lanes.take(self.inputs[input].size());
+                of_maps[input] = schedule.inputs[input].clone();
+            }
+        }
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| !fixed[*id]) {
+            if let Work::Input(input) = step.work
+                && stay
+                && !self.results.contains(&id)
+            {
+                places[id] = schedule.inputs[input].clone();
+                last[id] = usize::MAX;
+                continue;
+            }
             let mut operands = [0..0, 0..0];
             for (place, &operand) in operands.iter_mut().zip(step.operands()) {
                 *place = places[operand].clone();

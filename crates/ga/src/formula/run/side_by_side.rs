@@ -1,18 +1,20 @@
 //! Programs on lanes that the caller fills repeatedly, for bodies stepped side by side.
 
-use super::schedule::Schedule;
+use super::schedule::{Schedule, Task};
 use super::single::Runner;
 use super::steps::Given;
-use crate::formula::InputKind;
 use crate::simd::{Lane, Path};
+use std::ops::Range;
 
 /// A program with memory for `W` rows, a multiple of 8, as lanes. Steps common to all rows and times are computed once.
 pub struct Beside<'r, const W: usize> {
     runner: &'r Runner,
     path: Path,
     schedule: Schedule,
-    /// For each input, one lane for each of its numbers.
-    inputs: Vec<Vec<Lane<W>>>,
+    /// The inputs common to all rows and times.
+    known: Vec<Option<Given>>,
+    /// The lanes of each result.
+    results: Vec<Range<usize>>,
     lanes: Vec<Lane<W>>,
 }
 
@@ -24,36 +26,36 @@ impl Runner {
     /// If the inputs are not of their kinds and grades.
     pub fn beside<const W: usize>(&self, known: &[Option<Given>]) -> Option<Beside<'_, W>> {
         assert_eq!(known.len(), self.inputs.len(), "an entry for each input");
-        let schedule = self.schedule(known).ok()?;
-        let input = |(kind, given): (&InputKind, &Option<Given>)| match given {
-            Some(given) => given.numbers().iter().copied().map(Lane::filled).collect(),
-            None => vec![Lane::filled(1.0); kind.size()],
-        };
-        let inputs = self.inputs.iter().zip(known).map(input).collect();
+        let schedule = self.schedule(known, true).ok()?;
         let lanes = schedule.filled();
-        Some(Beside { runner: self, path: Path::best(), schedule, inputs, lanes })
+        let of = |(number, &first): (usize, &usize)| first..first + self.size_of_result(number);
+        let results = schedule.results.iter().enumerate().map(of).collect();
+        Some(Beside { runner: self, path: Path::best(), schedule, known: known.to_vec(), results, lanes })
     }
 }
 
 impl<const W: usize> Beside<'_, W> {
-    /// The numbers of an input, to be set before evaluation; they keep their values.
+    /// The numbers of an input, to be set before evaluation; they keep their values. None of an input that is known.
+    #[inline]
     pub fn input(&mut self, number: usize) -> &mut [Lane<W>] {
-        &mut self.inputs[number]
+        &mut self.lanes[self.schedule.inputs[number].clone()]
     }
 
     /// The numbers of a result.
+    #[inline]
     pub fn result(&self, number: usize) -> &[Lane<W>] {
-        let first = self.schedule.results[number];
-        &self.lanes[first..first + self.runner.size_of_result(number)]
+        &self.lanes[self.results[number].clone()]
     }
 
     /// Evaluates all rows, each with the bits of [`Runner::value`]; a row with a failing step has NaN as its results.
     pub fn run(&mut self) {
         let mut known = true;
         for task in &self.schedule.tasks {
-            known &= self.runner.task(task, (self.path, W), &mut self.lanes, |input, lanes| {
-                lanes.copy_from_slice(&self.inputs[input]);
-            });
+            if let Task::Read { input, to } = task {
+                self.lanes.copy_within(self.schedule.inputs[*input].clone(), to.start);
+                continue;
+            }
+            known &= self.runner.task(task, (self.path, W), &mut self.lanes, |_, _| {});
         }
         if !known {
             (0..W).for_each(|row| self.complete(row));
@@ -64,16 +66,22 @@ impl<const W: usize> Beside<'_, W> {
     #[cold]
     fn complete(&mut self, row: usize) {
         let runner = self.runner;
-        let given = |i: usize| Given::new(runner.inputs[i], |k| self.inputs[i][k].0[row]);
+        let given = |i: usize| {
+            let own = || {
+                let lanes = &self.lanes[self.schedule.inputs[i].clone()];
+                Given::new(runner.inputs[i], |k| lanes[k].0[row])
+            };
+            self.known[i].unwrap_or_else(own)
+        };
         let values = runner.values(given, |_| true);
-        for (number, (&id, &first)) in runner.results.iter().zip(&self.schedule.results).enumerate() {
-            if self.schedule.fixed.iter().any(|(fixed, _)| *fixed == first) {
+        for (lanes, &id) in self.results.iter().zip(&runner.results) {
+            if self.schedule.fixed.iter().any(|(fixed, _)| *fixed == lanes.start) {
                 // Constant lanes keep their values.
                 continue;
             }
-            for k in 0..runner.size_of_result(number) {
+            for (k, lane) in lanes.clone().enumerate() {
                 let value = values.as_ref().map_or(f64::NAN, |values| values[id].components()[k]);
-                self.lanes[first + k].0[row] = value;
+                self.lanes[lane].0[row] = value;
             }
         }
     }

@@ -345,7 +345,13 @@ impl<const W: usize> Kernel<W> for Selection {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], _: &[Lane<W>], out: &mut [Lane<W>]) {
         for (out, place) in out.iter_mut().zip(&self.places) {
-            *out = Lane(place.map_or([0.0; W], |(sign, k)| a[k].0.map(|x| sign * x + self.start)));
+            let Some((sign, k)) = *place else {
+                *out = Lane([0.0; W]);
+                continue;
+            };
+            for l in 0..W {
+                out.0[l] = sign * a[k].0[l] + self.start;
+            }
         }
     }
 }

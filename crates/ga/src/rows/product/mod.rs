@@ -6,7 +6,7 @@ use crate::product::{Engine, Grades, Plan, Term};
 pub use crate::simd::Element;
 use crate::simd::threads::Threads;
 use crate::simd::traverse::{beyond_caches, sweep};
-use crate::simd::{ByRow, Kernel, LANES, Lane, Path, by_lanes};
+use crate::simd::{ByRow, Kernel, LANES, Lane, Path, Short, by_lanes};
 
 impl ByRow for Plan {
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
@@ -15,11 +15,18 @@ impl ByRow for Plan {
             out[term.out] += f64::from(term.sign) * a[term.a] * b[term.b];
         }
     }
+
+    fn in_registers<T: Element>(&self, path: Path, a: &[T], b: &[T], out: &mut [T], streamed: bool) -> usize {
+        self.written.map_or(0, |written| written.in_registers(path, a, b, out, streamed))
+    }
 }
 
 impl<const W: usize> Kernel<W> for Plan {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        if let Some(written) = self.written {
+            return written.block(a, b, out);
+        }
         out.fill(Lane::filled(0.0));
         // The terms come in order of `out`; up to eight of a lane are added at a time, in registers.
         for terms in self.terms.chunk_by(|s, t| s.out == t.out).flat_map(|terms| terms.chunks(8)) {
@@ -102,6 +109,18 @@ impl ByRow for Turn {
                 out[at..at + 3].copy_from_slice(&turned(rotor, [value[at], value[at + 1], value[at + 2]]));
             }
         }
+    }
+
+    fn in_registers<T: Element>(&self, path: Path, r: &[T], v: &[T], out: &mut [T], streamed: bool) -> usize {
+        let three = self.0 == Grades::VECTOR || self.0 == Grades::BIVECTOR;
+        if three { path.short::<Turn, T, 4, 3, 3>(r, v, out, streamed) } else { 0 }
+    }
+}
+
+impl Short<4, 3, 3> for Turn {
+    #[inline(always)]
+    fn value(rotor: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
+        turned(rotor, vector)
     }
 }
 

@@ -1,5 +1,6 @@
 use super::*;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::lanes::exp_of_pair;
 
 fn exponential(x: f64) -> [DoubleDouble; 2] {
     let [fused, split] = [exp_of_pair::<true>((x, 0.0)), exp_of_pair::<false>((x, 0.0))];

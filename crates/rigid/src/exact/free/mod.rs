@@ -77,24 +77,23 @@
 
 mod derivatives;
 mod describe;
-mod flow;
-mod many;
+pub(super) mod flow;
 pub(crate) mod orbit;
 pub(crate) mod series;
 mod variation;
 
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
+use crate::exact::flow::{Flow, Form};
+use crate::exact::lanes::Phases;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::mean;
 use crate::numerics::lanes::Phase;
 use crate::numerics::wide::Wide;
 use crate::state::checks::check_moments;
 pub use derivatives::{Differentiated, FlowDerivatives};
-use flow::{AnyFlow, Flow};
-pub use many::{TILE, Tile, Times, at_each};
+use flow::Flow as FreeFlow;
 use orbit::Orbit;
-use polhode_ga::rows::curve::{Curve, sample, value};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
@@ -116,7 +115,7 @@ pub struct FreeMotion {
     scale: f64,
     /// None for steady rotation.
     orbit: Option<Orbit>,
-    flow: AnyFlow,
+    pub(super) flow: Flow,
 }
 
 impl FreeMotion {
@@ -156,8 +155,7 @@ impl FreeMotion {
 
     /// Rotor and body angular velocity at time `t` in s, the same bits as [`FreeMotion::at_many`].
     pub fn at(&self, t: f64) -> (Rotor, Bivector) {
-        let (rotor, omega) = value(self, t);
-        (Rotor::from_unit_components(rotor), Bivector(omega))
+        self.flow.at(t)
     }
 
     /// The same at many times: rows of four rotor components and of three components of the angular velocity.
@@ -165,17 +163,7 @@ impl FreeMotion {
     /// # Panics
     /// If the numbers of rows and times differ.
     pub fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
-        sample(self, threads, times, rotors, omegas);
-    }
-}
-
-impl Curve<4, 3> for FreeMotion {
-    #[inline(always)]
-    fn values<const W: usize, const FMA: bool>(&self, times: &[f64; W]) -> ([[f64; W]; 4], [[f64; W]; 3]) {
-        match &self.flow {
-            AnyFlow::Circular(flow) => flow.values::<W, FMA>(times),
-            AnyFlow::Hyperbolic(flow) => flow.values::<W, FMA>(times),
-        }
+        self.flow.at_many(threads, times, rotors, omegas);
     }
 }
 
@@ -186,23 +174,22 @@ pub(crate) fn power_of_two(components: [f64; 3]) -> f64 {
 }
 
 /// `exp(−½ Ω t)`, a uniform turn about d along Ω.
-fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
+fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> Flow {
     let square = |x: f64| DoubleDouble::from(x) * x.into();
     let unit = omega / scale;
     let [x, y, z] = unit.0;
     let size = (square(x) + square(y) + square(z)).sqrt();
     let plane = if size.hi > 0.0 { unit / size.value() } else { Bivector::default() };
     let d = Rotor::from_unit_components([0.0, -plane.0[0], -plane.0[1], -plane.0[2]]);
-    let still = Phase { rate: DoubleDouble::ZERO, start: [0.0; 2] };
-    let flow = Flow {
+    let flow = FreeFlow {
         scale: [scale],
-        orbit: still.into(),
-        precession: Phase { rate: size * DoubleDouble::OVER_TWO_PI * 0.5.into(), ..still }.into(),
+        orbit: Phases::STILL,
+        precession: Phase { rate: size * DoubleDouble::OVER_TWO_PI * 0.5.into(), start: [0.0; 2] }.into(),
         series: Circular::steady(),
         rotor: [[[0.0]; 4]; 4],
         omega: frame.apply_bivector(omega).0.map(|w| [[0.0], [0.0], [w]]),
     };
-    AnyFlow::Circular(flow.with_frames(rotor, [Rotor::IDENTITY, d, d, d], frame.reverse()))
+    Flow(Form::FreeCircular(flow.with_frames(rotor, [Rotor::IDENTITY, d, d, d], frame.reverse())))
 }
 
 /// The phase v/2π, and the nome if the trigonometric series converge rapidly: from λ, AGM(1, k') if not on the separatrix,
@@ -224,7 +211,7 @@ pub(crate) fn phase_and_nome(
 }
 
 /// A motion that is not steady.
-fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
+fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> Flow {
     // AGM(1, k) = π/2K'.
     let other = mean(orbit.k2.sqrt());
     let (phase, nome) = phase_and_nome(orbit.lambda, orbit.mean, orbit.start, other);
@@ -232,7 +219,7 @@ fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
         (Some(mean), Some(nome)) => {
             let rho = (-orbit.rest_of_eta() * mean.hi).exp();
             let series = Circular::new(nome, rho, orbit.s);
-            AnyFlow::Circular(flow(orbit, scale, phase, series, rotor, frame))
+            Flow(Form::FreeCircular(flow(orbit, scale, phase, series, rotor, frame)))
         }
         (mean, _) => {
             // πK/4K' and πη/4K'.
@@ -241,7 +228,7 @@ fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
                 Some(mean) => Hyperbolic::new(0.25 * PI * other / mean.hi, gamma, orbit.s),
                 None => Hyperbolic::separatrix(gamma, orbit.s),
             };
-            AnyFlow::Hyperbolic(flow(orbit, scale, phase, series, rotor, frame))
+            Flow(Form::FreeHyperbolic(flow(orbit, scale, phase, series, rotor, frame)))
         }
     }
 }
@@ -254,7 +241,7 @@ fn flow<S: Series<1>>(
     series: S,
     rotor: Rotor,
     frame: Rotor,
-) -> Flow<S> {
+) -> FreeFlow<S> {
     let rate = top.precession * DoubleDouble::OVER_TWO_PI * 0.5.into();
     let precession = Phase { rate, start: [0.0; 2] };
     let axis = |k: usize| {
@@ -273,6 +260,6 @@ fn flow<S: Series<1>>(
     });
     let omega = std::array::from_fn(|i| columns.map(|c| [c[i]]));
     let (scale, orbit, precession) = ([scale], phase.into(), precession.into());
-    let flow = Flow { scale, orbit, precession, series, rotor: [[[0.0]; 4]; 4], omega };
+    let flow = FreeFlow { scale, orbit, precession, series, rotor: [[[0.0]; 4]; 4], omega };
     flow.with_frames(rotor, [Rotor::IDENTITY, unit(0), unit(1), unit(2)], frame.reverse())
 }

@@ -10,6 +10,7 @@
 //!
 //! all with `p_{n+1} = 2x p_n − p_{n−1}`. The factors sin v etc. keep the relative accuracy where a function vanishes.
 
+use crate::exact::lanes::Coefficients;
 use crate::numerics::lanes::{exp_minus, half_period, horner_in_lane, in_lane, sin_cos_turns};
 use std::f64::consts::PI;
 
@@ -18,7 +19,7 @@ pub(crate) const LARGEST_NOME: f64 = 0.2;
 
 /// Values of the series at `W` times: the rotor `Z` up to its norm, in the frame (e1, e2, d) of quaternion units; cn, sn
 /// and dn up to a common denominator; and the part of a turn to add to the precession.
-pub(super) struct State<const W: usize> {
+pub(crate) struct State<const W: usize> {
     pub z: [[f64; W]; 4],
     pub functions: [[f64; W]; 3],
     pub denominator: [f64; W],
@@ -26,21 +27,15 @@ pub(super) struct State<const W: usize> {
 }
 
 /// Series in one form or the other, of one motion or of `C` in lanes.
-pub(super) trait Series<const C: usize>: Copy + Sync {
+pub(crate) trait Series<const C: usize>: Coefficients<C, One = <Self as Series<C>>::Alone> {
+    /// The series of one motion.
+    type Alone: Series<1>;
+
     /// From `v/2π = u/4K`, reduced to [−½, ½], and its rounding error.
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W>;
 
     /// Factors that make cn 0, sn K and dn 0 equal to 1, in lane 0.
     fn normalizers(&self) -> [f64; 3];
-
-    /// The series of one motion.
-    type One: Series<1>;
-
-    /// Zero coefficients.
-    fn empty() -> Self;
-
-    /// All coefficients, always in the same order.
-    fn coefficients(&mut self) -> impl Iterator<Item = &mut [f64; C]>;
 }
 
 /// `Σ h_n p_n(x)` in powers of x, with `p_0 = 1` and the given `p_{−1}`.
@@ -75,7 +70,7 @@ fn power(x: f64, n: usize) -> f64 {
 
 /// Series in the nome q.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Circular<const C: usize = 1> {
+pub(crate) struct Circular<const C: usize = 1> {
     z: [[[f64; C]; 4]; 4],
     functions: [[[f64; C]; 5]; 3],
     denominator: [[f64; C]; 5],
@@ -125,6 +120,8 @@ impl Circular {
 }
 
 impl<const C: usize> Series<C> for Circular<C> {
+    type Alone = Circular;
+
     #[inline(always)]
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
         let (mut sin, mut cos, mut x) = ([0.0; W], [0.0; W], [0.0; W]);
@@ -157,7 +154,9 @@ impl<const C: usize> Series<C> for Circular<C> {
         };
         [ratio(0, 1.0), ratio(1, -1.0), ratio(2, 1.0)]
     }
+}
 
+impl<const C: usize> Coefficients<C> for Circular<C> {
     type One = Circular;
 
     fn empty() -> Circular<C> {
@@ -165,7 +164,7 @@ impl<const C: usize> Series<C> for Circular<C> {
         Circular { z: [[none; 4]; 4], functions: [[none; 5]; 3], denominator: [none; 5] }
     }
 
-    fn coefficients(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+    fn each(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
         let (z, functions) = (self.z.as_flattened_mut(), self.functions.as_flattened_mut());
         z.iter_mut().chain(functions).chain(&mut self.denominator)
     }
@@ -174,7 +173,7 @@ impl<const C: usize> Series<C> for Circular<C> {
 /// Series in the nome q', by Jacobi's imaginary transformation, in `x = πu/4K'` for u within a half period; at
 /// u = ±K it is ±X.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hyperbolic<const C: usize = 1> {
+pub(crate) struct Hyperbolic<const C: usize = 1> {
     /// X.
     border: [f64; C],
     nome: [f64; C],
@@ -228,6 +227,8 @@ impl Hyperbolic {
 }
 
 impl<const C: usize> Series<C> for Hyperbolic<C> {
+    type Alone = Hyperbolic;
+
     #[inline(always)]
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
         /// Largest argument with a finite `cosh²`; 2X of a periodic motion is less.
@@ -288,7 +289,9 @@ impl<const C: usize> Series<C> for Hyperbolic<C> {
         let less = (1.0 - self.nome[0]) * (1.0 - self.nome[0]);
         [at_0(0) / less, denominator(y) / sinh, at_0(2)]
     }
+}
 
+impl<const C: usize> Coefficients<C> for Hyperbolic<C> {
     type One = Hyperbolic;
 
     fn empty() -> Hyperbolic<C> {
@@ -303,7 +306,7 @@ impl<const C: usize> Series<C> for Hyperbolic<C> {
         }
     }
 
-    fn coefficients(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+    fn each(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
         let (z, functions) = (self.z.as_flattened_mut(), self.functions.as_flattened_mut());
         let single = [&mut self.border, &mut self.nome, &mut self.ahead];
         z.iter_mut().chain(functions).chain(&mut self.denominator).chain(single)

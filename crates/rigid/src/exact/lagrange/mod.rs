@@ -59,23 +59,24 @@
 //! Klein & Sommerfeld, *Theorie des Kreisels* (1897–1910), ch. VI; Whittaker, *Analytical Dynamics* §72.
 
 mod description;
-mod flow;
+pub(super) mod flow;
 mod orbit;
-mod series;
+pub(super) mod series;
 mod start;
 
 use super::free::{FreeMotion, MOST_TURNS, phase_and_nome};
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
+use crate::exact::flow::{Flow, Form};
+use crate::exact::lanes::Phases;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::mean;
 use crate::numerics::lanes::Phase;
 use crate::numerics::wide::Wide;
 use crate::state::phase::Gyrostat;
 pub use description::{LagrangeDescription, LagrangeRegime};
-use flow::{Flow, times};
+use flow::Flow as LagrangeFlow;
 use orbit::Orbit;
-use polhode_ga::rows::curve::{sample, value};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use series::{Circular, Hyperbolic, Series};
@@ -90,20 +91,12 @@ pub struct LagrangeTop {
     start: Start,
     /// None for rotation about the axis without a torque.
     orbit: Option<Orbit>,
-    form: Form,
+    pub(super) flow: Flow,
+    horizon: f64,
 }
 
 /// The series cannot represent tilts and rates below this.
 const LEAST: f64 = 1e-303;
-
-// A box could not be copied.
-#[allow(clippy::large_enum_variant)]
-#[derive(Clone, Copy, Debug)]
-enum Form {
-    Steady(FreeMotion),
-    Circular(Flow<Circular>),
-    Hyperbolic(Flow<Hyperbolic>),
-}
 
 impl LagrangeTop {
     /// The motion that starts at `rotor` (body axes to space) with angular velocity `omega` in body axes, of a body
@@ -121,10 +114,12 @@ impl LagrangeTop {
             let moments = [axes.i1, axes.i1, axes.i3];
             let along = Bivector([0.0, 0.0, start.omega3]);
             let motion = FreeMotion::in_frame(axes.frame, moments, rotor * axes.frame, along);
-            return Ok(LagrangeTop { axes, start, orbit: None, form: Form::Steady(motion) });
+            let (flow, horizon) = (motion.flow, motion.horizon());
+            return Ok(LagrangeTop { axes, start, orbit: None, flow, horizon });
         }
         let orbit = Orbit::new(&start).ok_or(SimulateError::Unresolved)?;
-        let top = LagrangeTop { axes, start, orbit: Some(orbit), form: form(&axes, &start, &orbit) };
+        let (flow, horizon) = flow_and_horizon(&axes, &start, &orbit);
+        let top = LagrangeTop { axes, start, orbit: Some(orbit), flow, horizon };
         if top.starts_at(rotor, omega, &orbit) && top.keeps_energy(&orbit) {
             Ok(top)
         } else {
@@ -187,24 +182,12 @@ impl LagrangeTop {
 
     /// How far in time, in s, the phases are accurate: 1e17 turns.
     pub fn horizon(&self) -> f64 {
-        let phases = match &self.form {
-            Form::Steady(motion) => return motion.horizon(),
-            Form::Circular(flow) => &flow.phases,
-            Form::Hyperbolic(flow) => &flow.phases,
-        };
-        let nutation = self.orbit.map_or(0.0, |orbit| orbit.lambda.hi / PI);
-        let rates = phases.iter().map(|phase| phase.rate.hi.abs());
-        MOST_TURNS / (rates.fold(nutation, f64::max) * self.start.scale)
+        self.horizon
     }
 
     /// Rotor and body angular velocity at time `t` in s, the same bits as [`LagrangeTop::at_many`].
     pub fn at(&self, t: f64) -> (Rotor, Bivector) {
-        let (rotor, omega) = match &self.form {
-            Form::Steady(motion) => return motion.at(t),
-            Form::Circular(flow) => value(flow, t),
-            Form::Hyperbolic(flow) => value(flow, t),
-        };
-        (Rotor::from_unit_components(rotor), Bivector(omega))
+        self.flow.at(t)
     }
 
     /// The same at many times: rows of four rotor components and of three components of the angular velocity.
@@ -212,11 +195,7 @@ impl LagrangeTop {
     /// # Panics
     /// If the numbers of rows and times differ.
     pub fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
-        match &self.form {
-            Form::Steady(motion) => motion.at_many(threads, times, rotors, omegas),
-            Form::Circular(flow) => sample(flow, threads, times, rotors, omegas),
-            Form::Hyperbolic(flow) => sample(flow, threads, times, rotors, omegas),
-        }
+        self.flow.at_many(threads, times, rotors, omegas);
     }
 
     /// The angular momentum at the start, in the top's axes.
@@ -230,15 +209,16 @@ impl LagrangeTop {
     }
 }
 
-/// The form with the rapidly converging series.
-fn form(axes: &Axes, start: &Start, orbit: &Orbit) -> Form {
+/// The states by the rapidly converging series, and how far in time, in s, their phases are accurate.
+fn flow_and_horizon(axes: &Axes, start: &Start, orbit: &Orbit) -> (Flow, f64) {
     // AGM(1, k) = π/2K'.
     let other = mean(orbit.k2.sqrt());
     let (phase, nome) = phase_and_nome(orbit.lambda, orbit.mean, orbit.start, other);
     match (orbit.mean, nome) {
         (Some(mean), Some(nome)) => {
             let series = Circular::new(nome, mean.hi, orbit.zeros);
-            Form::Circular(flow(axes, start, orbit, phase, series))
+            let flow = flow(axes, start, orbit, phase, series);
+            (Flow(Form::LagrangeCircular(flow)), horizon(start, orbit, &flow))
         }
         (mean, _) => {
             let gammas = orbit.zeros.map(|zero| (zero.side, zero.eta * other));
@@ -246,13 +226,20 @@ fn form(axes: &Axes, start: &Start, orbit: &Orbit) -> Form {
                 Some(mean) => Hyperbolic::new(0.5 * PI * other / mean.hi, gammas),
                 None => Hyperbolic::separatrix(gammas[0].1, gammas[0].0),
             };
-            Form::Hyperbolic(flow(axes, start, orbit, phase, series))
+            let flow = flow(axes, start, orbit, phase, series);
+            (Flow(Form::LagrangeHyperbolic(flow)), horizon(start, orbit, &flow))
         }
     }
 }
 
+/// The time of 1e17 turns of the fastest phase.
+fn horizon<S>(start: &Start, orbit: &Orbit, flow: &LagrangeFlow<S>) -> f64 {
+    let rates = flow.phases.iter().map(|phase| phase.of(0).rate.hi.abs());
+    MOST_TURNS / (rates.fold(orbit.lambda.hi / PI, f64::max) * start.scale)
+}
+
 /// Phases, series and frames together.
-fn flow<S: Series>(axes: &Axes, start: &Start, orbit: &Orbit, phase: Phase, series: S) -> Flow<S> {
+fn flow<S: Series<1>>(axes: &Axes, start: &Start, orbit: &Orbit, phase: Phase, series: S) -> LagrangeFlow<S> {
     // The uniform turn about the axis adds to ψ.
     let excess = start.excess.narrow();
     let half = excess * 0.5.into();
@@ -269,22 +256,27 @@ fn flow<S: Series>(axes: &Axes, start: &Start, orbit: &Orbit, phase: Phase, seri
         axes.frame.apply_bivector(Bivector(e)).0
     };
     let rates = [axis(0, start.scale), axis(1, start.scale), axis(2, start.omega3)];
-    let mut flow = Flow {
-        scale: start.scale,
-        orbit: phase,
-        phases,
+    let mut flow = LagrangeFlow {
+        scale: [start.scale],
+        orbit: phase.into(),
+        phases: phases.map(Phases::from),
         series,
-        factors: [[1.0, 0.0]; 3],
-        rotor: std::array::from_fn(|i| columns.map(|c| c[i])),
-        omega: std::array::from_fn(|i| rates.map(|c| c[i])),
+        factors: [[[1.0], [0.0]]; 3],
+        rotor: std::array::from_fn(|i| columns.map(|c| [c[i]])),
+        omega: std::array::from_fn(|i| rates.map(|c| [c[i]])),
     };
-    flow.factors = factors(start, orbit, &flow);
+    flow.factors = factors(start, orbit, &flow).map(|factor| factor.map(|x| [x]));
     flow
+}
+
+/// The product of complex numbers.
+fn times(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }
 
 /// The constants A, B and C: their sizes from the bounds, their phases from the two of α, β and w that are relatively
 /// largest at the start.
-fn factors<S: Series>(start: &Start, orbit: &Orbit, flow: &Flow<S>) -> [[f64; 2]; 3] {
+fn factors<S: Series<1>>(start: &Start, orbit: &Orbit, flow: &LagrangeFlow<S>) -> [[f64; 2]; 3] {
     let at = |turns: f64, k: usize| {
         let state = flow.series.state::<1, false>(&[turns], &[0.0]);
         let [re, im] = state.z[k].map(|z| z[0]);

@@ -7,8 +7,9 @@ use super::series::Zero;
 use super::start::{Start, square, times_conjugate};
 use crate::exact::free::orbit::argument;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::{first_kind, mean_and_sum};
+use crate::numerics::elliptic::{Means, first_kind};
 use crate::numerics::wide::Wide;
+use std::ops::{Add, Mul, Sub};
 
 /// A motion in which the tilt is defined by the cubic, in units of the start's scale.
 #[derive(Clone, Copy, Debug)]
@@ -48,16 +49,30 @@ fn factors(product: Wide, difference: Wide) -> [Wide; 2] {
 
 /// The largest root of a cubic with real roots by Newton's method from a start above it; the other roots are all >= 0 or
 /// all <= 0. `f` gives the value and two derivatives: while all three have the sign of the leading coefficient, there is
-/// no root above (Budan).
-fn root_below(start: Wide, leading: f64, f: impl Fn(Wide) -> [Wide; 3]) -> Wide {
+/// no root above (Budan). `floats` is the same in floats: the method begins beside the root that they find, if that is above
+/// the root.
+fn root_below(
+    start: Wide,
+    leading: f64,
+    f: impl Fn(Wide) -> [Wide; 3],
+    floats: impl Fn(f64) -> [f64; 3],
+) -> Wide {
     const STRIDE: f64 = 1.0 / (1u64 << 32) as f64;
+    /// Above the rounding of the root of floats, and below the root of the rounding of [`Wide`].
+    const MARGIN: f64 = 1e-12;
+    let is_above = |x: Wide| f(x).iter().all(|&d| (d * leading.into()).is_positive());
+    let near = root_of_floats(start.value(), floats).map(|x| Wide::from(x * (1.0 + MARGIN)));
     let mut x = start;
-    for _ in 0..100 {
-        let next = x * STRIDE.into();
-        if !f(next).iter().all(|&d| (d * leading.into()).is_positive()) {
-            break;
+    if let Some(near) = near.filter(|&near| is_above(near)) {
+        x = near;
+    } else {
+        for _ in 0..100 {
+            let next = x * STRIDE.into();
+            if !is_above(next) {
+                break;
+            }
+            x = next;
         }
-        x = next;
     }
     for _ in 0..200 {
         let [value, slope, _] = f(x);
@@ -68,6 +83,73 @@ fn root_below(start: Wide, leading: f64, f: impl Fn(Wide) -> [Wide; 3]) -> Wide 
         x = x - step;
     }
     x
+}
+
+/// The same in floats, to a few roundings of a simple root; None beyond their range.
+fn root_of_floats(start: f64, f: impl Fn(f64) -> [f64; 3]) -> Option<f64> {
+    /// Terms of this size are far from underflow.
+    const LEAST: f64 = 1e-200;
+    let mut x = start;
+    for _ in 0..60 {
+        let [value, slope, _] = f(x);
+        let step = value / slope;
+        if !step.is_finite() || (slope * x).abs() < LEAST {
+            return None;
+        }
+        x -= step;
+        if step.abs() <= 1e-9 * x {
+            return Some(x);
+        }
+    }
+    None
+}
+
+/// Numbers in which roots are computed.
+trait Real: Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+
+impl Real for f64 {}
+impl Real for Wide {}
+
+/// The numbers of the start on which the roots depend.
+#[derive(Clone, Copy)]
+struct Cubic<T> {
+    gravity: T,
+    spin: T,
+    delta: T,
+    surplus: T,
+}
+
+impl<T: Real> Cubic<T> {
+    /// Half the second derivative by 2ĉ(u − 1), and by 1 − u, at u = 1.
+    fn bend(self) -> T {
+        T::from(2.0) * self.gravity - self.surplus - self.spin * self.spin
+    }
+
+    /// By y = 2ĉ(u − 1): the cubic, its derivative and half the second.
+    fn above(self, y: T) -> [T; 3] {
+        let Cubic { gravity, spin, delta, surplus } = self;
+        let two = T::from(2.0);
+        let (p, q, r) = (y * (two * gravity + y), y - surplus, gravity * delta - spin * y);
+        let slope = two * (gravity + y) * q + p + two * spin * r;
+        [p * q - r * r, slope, self.bend() + y * 3.0.into()]
+    }
+
+    /// The same by w = 1 − u.
+    fn below(self, w: T) -> [T; 3] {
+        let Cubic { gravity, spin, delta, surplus } = self;
+        let two = T::from(2.0);
+        let (p, q, r) = (w * (two - w), surplus + gravity * w, delta + spin * w);
+        let third = gravity * w * 3.0.into();
+        let slope = two * (surplus - delta * spin) + two * self.bend() * w - third * w;
+        [p * q - r * r, slope, self.bend() - third]
+    }
+}
+
+impl Cubic<Wide> {
+    fn values(self) -> Cubic<f64> {
+        let Cubic { gravity, spin, delta, surplus } = self;
+        Cubic { gravity: gravity.value(), spin: spin.value(), delta: delta.value(), surplus: surplus.value() }
+    }
 }
 
 /// Distances of a point p between r2 and r3 from the roots, up to a factor.
@@ -119,21 +201,14 @@ impl Orbit {
             let w2 = if v > w2_scaled { product / v } else { w2_scaled / gravity };
             (w2, v)
         };
-        let bend = two * gravity - surplus - spin * spin;
-        let v = root_below(surplus + spin * spin + two * gravity, 1.0, |y| {
-            let (p, q, r) = (y * (two * gravity + y), y - surplus, gravity * delta - spin * y);
-            let slope = two * (gravity + y) * q + p + two * spin * r;
-            [p * q - r * r, slope, bend + y * 3.0.into()]
-        });
+        let cubic = Cubic { gravity, spin, delta, surplus };
+        let floats = cubic.values();
+        let highest = surplus + spin * spin + two * gravity;
+        let v = root_below(highest, 1.0, |y| cubic.above(y), |y| floats.above(y));
         let x3 = gravity * w0 + v;
         let [x1, x2] = beside(x3);
         let w1 = if gravity * (x1 + x2) > x3 - gravity * x2 {
-            root_below(two, -1.0, |w| {
-                let (p, q, r) = (w * (two - w), surplus + gravity * w, delta + spin * w);
-                let third = gravity * w * 3.0.into();
-                let slope = two * (surplus - delta * spin) + two * bend * w - third * w;
-                [p * q - r * r, slope, bend - third]
-            })
+            root_below(two, -1.0, |w| cubic.below(w), |w| floats.below(w))
         } else {
             w0 + x1
         };
@@ -179,10 +254,10 @@ impl Orbit {
         let (rates, mean) = if on_separatrix {
             ([axial, DoubleDouble::ZERO, -axial], None)
         } else {
-            let (alpha, mean) = modulus.rate_below([z1, z2, z3], gap, gravity, sigma);
-            let (beta, _) = modulus.rate_above(&up);
-            let (across, _) = modulus.rate_above(&across);
-            ([alpha, beta, -(axial + across)], Some(mean))
+            let means = Means::new(modulus.kc);
+            let alpha = modulus.rate_below(&means, [z1, z2, z3], gap, gravity, sigma);
+            let [beta, across] = [&up, &across].map(|p| modulus.rate_above(&means, p));
+            ([alpha, beta, -(axial + across)], Some(means.mean()))
         };
         let zero = |k: usize, [eta, rest]: [[f64; 2]; 2]| Zero {
             side: sides[k],
@@ -219,40 +294,41 @@ impl Orbit {
 }
 
 impl Modulus {
-    /// μ(−1), from 1 + r1, 1 + r2, 2ĉ(1 + r3), r2 − r1 and b + ℓ, and M.
+    /// μ(−1), from 1 + r1, 1 + r2, 2ĉ(1 + r3), r2 − r1 and b + ℓ.
     fn rate_below(
         &self,
+        means: &Means,
         [z1, z2, z3]: [Wide; 3],
         gap: Wide,
         gravity: Wide,
         n: Wide,
-    ) -> (DoubleDouble, DoubleDouble) {
+    ) -> DoubleDouble {
         /// Beyond this `1 − n` the means take long to meet.
         const FAR: f64 = 1e12;
         let p2 = z3 / self.gaps[1];
         if p2 <= FAR.into() {
-            let (mean, sum) = mean_and_sum(self.kc, p2.narrow());
-            return ((gravity * n * sum.into() / (z3 * 4.0.into())).narrow(), mean);
+            let sum = means.sum(p2.narrow());
+            return (gravity * n * sum.into() / (z3 * 4.0.into())).narrow();
         }
-        let (mean, sum) = mean_and_sum(self.kc, (z2 / z1).narrow());
+        let sum = means.sum((z2 / z1).narrow());
         let less = (gap / z2).narrow() * sum * 0.5.into();
         let whole = (n / (z1 * 2.0.into())).narrow() * (DoubleDouble::ONE - less);
-        (whole - self.lambda * mean * sign(n).into(), mean)
+        whole - self.lambda * means.mean() * sign(n).into()
     }
 
-    /// μ(p) for p between r2 and r3, by whichever of the two parameters is smaller, and M.
-    fn rate_above(&self, p: &Point) -> (DoubleDouble, DoubleDouble) {
+    /// μ(p) for p between r2 and r3, by whichever of the two parameters is smaller.
+    fn rate_above(&self, means: &Means, p: &Point) -> DoubleDouble {
         let half: DoubleDouble = 0.5.into();
         let [_, to2, to3] = p.to;
         if to2 * to2 <= to3 * to3 * self.k2.into() {
-            let (mean, sum) = mean_and_sum(self.kc, ((to2 + to3) / to3).narrow());
-            ((p.n / to3).narrow() * half * (half * sum - DoubleDouble::ONE), mean)
+            let sum = means.sum(((to2 + to3) / to3).narrow());
+            (p.n / to3).narrow() * half * (half * sum - DoubleDouble::ONE)
         } else {
             let [_, whole, long] = self.gaps;
-            let (mean, sum) = mean_and_sum(self.kc, (long / whole / p.ratio).narrow());
+            let sum = means.sum((long / whole / p.ratio).narrow());
             let less = p.rest.narrow() * sum * half;
             let whole = (p.n / to2).narrow() * half * (DoubleDouble::ONE - less);
-            (whole - self.lambda * mean * sign(p.n).into(), mean)
+            whole - self.lambda * means.mean() * sign(p.n).into()
         }
     }
 

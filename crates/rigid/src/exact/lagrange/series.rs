@@ -5,12 +5,13 @@
 //! beyond, where `q' = exp(−πK/K')` is below 0.0022.
 
 use crate::exact::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev, sign};
-use crate::numerics::lanes::{HalfPeriod, exp_minus, half_period, horner, sin_cos_turns};
+use crate::exact::lanes::Coefficients;
+use crate::numerics::lanes::{exp_minus, half_period, horner_in_lane, in_lane, sin_cos_turns};
 use std::f64::consts::PI;
 
 /// The zero of one of the three functions, at `v = i s y` or `π/2 + i s y`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Zero {
+pub(crate) struct Zero {
     /// s.
     pub side: f64,
     /// η and K' − η.
@@ -20,14 +21,17 @@ pub(super) struct Zero {
 
 /// Values of the series at `W` times: real and imaginary parts of the three functions, their denominator, and the part
 /// of a turn to add to each phase.
-pub(super) struct State<const W: usize> {
+pub(crate) struct State<const W: usize> {
     pub z: [[[f64; W]; 2]; 3],
     pub denominator: [f64; W],
     pub ahead: [[f64; W]; 3],
 }
 
-/// Series in one form or the other.
-pub(super) trait Series: Copy + Sync {
+/// Series in one form or the other, of one motion or of `C` in lanes.
+pub(crate) trait Series<const C: usize>: Coefficients<C, One = <Self as Series<C>>::Alone> {
+    /// The series of one motion.
+    type Alone: Series<1>;
+
     /// From `v/2π = u/4K`, reduced to [−½, ½], and its rounding error.
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W>;
 }
@@ -35,10 +39,10 @@ pub(super) trait Series: Copy + Sync {
 /// Series in the nome q: `θ1(v − i s y) = sin v (…) − i s cos v (…)`, `θ2 = cos v (…) + i s sin v (…)`, the brackets
 /// polynomials in cos 2v, in units of `q^¼ e^y`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Circular {
+pub(crate) struct Circular<const C: usize = 1> {
     /// Of the three functions, the two brackets.
-    z: [[[f64; 5]; 2]; 3],
-    denominator: [f64; 5],
+    z: [[[[f64; C]; 5]; 2]; 3],
+    denominator: [[f64; C]; 5],
 }
 
 impl Circular {
@@ -65,7 +69,7 @@ impl Circular {
         };
         let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * sign(n) * q.powi((n * n) as i32) };
         // Subnormal coefficients are slow on many machines and negligible.
-        let normal = |c: f64| if c.abs() < 1e-200 { 0.0 } else { c };
+        let normal = |c: f64| [if c.abs() < 1e-200 { 0.0 } else { c }];
         let z = [odd(zeros[0]), even(zeros[1]), even(zeros[2])];
         Circular {
             z: z.map(|brackets| brackets.map(|c| c.map(normal))),
@@ -74,20 +78,41 @@ impl Circular {
     }
 }
 
-impl Series for Circular {
+impl<const C: usize> Series<C> for Circular<C> {
+    type Alone = Circular;
+
     #[inline(always)]
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
+        let (mut sin, mut cos, mut x) = ([0.0; W], [0.0; W], [0.0; W]);
+        for l in 0..W {
+            (sin[l], cos[l]) = sin_cos_turns::<FMA>(turns[l], rest[l]);
+            x[l] = 1.0 - 2.0 * (sin[l] * sin[l]);
+        }
         let (mut z, mut denominator) = ([[[0.0; W]; 2]; 3], [0.0; W]);
         for l in 0..W {
-            let (sin, cos) = sin_cos_turns::<FMA>(turns[l], rest[l]);
-            let x = 1.0 - 2.0 * (sin * sin);
-            for (k, [re, im]) in [[sin, cos], [cos, sin], [cos, sin]].into_iter().enumerate() {
-                z[k][0][l] = re * horner(&self.z[k][0], x);
-                z[k][1][l] = im * horner(&self.z[k][1], x);
-            }
-            denominator[l] = horner(&self.denominator, x);
+            let [alpha, beta, across] = &self.z;
+            z[0][0][l] = sin[l] * horner_in_lane(&alpha[0], l, x[l]);
+            z[0][1][l] = cos[l] * horner_in_lane(&alpha[1], l, x[l]);
+            z[1][0][l] = cos[l] * horner_in_lane(&beta[0], l, x[l]);
+            z[1][1][l] = sin[l] * horner_in_lane(&beta[1], l, x[l]);
+            z[2][0][l] = cos[l] * horner_in_lane(&across[0], l, x[l]);
+            z[2][1][l] = sin[l] * horner_in_lane(&across[1], l, x[l]);
+            denominator[l] = horner_in_lane(&self.denominator, l, x[l]);
         }
         State { z, denominator, ahead: [[0.0; W]; 3] }
+    }
+}
+
+impl<const C: usize> Coefficients<C> for Circular<C> {
+    type One = Circular;
+
+    fn empty() -> Circular<C> {
+        let none = [0.0; C];
+        Circular { z: [[[none; 5]; 2]; 3], denominator: [none; 5] }
+    }
+
+    fn each(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+        self.z.as_flattened_mut().as_flattened_mut().iter_mut().chain(&mut self.denominator)
     }
 }
 
@@ -95,41 +120,65 @@ impl Series for Circular {
 /// `g = e^{−2X}` and `f = e^{−2(B − X)}` they are polynomials in `h = 2q' cosh 2X = f + q'g`, which is at most
 /// about 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hyperbolic {
+pub(crate) struct Hyperbolic<const C: usize = 1> {
     /// B.
-    border: f64,
-    nome: f64,
-    alpha: [[f64; 3]; 2],
-    beta: Fourth,
-    across: Fourth,
-    denominator: [f64; 3],
-    ahead: [f64; 3],
+    border: [f64; C],
+    nome: [f64; C],
+    /// Coefficients of [`Fourth`]'s last factors.
+    tail: [[f64; C]; 2],
+    alpha: [[[f64; C]; 3]; 2],
+    beta: Fourth<C>,
+    across: Fourth<C>,
+    denominator: [[f64; C]; 3],
+    ahead: [[f64; C]; 3],
 }
 
 /// `θ4(s γ + iX | q')` as a product.
 #[derive(Clone, Copy, Debug)]
-struct Fourth {
-    side: f64,
+struct Fourth<const C: usize> {
+    side: [f64; C],
     /// 2 sin² γ, cos 2γ and sin 2γ.
-    versine: f64,
-    cos: f64,
-    sin: f64,
+    versine: [f64; C],
+    cos: [f64; C],
+    sin: [f64; C],
 }
 
-impl Fourth {
-    fn new(side: f64, gamma: f64) -> Fourth {
+/// Numbers common to the two products, for X >= 0: f, 1 − f and q'g.
+#[derive(Clone, Copy)]
+struct Exponentials {
+    f: f64,
+    one_less_f: f64,
+    qg: f64,
+    tail: [f64; 2],
+}
+
+impl Fourth<1> {
+    fn new(side: f64, gamma: f64) -> Fourth<1> {
         let (sin, cos) = (2.0 * gamma).sin_cos();
-        Fourth { side, versine: 2.0 * gamma.sin().powi(2), cos, sin }
+        Fourth { side: [side], versine: [2.0 * gamma.sin().powi(2)], cos: [cos], sin: [sin] }
+    }
+}
+
+impl<const C: usize> Fourth<C> {
+    fn empty() -> Fourth<C> {
+        let none = [0.0; C];
+        Fourth { side: none, versine: none, cos: none, sin: none }
     }
 
-    /// For X >= 0, from f, 1 − f and q'g: the first two factors are `1 − f e^{−2iγ}` and `1 − q'g e^{2iγ}`, the others
-    /// `1 − q'^{2n} T` with the sum T of what is subtracted in the first two.
+    fn each(&mut self) -> [&mut [f64; C]; 4] {
+        [&mut self.side, &mut self.versine, &mut self.cos, &mut self.sin]
+    }
+
+    /// In lane l: the first two factors are `1 − f e^{−2iγ}` and `1 − q'g e^{2iγ}`, the others `1 − q'^{2n} T` with the
+    /// sum T of what is subtracted in the first two.
     #[inline(always)]
-    fn value(&self, f: f64, one_less_f: f64, qg: f64, tail: [f64; 2]) -> [f64; 2] {
-        let (a, b) = (one_less_f + f * self.versine, f * self.sin);
-        let (c, d) = (1.0 - qg * self.cos, -(qg * self.sin));
+    fn value(&self, l: usize, at: Exponentials) -> [f64; 2] {
+        let Exponentials { f, one_less_f, qg, tail } = at;
+        let (versine, cos, sin) = (in_lane(&self.versine, l), in_lane(&self.cos, l), in_lane(&self.sin, l));
+        let (a, b) = (one_less_f + f * versine, f * sin);
+        let (c, d) = (1.0 - qg * cos, -(qg * sin));
         let (re, im) = (a * c - b * d, a * d + b * c);
-        let (t, s) = ((f + qg) * self.cos, (qg - f) * self.sin);
+        let (t, s) = ((f + qg) * cos, (qg - f) * sin);
         let (t2, s2) = (t * t - s * s, 2.0 * (t * s));
         let (x, y) = (1.0 + (tail[0] * t + tail[1] * t2), tail[0] * s + tail[1] * s2);
         [re * x - im * y, re * y + im * x]
@@ -144,17 +193,19 @@ impl Hyperbolic {
         let (s, gamma) = zeros[0];
         let [s1, s3, s5] = [1.0, 3.0, 5.0].map(|n: f64| s * (n * gamma).sin());
         let [c1, c3, c5] = [1.0, 3.0, 5.0].map(|n: f64| (n * gamma).cos());
+        let alpha = [
+            [c1 - q2 * c3 - q6 * c5, -q * c3 + q5 * c5, q4 * c5],
+            [-(s1 + q2 * s3 - q6 * s5), q * s3 + q5 * s5, -q4 * s5],
+        ];
         Hyperbolic {
-            border,
-            nome: q,
-            alpha: [
-                [c1 - q2 * c3 - q6 * c5, -q * c3 + q5 * c5, q4 * c5],
-                [-(s1 + q2 * s3 - q6 * s5), q * s3 + q5 * s5, -q4 * s5],
-            ],
+            border: [border],
+            nome: [q],
+            tail: [[-(q * q) * (1.0 + q * q)], [q6]],
+            alpha: alpha.map(|bracket| bracket.map(|c| [c])),
             beta: Fourth::new(zeros[1].0, zeros[1].1),
             across: Fourth::new(zeros[2].0, zeros[2].1),
-            denominator: [1.0 - q2 - q6, q - q5, q4],
-            ahead: zeros.map(|(side, gamma)| side * gamma / PI),
+            denominator: [[1.0 - q2 - q6], [q - q5], [q4]],
+            ahead: zeros.map(|(side, gamma)| [side * gamma / PI]),
         }
     }
 
@@ -162,41 +213,77 @@ impl Hyperbolic {
     pub fn separatrix(gamma: f64, side: f64) -> Hyperbolic {
         let border = NEVER / 4.0;
         let zeros = [(side, gamma), (1.0, 0.0), (1.0, 0.0)];
-        Hyperbolic { ahead: [0.0; 3], ..Hyperbolic::new(border, zeros) }
+        Hyperbolic { ahead: [[0.0]; 3], ..Hyperbolic::new(border, zeros) }
     }
 }
 
-impl Series for Hyperbolic {
+impl<const C: usize> Series<C> for Hyperbolic<C> {
+    type Alone = Hyperbolic;
+
     #[inline(always)]
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
         /// Largest X whose `e^{−X}` is a normal number.
         const MOST: f64 = 700.0;
         let (mut z, mut denominator, mut ahead) = ([[[0.0; W]; 2]; 3], [0.0; W], [[0.0; W]; 3]);
-        let tail = [-(self.nome * self.nome) * (1.0 + self.nome * self.nome), self.nome.powi(6)];
+        let (mut odd, mut side, mut near, mut far) = ([0.0; W], [0.0; W], [0.0; W], [0.0; W]);
         for l in 0..W {
-            let HalfPeriod { odd, side, part, from_middle, to_border } = half_period(turns[l], rest[l]);
-            let near = (2.0 * self.border * from_middle).min(MOST);
-            let far = (4.0 * self.border * to_border).min(MOST);
-            let (root, root_less) = exp_minus(near);
-            let (g, g_less) = (root * root, root_less * (1.0 + root));
-            let (f, f_less) = exp_minus(far);
-            let qg = self.nome * g;
-            let h = f + qg;
-            // In units of ½ e^X, with the sign of u's half period.
-            let (cosh, sinh) = (odd * (1.0 + g), odd * (-g_less * side));
-            z[0][0][l] = sinh * horner(&self.alpha[0], h);
-            z[0][1][l] = cosh * horner(&self.alpha[1], h);
-            let unit = odd * (2.0 * root);
-            for (z, fourth) in z[1..].iter_mut().zip([&self.beta, &self.across]) {
-                let [re, im] = fourth.value(f, -f_less, qg, tail);
-                z[0][l] = unit * re;
-                z[1][l] = (unit * (fourth.side * side)) * im;
-            }
-            denominator[l] = (1.0 + g) * horner(&self.denominator, h);
+            let at = half_period(turns[l], rest[l]);
+            (odd[l], side[l]) = (at.odd, at.side);
+            let border = in_lane(&self.border, l);
+            near[l] = (2.0 * border * at.from_middle).min(MOST);
+            far[l] = (4.0 * border * at.to_border).min(MOST);
             for k in 0..3 {
-                ahead[k][l] = self.ahead[k] * (part + 2.0 * rest[l]);
+                ahead[k][l] = in_lane(&self.ahead[k], l) * (at.part + 2.0 * rest[l]);
             }
         }
+        let (mut root, mut root_less, mut f, mut f_less) = ([0.0; W], [0.0; W], [0.0; W], [0.0; W]);
+        for l in 0..W {
+            (root[l], root_less[l]) = exp_minus(near[l]);
+            (f[l], f_less[l]) = exp_minus(far[l]);
+        }
+        for l in 0..W {
+            let (g, g_less) = (root[l] * root[l], root_less[l] * (1.0 + root[l]));
+            let qg = in_lane(&self.nome, l) * g;
+            let h = f[l] + qg;
+            // In units of ½ e^X, with the sign of u's half period.
+            let (cosh, sinh) = (odd[l] * (1.0 + g), odd[l] * (-g_less * side[l]));
+            z[0][0][l] = sinh * horner_in_lane(&self.alpha[0], l, h);
+            z[0][1][l] = cosh * horner_in_lane(&self.alpha[1], l, h);
+            denominator[l] = (1.0 + g) * horner_in_lane(&self.denominator, l, h);
+            let tail = [in_lane(&self.tail[0], l), in_lane(&self.tail[1], l)];
+            let at = Exponentials { f: f[l], one_less_f: -f_less[l], qg, tail };
+            let unit = odd[l] * (2.0 * root[l]);
+            let [beta, across] = [self.beta.value(l, at), self.across.value(l, at)];
+            z[1][0][l] = unit * beta[0];
+            z[1][1][l] = (unit * (in_lane(&self.beta.side, l) * side[l])) * beta[1];
+            z[2][0][l] = unit * across[0];
+            z[2][1][l] = (unit * (in_lane(&self.across.side, l) * side[l])) * across[1];
+        }
         State { z, denominator, ahead }
+    }
+}
+
+impl<const C: usize> Coefficients<C> for Hyperbolic<C> {
+    type One = Hyperbolic;
+
+    fn empty() -> Hyperbolic<C> {
+        let none = [0.0; C];
+        Hyperbolic {
+            border: none,
+            nome: none,
+            tail: [none; 2],
+            alpha: [[none; 3]; 2],
+            beta: Fourth::empty(),
+            across: Fourth::empty(),
+            denominator: [none; 3],
+            ahead: [none; 3],
+        }
+    }
+
+    fn each(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+        let single = [&mut self.border, &mut self.nome].into_iter().chain(&mut self.tail);
+        let fourths = self.beta.each().into_iter().chain(self.across.each());
+        let rows = self.alpha.as_flattened_mut().iter_mut().chain(&mut self.denominator);
+        single.chain(fourths).chain(rows).chain(&mut self.ahead)
     }
 }

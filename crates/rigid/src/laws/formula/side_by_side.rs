@@ -76,9 +76,8 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
         for k in 0..self.motions.len() {
             let (input, motion) = self.motions[k];
             let (numbers, count) = self.given(motion, at);
-            let lanes = &mut self.program.input(input)[..count];
-            for i in 0..count {
-                lanes[i].0 = numbers[i].0;
+            for (lane, x) in self.program.input(input).iter_mut().zip(&numbers[..count]) {
+                lane.0 = x.0;
             }
         }
         self.program.run();

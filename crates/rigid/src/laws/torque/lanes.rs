@@ -21,6 +21,14 @@ pub(crate) fn in_lanes<const N: usize, const W: usize, const F: bool>(
     lanes
 }
 
+/// Adds the other three.
+#[inline(always)]
+pub(crate) fn add<const W: usize, const F: bool>(a: &mut Three<W, F>, b: &Three<W, F>) {
+    for k in 0..3 {
+        a[k] += b[k];
+    }
+}
+
 /// `~R v R`: a vector or bivector of space in body axes. With the axial vector q of the rotor's plane
 /// `v + 2s q x v + 2 q x (q x v)`.
 #[inline(always)]

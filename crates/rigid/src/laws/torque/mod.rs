@@ -2,7 +2,7 @@
 
 mod gains;
 pub(crate) mod lanes;
-mod orbit;
+pub(crate) mod orbit;
 mod table;
 mod wheels;
 

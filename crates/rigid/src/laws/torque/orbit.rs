@@ -1,10 +1,11 @@
 //! Kepler orbit of a body in the field of a planet.
 
+pub(crate) mod kepler;
+
 use crate::error::TorqueError;
-use crate::numerics::double_double::DoubleDouble;
 use crate::state::point::{Function, Seen};
+use kepler::Elements;
 use polhode_ga::{Bivector, Vector};
-use std::f64::consts::{PI, TAU};
 
 /// An orbit in the plane e1e2 of space, from e1 towards e2, with the periapsis on e1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,12 +13,13 @@ pub struct Orbit {
     rate: f64,
     eccentricity: f64,
     anomaly: f64,
+    elements: Elements<1>,
 }
 
 impl Orbit {
     /// A circle at the rate n in rad/s, at time 0 on e1.
     pub fn circular(rate: f64) -> Orbit {
-        Orbit { rate, eccentricity: 0.0, anomaly: 0.0 }
+        Orbit::of(rate, 0.0, 0.0)
     }
 
     /// An ellipse with the mean motion n in rad/s and, at time 0, this mean anomaly in rad.
@@ -30,7 +32,11 @@ impl Orbit {
         if let Some(value) = [rate, anomaly].into_iter().find(|x| !x.is_finite()) {
             return Err(TorqueError(format!("mean motion or mean anomaly is {value}; both must be finite")));
         }
-        Ok(Orbit { rate, eccentricity, anomaly })
+        Ok(Orbit::of(rate, eccentricity, anomaly))
+    }
+
+    fn of(rate: f64, eccentricity: f64, anomaly: f64) -> Orbit {
+        Orbit { rate, eccentricity, anomaly, elements: Elements::one(rate, eccentricity, anomaly) }
     }
 
     /// The mean motion, in rad/s.
@@ -54,45 +60,26 @@ impl Orbit {
     }
 
     /// The direction u from planet to body, and `(a/r)³`.
-    ///
-    /// With the eccentric anomaly E: `r/a = 1 − e cos E`, and
-    /// `u = ((cos E − e) e1 + √(1−e²) sin E e2) a/r`. Both differences are small near the periapsis of a
-    /// long orbit; with `v = 2 sin²(E/2) = 1 − cos E` they are `(1−e) + e v` and `(1−e) − v`, whose `1 − e`
-    /// is exact there.
     pub fn place(&self, time: f64) -> (Vector, f64) {
-        let (e, mean) = (self.eccentricity, self.mean_anomaly(time));
-        if e == 0.0 {
-            let (sin, cos) = sin_cos(mean);
-            return (Vector([cos, sin, 0.0]), 1.0);
-        }
-        let (direction, distance) = on_ellipse(mean, e);
-        (direction, 1.0 / (distance * distance * distance))
+        let [[x], [y], [nearness]] = self.elements.places::<false>(&[time]);
+        (Vector([x, y, 0.0]), nearness)
     }
 
-    /// The direction u, and `r/a`.
-    fn at(&self, time: f64) -> (Vector, f64) {
-        on_ellipse(self.mean_anomaly(time), self.eccentricity)
+    /// Its constants, to compute places of several orbits in lanes.
+    pub(crate) fn elements(&self) -> &Elements<1> {
+        &self.elements
+    }
+
+    /// The rate of the direction u at the periapsis, `n √(1−e²)/(1−e)²`, in rad/s.
+    pub(crate) fn fastest_turn(&self) -> f64 {
+        let near = 1.0 - self.eccentricity;
+        self.rate.abs() * ((1.0 + self.eccentricity) / near).sqrt() / near
     }
 
     /// `(a/r)³` at the periapsis.
     pub(crate) fn largest_nearness(&self) -> f64 {
         (1.0 - self.eccentricity).powi(-3)
     }
-
-    /// `M = n t + M0` in double-double precision: in double, n t loses a digit with every ten turns.
-    fn mean_anomaly(&self, time: f64) -> DoubleDouble {
-        DoubleDouble::two_product(self.rate, time) + self.anomaly.into()
-    }
-}
-
-/// The direction u, and `r/a`, see [`Orbit::place`].
-fn on_ellipse(mean: DoubleDouble, e: f64) -> (Vector, f64) {
-    let anomaly = eccentric_anomaly(reduced(mean), e);
-    let versine = 2.0 * (0.5 * anomaly).sin() * (0.5 * anomaly).sin();
-    let distance = (1.0 - e) + e * versine;
-    let along = (1.0 - e) - versine;
-    let across = ((1.0 - e) * (1.0 + e)).sqrt() * anomaly.sin();
-    (Vector([along / distance, across / distance, 0.0]), distance)
 }
 
 /// An orbit with its size.
@@ -121,8 +108,8 @@ impl KeplerOrbit {
 
     /// The position relative to the centre, in m.
     pub fn position(&self, time: f64) -> Vector {
-        let (direction, distance) = self.orbit.at(time);
-        direction * (self.axis * distance)
+        let [[x], [y], _] = self.orbit.elements.positions::<false>(&[time]);
+        Vector([x, y, 0.0]) * self.axis
     }
 }
 
@@ -147,62 +134,3 @@ pub fn dipole_field(moment: Vector, place: Vector) -> Vector {
     let u = place / distance;
     (u * (3.0 * moment.dot(u)) - moment) * (STRENGTH / (distance * distance * distance))
 }
-
-/// An angle without its whole turns, in [−π, π].
-fn reduced(angle: DoubleDouble) -> f64 {
-    let turns = angle * DoubleDouble::OVER_TWO_PI;
-    let part = turns - turns.hi.round().into();
-    (part.value() * TAU).clamp(-PI, PI)
-}
-
-/// Sine and cosine of an angle. Those of the library reduce `hi` exactly; the square of `lo` is rounding below 1e-8.
-fn sin_cos(angle: DoubleDouble) -> (f64, f64) {
-    if angle.lo.abs() > 1e-8 {
-        return reduced(angle).sin_cos();
-    }
-    let (sin, cos) = angle.hi.sin_cos();
-    (sin + angle.lo * cos, cos - angle.lo * sin)
-}
-
-/// Kepler's equation `M = E − e sin E` for `|M| <= π`.
-///
-/// For M >= 0 the left side of `f(E) = (1−e) E + e (E − sin E) − M = 0` is convex on [0, π], so Newton's
-/// steps from above fall to the root and stop where rounding ends them. It lies below `M + e`, below
-/// `M/(1−e)`, and, since `E − sin E >= E³/π²` there, below `(π² M/e)^(1/3)`.
-fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
-    let m = mean.abs();
-    let mut anomaly = (m + e).min(m / (1.0 - e)).min((PI * PI * m / e).cbrt()).min(PI);
-    for _ in 0..50 {
-        let excess = (1.0 - e) * anomaly + e * less_its_sine(anomaly) - m;
-        let half = (0.5 * anomaly).sin();
-        let next = anomaly - excess / ((1.0 - e) + 2.0 * e * half * half);
-        if next >= anomaly {
-            break;
-        }
-        anomaly = next;
-    }
-    anomaly.copysign(mean)
-}
-
-/// `x − sin x` for x in [0, π], by its series where the difference would cancel.
-fn less_its_sine(x: f64) -> f64 {
-    if x > 1.0 {
-        return x - x.sin();
-    }
-    // x³/6 (1 − x²/(4·5) (1 − x²/(6·7) (…))): the next factor would change it by less than 2⁻⁵³.
-    const FACTORS: [f64; 8] = {
-        let mut factors = [0.0; 8];
-        let mut k = 0;
-        while k < 8 {
-            factors[k] = 1.0 / ((2 * k + 4) * (2 * k + 5)) as f64;
-            k += 1;
-        }
-        factors
-    };
-    let square = x * x;
-    let nested = FACTORS.iter().rev().fold(1.0, |inner, factor| 1.0 - square * factor * inner);
-    x * square / 6.0 * nested
-}
-
-#[cfg(test)]
-mod tests;

@@ -80,8 +80,8 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     widest = square.max(widest);
     to.rotor = composed(&exponential(&turned, square).0, &from.rotor);
     renormalize(&mut to.rotor);
-    let fifth = Change::combined(FIFTH, &slopes, h).size(bodies, from, h, fastest);
-    let third = Change::combined(THIRD, &slopes, h).size(bodies, from, h, fastest);
+    let fifth = Change::combined(FIFTH, &slopes, h).size(bodies, [from, &to], h, fastest);
+    let third = Change::combined(THIRD, &slopes, h).size(bodies, [from, &to], h, fastest);
     // Weighted as in Hairer's code: of order 8 where both are small.
     let square = fifth * fifth;
     let weighed = (third * third).times_plus(Lanes::all(0.01), square).sqrt();
@@ -191,12 +191,13 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
     }
 
     /// The size: of attitude, of angular velocity relative to `fastest`, of velocity relative to the speed, of position
-    /// relative to the distance or the path of the step.
+    /// relative to the distance or the path of the step. Speed and distance are the larger of both ends: a body may start
+    /// at rest.
     #[inline(always)]
     fn size(
         &self,
         bodies: &Bodies<W, F>,
-        at: &Points<W, F>,
+        [at, to]: [&Points<W, F>; 2],
         h: Lanes<W, F>,
         fastest: Lanes<W, F>,
     ) -> Lanes<W, F> {
@@ -208,8 +209,9 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         if N < 12 {
             return rotation;
         }
-        let [x, y, z, u, v, w] = at.center;
-        let (speed, distance) = (norm(&[u, v, w]), norm(&[x, y, z]));
+        let sizes = |[x, y, z, u, v, w]: [Lanes<W, F>; 6]| [norm(&[u, v, w]), norm(&[x, y, z])];
+        let ([slow, near], [fast, far]) = (sizes(at.center), sizes(to.center));
+        let (speed, distance) = (larger(slow, fast), larger(near, far));
         let way = distance.max(speed * h.abs());
         let place = relative(norm(&self.part(6)), way);
         let velocity = relative(norm(&self.part(9)), speed.max(way / h.abs()));
@@ -217,12 +219,13 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
     }
 }
 
-/// `part/whole`, 0 where `whole` is 0.
+/// `part/whole`, 0 where `whole` is 0, NaN where it is not finite.
 #[inline(always)]
 fn relative<const W: usize, const F: bool>(part: Lanes<W, F>, whole: Lanes<W, F>) -> Lanes<W, F> {
     let mut ratio = part / whole;
     for l in 0..W {
-        ratio.0[l] = if whole.0[l] > 0.0 { ratio.0[l] } else { 0.0 };
+        ratio.0[l] = if whole.0[l] == f64::INFINITY { f64::NAN } else { ratio.0[l] };
+        ratio.0[l] = if whole.0[l] == 0.0 { 0.0 } else { ratio.0[l] };
     }
     ratio
 }

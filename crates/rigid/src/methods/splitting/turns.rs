@@ -290,6 +290,16 @@ fn turn_about<const K: usize, const I: usize, const J: usize, const W: usize, co
     spin.momentum[J] = y - versine.times_plus(y, sine * x);
 }
 
+/// The times of the kicks of a step.
+pub(crate) fn stage_times((stages, _): (&[(f64, f64)], f64), time: f64, h: f64) -> impl Iterator<Item = f64> {
+    let mut now = time;
+    let later = stages.iter().map(move |&(_, drift)| {
+        now += drift * h;
+        now
+    });
+    std::iter::once(time).chain(later)
+}
+
 /// `e^(−gh) − 1`, and the impulse per torque, `(1 − e^(−gh))/g`.
 #[inline(always)]
 fn decayed<const W: usize, const F: bool>(damping: &Lanes<W, F>, h: f64) -> (Lanes<W, F>, Lanes<W, F>) {

@@ -1,17 +1,24 @@
-//! Free motions of many bodies in SIMD lanes.
+//! Motions in closed form of many bodies in SIMD lanes.
 //!
-//! One formula serves all bodies of a form in any regime: steady rotation and symmetric tops are circular, motions near
-//! the separatrix hyperbolic. Bodies are stored in tiles, whose bodies of either form are stored in blocks, one body per
-//! lane. A lane depends only on its own numbers, so a state has the same bits as [`FreeMotion::at`].
+//! One formula serves all motions of a form in any regime: of free bodies, steady rotation and symmetric tops are circular,
+//! motions near the separatrix hyperbolic. Motions are stored in tiles, and those of a tile that have the same form in
+//! blocks, one motion per lane. A lane depends only on its own numbers, so a state has the same bits as
+//! [`ExactMotion::at`].
 
-use super::FreeMotion;
-use super::flow::{AnyFlow, Flow};
-use super::series::{Circular, Hyperbolic, Series};
-use polhode_ga::rows::curve::{TOGETHER, expect, sample, together};
+use super::damped::flow::Flow as Damped;
+use super::flow::Form;
+use super::free::flow::Flow as Free;
+use super::free::series::{Circular, Hyperbolic};
+use super::lagrange::flow::Flow as Lagrange;
+use super::lagrange::series::{Circular as LagrangeCircular, Hyperbolic as LagrangeHyperbolic};
+use super::lanes::Coefficients;
+use super::larmor::flow::Flow as Larmor;
+use super::motion::ExactMotion;
+use polhode_ga::rows::curve::{Curve, TOGETHER, expect, sample, together};
 use polhode_ga::simd::threads::{Threads, for_each};
 use std::ops::Range;
 
-/// Motions in a tile: enough to fill the blocks of both forms, few enough for the caches.
+/// Motions in a tile: enough to fill the blocks of the forms of a law, few enough for the caches.
 pub const TILE: usize = 1024;
 
 /// Number of times from which lanes of times are faster than lanes of motions.
@@ -32,15 +39,24 @@ pub enum Times<'a> {
 /// At most [`TILE`] motions, in an order.
 #[derive(Clone, Debug, Default)]
 pub struct Tile {
-    circular: Vec<Block<Circular<TOGETHER>>>,
-    hyperbolic: Vec<Block<Hyperbolic<TOGETHER>>>,
-    horizons: Vec<f64>,
+    free_circular: Blocks<Free<Circular<TOGETHER>, TOGETHER>>,
+    free_hyperbolic: Blocks<Free<Hyperbolic<TOGETHER>, TOGETHER>>,
+    lagrange_circular: Blocks<Lagrange<LagrangeCircular<TOGETHER>, TOGETHER>>,
+    lagrange_hyperbolic: Blocks<Lagrange<LagrangeHyperbolic<TOGETHER>, TOGETHER>>,
+    damped_circular: Blocks<Damped<Circular<TOGETHER>, TOGETHER>>,
+    damped_hyperbolic: Blocks<Damped<Hyperbolic<TOGETHER>, TOGETHER>>,
+    larmor: Blocks<Larmor<TOGETHER>>,
+    horizons: Vec<[f64; 2]>,
 }
+
+/// The motions of one form.
+#[derive(Clone, Debug)]
+struct Blocks<K>(Vec<Block<K>>);
 
 /// Motions of one form in their lanes.
 #[derive(Clone, Debug)]
-struct Block<S> {
-    flows: Flow<S, TOGETHER>,
+struct Block<K> {
+    coefficients: K,
     /// Their places in the tile, ascending.
     places: [u16; TOGETHER],
     /// Number of motions, at most the lanes.
@@ -61,56 +77,80 @@ impl Tile {
     ///
     /// # Errors
     /// The first error of the iterator, with its index.
-    pub fn new<E>(motions: impl Iterator<Item = Result<FreeMotion, E>>) -> Result<Tile, (usize, E)> {
+    pub fn new<M: ExactMotion, E>(motions: impl Iterator<Item = Result<M, E>>) -> Result<Tile, (usize, E)> {
         let mut tile = Tile::default();
         for (place, motion) in motions.take(TILE).enumerate() {
             let motion = motion.map_err(|error| (place, error))?;
-            tile.horizons.push(motion.horizon());
-            match &motion.flow {
-                AnyFlow::Circular(flow) => add(&mut tile.circular, place, flow),
-                AnyFlow::Hyperbolic(flow) => add(&mut tile.hyperbolic, place, flow),
+            tile.horizons.push(motion.horizons());
+            match &motion.flow().0 {
+                Form::FreeCircular(one) => tile.free_circular.add(place, one),
+                Form::FreeHyperbolic(one) => tile.free_hyperbolic.add(place, one),
+                Form::LagrangeCircular(one) => tile.lagrange_circular.add(place, one),
+                Form::LagrangeHyperbolic(one) => tile.lagrange_hyperbolic.add(place, one),
+                Form::DampedCircular(one) => tile.damped_circular.add(place, one),
+                Form::DampedHyperbolic(one) => tile.damped_hyperbolic.add(place, one),
+                Form::Larmor(one) => tile.larmor.add(place, one),
             }
         }
-        tile.circular.shrink_to_fit();
-        tile.hyperbolic.shrink_to_fit();
         Ok(tile)
     }
 
-    /// [`FreeMotion::horizon`] of each motion.
-    pub fn horizons(&self) -> &[f64] {
+    /// [`ExactMotion::horizons`] of each motion.
+    pub fn horizons(&self) -> &[[f64; 2]] {
         &self.horizons
     }
 
     fn fill(&self, mut part: Part<'_>) {
-        fill(&self.circular, &mut part);
-        fill(&self.hyperbolic, &mut part);
+        self.free_circular.fill(&mut part);
+        self.free_hyperbolic.fill(&mut part);
+        self.lagrange_circular.fill(&mut part);
+        self.lagrange_hyperbolic.fill(&mut part);
+        self.damped_circular.fill(&mut part);
+        self.damped_hyperbolic.fill(&mut part);
+        self.larmor.fill(&mut part);
     }
 }
 
-/// Fills in the part's states of all blocks, prefetching the next block, since memory is slower than the computation.
-fn fill<S: Series<TOGETHER>>(blocks: &[Block<S>], part: &mut Part<'_>) {
-    for (i, block) in blocks.iter().enumerate() {
-        if let Some(next) = blocks.get(i + 1) {
-            expect(next);
+impl<K> Default for Blocks<K> {
+    fn default() -> Blocks<K> {
+        Blocks(Vec::new())
+    }
+}
+
+impl<K: Lanes<TOGETHER>> Blocks<K> {
+    /// Puts a motion into the next lane.
+    fn add(&mut self, place: usize, motion: &K::One) {
+        let Blocks(blocks) = self;
+        if blocks.last().is_none_or(|block| block.count == TOGETHER) {
+            // Without room for more: blocks are large.
+            blocks.reserve_exact(1);
+            blocks.push(Block { coefficients: K::empty(), places: [0; TOGETHER], count: 0 });
         }
-        block.fill(part);
+        if let Some(block) = blocks.last_mut() {
+            block.coefficients.put(block.count, motion);
+            block.places[block.count] = place as u16;
+            block.count += 1;
+        }
+    }
+
+    /// Fills in the part's states of all blocks, prefetching the next block, since memory is slower than the computation.
+    fn fill(&self, part: &mut Part<'_>) {
+        for (i, block) in self.0.iter().enumerate() {
+            if let Some(next) = self.0.get(i + 1) {
+                expect(next);
+            }
+            block.fill(part);
+        }
     }
 }
 
-/// Puts a motion into the next lane.
-fn add<S: Series<TOGETHER>>(blocks: &mut Vec<Block<S>>, place: usize, flow: &Flow<S::One>) {
-    if blocks.last().is_none_or(|block| block.count == TOGETHER) {
-        blocks.push(Block { flows: Flow::empty(), places: [0; TOGETHER], count: 0 });
-    }
-    if let Some(block) = blocks.last_mut() {
-        block.flows.put(block.count, flow);
-        block.places[block.count] = place as u16;
-        block.count += 1;
-    }
-}
+/// Motions in lanes, with their states.
+trait Lanes<const C: usize>: Coefficients<C, One: Curve<4, 3>> + Curve<4, 3> {}
+
+impl<K: Coefficients<C, One: Curve<4, 3>> + Curve<4, 3>, const C: usize> Lanes<C> for K {}
 
 /// States `rows` of the motions at the times, motion by motion: rows of four rotor components and of three components of
-/// the angular velocity. The same bits as [`FreeMotion::at`], for any number of threads.
+/// the angular velocity. The same bits as [`ExactMotion::at`], for any number of threads.
 ///
 /// # Panics
 /// If the numbers of rows differ, states do not exist, or a tile other than the last has fewer motions than [`TILE`].
@@ -163,7 +203,7 @@ fn in_order(
     }
 }
 
-impl<S: Series<TOGETHER>> Block<S> {
+impl<K: Lanes<TOGETHER>> Block<K> {
     fn places(&self) -> &[u16] {
         &self.places[..self.count]
     }
@@ -177,7 +217,7 @@ impl<S: Series<TOGETHER>> Block<S> {
         }
         if part.each >= TIMES_IN_LANES {
             for (l, &place) in self.places().iter().enumerate() {
-                part.one(usize::from(place), &self.flows.take(l));
+                part.one(usize::from(place), &self.coefficients.take(l));
             }
         } else {
             for k in 0..part.each {
@@ -198,7 +238,7 @@ impl<S: Series<TOGETHER>> Block<S> {
             };
         }
         let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
-        together(&self.flows, &times, &mut rotors, &mut omegas);
+        together(&self.coefficients, &times, &mut rotors, &mut omegas);
         for (l, place) in self.places().iter().enumerate() {
             let row = row(place);
             if part.rows.contains(&row) {
@@ -211,7 +251,7 @@ impl<S: Series<TOGETHER>> Block<S> {
 
 impl Part<'_> {
     /// One motion at its times.
-    fn one<T: Series<1>>(&mut self, place: usize, flow: &Flow<T>) {
+    fn one(&mut self, place: usize, motion: &impl Curve<4, 3>) {
         let (first, each) = (self.rows.start, self.each);
         let rows = (place * each).max(first)..((place + 1) * each).min(self.rows.end);
         if rows.is_empty() {
@@ -223,6 +263,6 @@ impl Part<'_> {
             Times::Own(times, _) => &times[to.clone()],
         };
         let (rotors, omegas) = (&mut self.rotors[to.clone()], &mut self.omegas[to]);
-        sample(flow, Threads::ONE, times, rotors.as_flattened_mut(), omegas.as_flattened_mut());
+        sample(motion, Threads::ONE, times, rotors.as_flattened_mut(), omegas.as_flattened_mut());
     }
 }

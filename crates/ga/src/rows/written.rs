@@ -1,0 +1,111 @@
+//! Products of factors of three or four components that are common, with their terms known to the compiler.
+//!
+//! They are recognised by their terms, so that one serves several products and algebras.
+
+use crate::simd::{Element, Lane, Path, Short, by_lanes};
+
+/// A term: the components of both factors and of the product, and the sign.
+type Known = (usize, usize, usize, i8);
+
+/// An enum of products of constant terms, and a type of each that multiplies rows.
+macro_rules! written {
+    ($($(#[$doc:meta])* $name:ident($a:literal, $b:literal) -> $out:literal [$($term:expr),* $(,)?];)*) => {
+        /// The products.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum Written {
+            $($(#[$doc])* $name,)*
+        }
+
+        $(
+            struct $name;
+
+            impl Short<$a, $b, $out> for $name {
+                #[inline(always)]
+                fn value(a: [f64; $a], b: [f64; $b]) -> [f64; $out] {
+                    let mut sums = [0.0; $out];
+                    $({
+                        const TERM: Known = $term;
+                        let (i, j, k, sign) = TERM;
+                        sums[k] += if sign > 0 { a[i] * b[j] } else { -a[i] * b[j] };
+                    })*
+                    sums
+                }
+            }
+        )*
+
+        impl Written {
+            /// The product of factors of these sizes with these terms, in order.
+            pub fn of(
+                sizes: (usize, usize, usize),
+                terms: impl Iterator<Item = Known> + Clone,
+            ) -> Option<Written> {
+                $(
+                    if sizes == ($a, $b, $out) && terms.clone().eq([$($term),*]) {
+                        return Some(Written::$name);
+                    }
+                )*
+                None
+            }
+
+            /// Multiplies the first rows in registers; returns their number.
+            pub fn in_registers<T: Element>(
+                self,
+                path: Path,
+                a: &[T],
+                b: &[T],
+                out: &mut [T],
+                streamed: bool,
+            ) -> usize {
+                match self {
+                    $(Written::$name => path.short::<$name, T, $a, $b, $out>(a, b, out, streamed),)*
+                }
+            }
+
+            /// Multiplies lanes.
+            #[inline(always)]
+            pub fn block<const W: usize>(self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+                match self {
+                    $(Written::$name => by_lanes(a, b, out, $name::value),)*
+                }
+            }
+        }
+    };
+}
+
+written! {
+    /// `a∧b` of vectors.
+    Cross(3, 3) -> 3 [(1, 2, 0, 1), (2, 1, 0, -1), (0, 2, 1, -1), (2, 0, 1, 1), (0, 1, 2, 1), (1, 0, 2, -1)];
+    /// `A×B` of bivectors, `A·b` and `a·B`.
+    MinusCross(3, 3) -> 3
+        [(1, 2, 0, -1), (2, 1, 0, 1), (0, 2, 1, 1), (2, 0, 1, -1), (0, 1, 2, -1), (1, 0, 2, 1)];
+    /// `ab` of vectors.
+    Vectors(3, 3) -> 4 [
+        (0, 0, 0, 1), (1, 1, 0, 1), (2, 2, 0, 1),
+        (1, 2, 1, 1), (2, 1, 1, -1), (0, 2, 2, -1), (2, 0, 2, 1), (0, 1, 3, 1), (1, 0, 3, -1),
+    ];
+    /// `AB` of bivectors.
+    Bivectors(3, 3) -> 4 [
+        (0, 0, 0, -1), (1, 1, 0, -1), (2, 2, 0, -1),
+        (1, 2, 1, -1), (2, 1, 1, 1), (0, 2, 2, 1), (2, 0, 2, -1), (0, 1, 3, -1), (1, 0, 3, 1),
+    ];
+    /// `AB` of even values.
+    Even(4, 4) -> 4 [
+        (0, 0, 0, 1), (1, 1, 0, -1), (2, 2, 0, -1), (3, 3, 0, -1),
+        (0, 1, 1, 1), (1, 0, 1, 1), (2, 3, 1, -1), (3, 2, 1, 1),
+        (0, 2, 2, 1), (1, 3, 2, 1), (2, 0, 2, 1), (3, 1, 2, -1),
+        (0, 3, 3, 1), (1, 2, 3, -1), (2, 1, 3, 1), (3, 0, 3, 1),
+    ];
+    /// `Ab` of an even value and a vector.
+    EvenVector(4, 3) -> 4 [
+        (0, 0, 0, 1), (2, 2, 0, -1), (3, 1, 0, 1), (0, 1, 1, 1), (1, 2, 1, 1), (3, 0, 1, -1),
+        (0, 2, 2, 1), (1, 1, 2, -1), (2, 0, 2, 1), (1, 0, 3, 1), (2, 1, 3, 1), (3, 2, 3, 1),
+    ];
+    /// `aB` of a vector and an even value.
+    VectorEven(3, 4) -> 4 [
+        (0, 0, 0, 1), (1, 3, 0, -1), (2, 2, 0, 1), (0, 3, 1, 1), (1, 0, 1, 1), (2, 1, 1, -1),
+        (0, 2, 2, -1), (1, 1, 2, 1), (2, 0, 2, 1), (0, 1, 3, 1), (1, 2, 3, 1), (2, 3, 3, 1),
+    ];
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,138 @@
+//! Gravity gradients of bodies on their orbits, in lanes.
+
+use crate::laws::forcing::Place;
+use crate::laws::torque::lanes::{Three, gradient, seen};
+use crate::laws::torque::orbit::kepler::Elements;
+use crate::laws::torque::{Orbit, Torque};
+use polhode_ga::simd::lanes::{Lanes, Work, fastest};
+
+/// The orbits of all bodies, with their latest positions.
+pub(super) struct Orbits<const W: usize> {
+    elements: Elements<W>,
+    /// 3n², in rad²/s².
+    strength: [f64; W],
+    times: [f64; W],
+    /// Directions u, whose third component is 0, and `3n² (a/r)³`.
+    places: [[f64; W]; 3],
+    /// Whether all bodies have the same orbit.
+    shared: bool,
+    foreseen: Foreseen,
+}
+
+/// Places on a shared orbit at times to come: lanes hold times instead of bodies.
+#[derive(Default)]
+struct Foreseen {
+    times: Vec<f64>,
+    places: Vec<[f64; 3]>,
+    /// The place that was used last.
+    last: usize,
+}
+
+impl Foreseen {
+    /// The place at a time, near the one that was used last.
+    fn at(&mut self, time: f64) -> Option<[f64; 3]> {
+        let next = self.times[self.last..].iter().take(4).position(|&known| known == time)?;
+        self.last += next;
+        Some(self.places[self.last])
+    }
+}
+
+impl<const W: usize> Orbits<W> {
+    /// None if a law is not a gravity gradient.
+    pub fn new(each: [&Torque; W]) -> Option<Orbits<W>> {
+        let mut orbits = [Orbit::circular(0.0); W];
+        for (l, law) in each.into_iter().enumerate() {
+            let Torque::GravityGradient(orbit) = law else { return None };
+            orbits[l] = *orbit;
+        }
+        Some(Orbits {
+            elements: Elements::new(orbits.each_ref().map(Orbit::elements)),
+            strength: orbits.map(|orbit| 3.0 * orbit.rate() * orbit.rate()),
+            times: [f64::NAN; W],
+            places: [[0.0; W]; 3],
+            shared: orbits.iter().all(|orbit| *orbit == orbits[0]),
+            foreseen: Foreseen::default(),
+        })
+    }
+
+    #[inline(always)]
+    pub fn torque<const F: bool>(&mut self, moments: &Three<W, F>, at: &Place<W, F>) -> Three<W, F> {
+        let mut elsewhere = false;
+        for l in 0..W {
+            elsewhere |= at.time.0[l] != self.times[l];
+        }
+        if elsewhere {
+            fastest(Moved { orbits: self, times: &at.time.0 });
+        }
+        let [x, y, strength] = self.places;
+        gradient(moments, &seen(&at.rotor, &[Lanes(x), Lanes(y), Lanes::ZERO]), Lanes(strength))
+    }
+
+    /// Computes the places at times to come, in order, if all bodies share them.
+    pub fn foresee(&mut self, times: impl Iterator<Item = f64>) {
+        if !self.shared {
+            return;
+        }
+        let Foreseen { times: known, places, last } = &mut self.foreseen;
+        known.clear();
+        known.extend(times);
+        known.dedup();
+        places.clear();
+        *last = 0;
+        for times in known.chunks(W) {
+            let mut lanes = [times[0]; W];
+            lanes[..times.len()].copy_from_slice(times);
+            let [x, y, nearness] = fastest(Places { elements: &self.elements, times: &lanes });
+            places.extend((0..times.len()).map(|l| [x[l], y[l], self.strength[0] * nearness[l]]));
+        }
+    }
+}
+
+/// Moves all bodies to these times, compiled outside the stages of the steps and, with the copies, for their registers.
+struct Moved<'a, const W: usize> {
+    orbits: &'a mut Orbits<W>,
+    times: &'a [f64; W],
+}
+
+impl<const W: usize> Work for Moved<'_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Moved { orbits, times } = self;
+        let mut together = orbits.shared;
+        for l in 0..W {
+            orbits.times[l] = times[l];
+            together &= times[l] == times[0];
+        }
+        if together && let Some(place) = orbits.foreseen.at(times[0]) {
+            for k in 0..3 {
+                orbits.places[k] = [place[k]; W];
+            }
+            return;
+        }
+        let [x, y, mut strength] = orbits.elements.places::<FUSED>(times);
+        for l in 0..W {
+            strength[l] *= orbits.strength[l];
+        }
+        orbits.places = [x, y, strength];
+    }
+}
+
+/// Places on orbits at times of each lane.
+struct Places<'a, const W: usize> {
+    elements: &'a Elements<W>,
+    times: &'a [f64; W],
+}
+
+impl<const W: usize> Work for Places<'_, W> {
+    type Output = [[f64; W]; 3];
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> [[f64; W]; 3] {
+        self.elements.places::<FUSED>(self.times)
+    }
+}
+
+#[cfg(test)]
+mod tests;

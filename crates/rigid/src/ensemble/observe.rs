@@ -1,0 +1,170 @@
+//! Points of bodies in lanes, by the formulas for a single body, with the same bits.
+
+use super::member::{Member, SIDE_BY_SIDE as W, of};
+use crate::laws::torque::lanes::in_lanes;
+use crate::state::phase::Phase;
+use polhode_ga::simd::lanes::{Lanes, Work, fastest};
+use polhode_ga::{Bivector, Rotor};
+use std::array::from_fn;
+
+/// Lanes whose products and sums are not fused.
+type Plain = Lanes<W, false>;
+
+/// Rotors and momenta in principal axes.
+#[derive(Clone, Copy)]
+pub(super) struct LanePhases {
+    pub rotor: [[f64; W]; 4],
+    pub momentum: [[f64; W]; 3],
+}
+
+impl LanePhases {
+    /// At the starts.
+    pub fn starts(members: &[Member]) -> LanePhases {
+        let rotor: [Plain; 4] = in_lanes(|l| of(members, l).start.rotor.components());
+        let momentum: [Plain; 3] = in_lanes(|l| of(members, l).start.momentum.0);
+        LanePhases { rotor: rotor.map(|lanes| lanes.0), momentum: momentum.map(|lanes| lanes.0) }
+    }
+
+    /// Of one lane.
+    pub fn phase(&self, lane: usize, time: f64) -> Phase {
+        Phase {
+            rotor: Rotor::from_unit_components(from_fn(|k| self.rotor[k][lane])),
+            momentum: Bivector(from_fn(|k| self.momentum[k][lane])),
+            time,
+        }
+    }
+}
+
+/// The bodies of the lanes.
+pub(super) struct LaneBodies {
+    /// From principal axes to those of the body.
+    frame: [Plain; 4],
+    moments: [Plain; 3],
+    wheel: [Plain; 3],
+}
+
+/// What is known of the points of the lanes.
+pub(super) struct LanePoints {
+    pub phases: LanePhases,
+    /// From body axes to space.
+    pub rotor: [Plain; 4],
+    /// In body axes, rad/s.
+    pub omega: [Plain; 3],
+    /// In space, kg m²/s.
+    pub momentum: [Plain; 3],
+    /// Magnitude of the momentum.
+    pub size: Plain,
+    /// Kinetic energies in J.
+    pub kinetic: Plain,
+    /// `abs(|R| − 1)`.
+    pub off_unit: Plain,
+}
+
+impl LanePoints {
+    /// The rotor from body axes to space, and the angular velocity in body axes, of a lane.
+    pub fn in_body(&self, l: usize) -> (Rotor, Bivector) {
+        let rotor = Rotor::from_unit_components(from_fn(|k| self.rotor[k].0[l]));
+        (rotor, Bivector(from_fn(|k| self.omega[k].0[l])))
+    }
+}
+
+impl LaneBodies {
+    pub fn new(members: &[Member]) -> LaneBodies {
+        LaneBodies {
+            frame: in_lanes(|l| of(members, l).frame.components()),
+            moments: in_lanes(|l| of(members, l).gyrostat.moments),
+            wheel: in_lanes(|l| of(members, l).gyrostat.wheel.0),
+        }
+    }
+
+    /// `m = I(Ω) + h`.
+    pub fn momentum<const F: bool>(&self, omega: [Lanes<W, F>; 3]) -> [[f64; W]; 3] {
+        let mut momentum = [[0.0; W]; 3];
+        for k in 0..3 {
+            momentum[k] = (self.moments[k] * Lanes(omega[k].0) + self.wheel[k]).0;
+        }
+        momentum
+    }
+
+    /// The points at these rotors and momenta.
+    pub fn points(&self, phases: LanePhases) -> LanePoints {
+        let mut points = fastest(Observe { bodies: self, phases: &phases });
+        for l in 0..W {
+            // Beyond this the squares may overflow or vanish.
+            if !(1e-140..1e140).contains(&points.size.0[l]) {
+                points.size.0[l] = phases.phase(l, 0.0).momentum.norm();
+            }
+        }
+        points
+    }
+}
+
+struct Observe<'a> {
+    bodies: &'a LaneBodies,
+    phases: &'a LanePhases,
+}
+
+impl Work for Observe<'_> {
+    type Output = LanePoints;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> LanePoints {
+        let Observe { bodies: LaneBodies { frame, moments, wheel }, phases } = self;
+        let zero = Lanes::ZERO;
+        let (mut rotor, mut m) = ([zero; 4], [zero; 3]);
+        for k in 0..4 {
+            rotor[k] = Lanes(phases.rotor[k]);
+        }
+        for k in 0..3 {
+            m[k] = Lanes(phases.momentum[k]);
+        }
+        let [s, x, y, z] = rotor;
+        let mut omega = [zero; 3];
+        let mut terms = [zero; 3];
+        for k in 0..3 {
+            let carried = m[k] - wheel[k];
+            omega[k] = carried / moments[k];
+            let term = carried * carried / moments[k];
+            for l in 0..W {
+                terms[k].0[l] = if carried.0[l] == 0.0 { 0.0 } else { term.0[l] };
+            }
+        }
+        let [f, a, b, c] = *frame;
+        LanePoints {
+            phases: *phases,
+            rotor: product([s, x, y, z], [f, -a, -b, -c]),
+            omega: turned(*frame, omega),
+            momentum: turned(rotor, m),
+            size: (m[0] * m[0] + m[1] * m[1] + m[2] * m[2]).sqrt(),
+            kinetic: Lanes::all(0.5) * (terms[0] + terms[1] + terms[2]),
+            off_unit: ((s * s + x * x + y * y + z * z).sqrt() - Lanes::all(1.0)).abs(),
+        }
+    }
+}
+
+/// The product of rotors, in the order of sums of [`Rotor`].
+#[inline(always)]
+fn product([s, a, b, c]: [Plain; 4], [t, x, y, z]: [Plain; 4]) -> [Plain; 4] {
+    [
+        s * t + -(a * x + b * y + c * z),
+        x * s + a * t + (c * y - b * z),
+        y * s + b * t + (a * z - c * x),
+        z * s + c * t + (b * x - a * y),
+    ]
+}
+
+#[inline(always)]
+fn cross([a, b, c]: [Plain; 3], [x, y, z]: [Plain; 3]) -> [Plain; 3] {
+    [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
+/// `R B ~R`, in the order of sums of [`Rotor::apply_bivector`].
+#[inline(always)]
+fn turned([s, x, y, z]: [Plain; 4], v: [Plain; 3]) -> [Plain; 3] {
+    let q = [-x, -y, -z];
+    let [a, b, c] = cross(q, v);
+    let two = Lanes::all(2.0);
+    let t = [a * two, b * two, c * two];
+    let [a, b, c] = cross(q, t);
+    [v[0] + t[0] * s + a, v[1] + t[1] * s + b, v[2] + t[2] * s + c]
+}

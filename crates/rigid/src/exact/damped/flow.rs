@@ -1,0 +1,81 @@
+//! States of a damped body at any time: those of the free body at the time τ, of one motion or of `C` in lanes.
+
+use crate::exact::free::flow::{Flow as FreeFlow, Pairs};
+use crate::exact::free::series::Series;
+use crate::exact::lanes::Coefficients;
+use crate::numerics::lanes::{Pair, exp_of_pair, in_lane};
+use polhode_ga::rows::curve::Curve;
+use polhode_ga::simd::double::{quick_two_sum, two_product};
+
+/// Where `gt` is smaller, τ is t to rounding.
+const STILL: f64 = 1e-200;
+
+/// A torque with a smaller g has no effect up to any horizon.
+const NONE: f64 = 1e-300;
+
+/// Exponents from which the exponential vanishes beside the rates.
+const VANISHED: f64 = 720.0;
+
+/// Rotor and angular velocity as functions of time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flow<S, const C: usize = 1> {
+    /// Of the free body.
+    pub free: FreeFlow<S, C>,
+    /// The g of the torque, and 1/g; 0 for both where no time is long enough for an effect.
+    pub damping: [f64; C],
+    pub per_damping: [f64; C],
+}
+
+impl<S> Flow<S> {
+    /// From the motion of the free body.
+    pub fn new(free: FreeFlow<S>, g: f64) -> Flow<S> {
+        let g = if g.abs() < NONE { 0.0 } else { g };
+        Flow { free, damping: [g], per_damping: [if g == 0.0 { 0.0 } else { 1.0 / g }] }
+    }
+}
+
+impl<S: Series<C>, const C: usize> Coefficients<C> for Flow<S, C> {
+    type One = Flow<S::One>;
+
+    fn empty() -> Flow<S, C> {
+        Flow { free: FreeFlow::empty(), damping: [0.0; C], per_damping: [0.0; C] }
+    }
+
+    fn each(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+        self.free.each().chain([&mut self.damping, &mut self.per_damping])
+    }
+}
+
+impl<S: Series<C>, const C: usize> Curve<4, 3> for Flow<S, C> {
+    #[inline(always)]
+    fn values<const W: usize, const FMA: bool>(&self, times: &[f64; W]) -> ([[f64; W]; 4], [[f64; W]; 3]) {
+        let (mut pairs, mut factor) = (Pairs { high: [0.0; W], low: [0.0; W] }, [0.0; W]);
+        for l in 0..W {
+            let (g, per_g) = (in_lane(&self.damping, l), in_lane(&self.per_damping, l));
+            ((pairs.high[l], pairs.low[l]), factor[l]) = time_and_factor::<FMA>(g, per_g, times[l]);
+        }
+        let (rotor, mut omega) = self.free.states::<W, FMA>(&pairs);
+        for k in 0..3 {
+            for l in 0..W {
+                omega[k][l] *= factor[l];
+            }
+        }
+        (rotor, omega)
+    }
+}
+
+/// The time τ of the free body in double-double precision, and `e^{−gt}`.
+#[inline(always)]
+fn time_and_factor<const FMA: bool>(g: f64, per_g: f64, t: f64) -> (Pair, f64) {
+    let (hi, lo) = two_product::<FMA>(-g, t);
+    let vanished = hi < -VANISHED;
+    let exponent = (if vanished { -VANISHED } else { hi }, if vanished { 0.0 } else { lo });
+    let [factor, less] = exp_of_pair::<FMA>(exponent);
+    // (1 − e^{−gt})/g: the quotient to a few roundings, and that of the remainder.
+    let still = less.0.abs() < STILL;
+    let quotient = -less.0 * per_g;
+    let (product, error) = two_product::<FMA>(quotient, g);
+    let rest = (((-less.0 - product) - error) - less.1) * per_g;
+    let (hi, lo) = quick_two_sum(quotient, rest);
+    ((if still { t } else { hi }, if still { 0.0 } else { lo }), factor.0 + factor.1)
+}

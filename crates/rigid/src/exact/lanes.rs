@@ -1,0 +1,90 @@
+//! Coefficients of motions in closed form, one motion in each lane, and the sums that end every form.
+
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::lanes::{Phase, in_lane};
+
+/// Coefficients of `C` motions of one form, one in each lane; with `C = 1` they are common to all lanes, which hold times.
+pub(crate) trait Coefficients<const C: usize>: Copy + Sync {
+    /// Those of one motion.
+    type One: Coefficients<1>;
+
+    /// Zeros.
+    fn empty() -> Self;
+
+    /// All coefficients, always in the same order.
+    fn each(&mut self) -> impl Iterator<Item = &mut [f64; C]>;
+
+    /// Puts a motion into lane l.
+    fn put(&mut self, l: usize, motion: &Self::One) {
+        let mut motion = *motion;
+        self.each().zip(motion.each()).for_each(|(lanes, one)| lanes[l] = one[0]);
+    }
+
+    /// The motion in lane l.
+    fn take(mut self, l: usize) -> Self::One {
+        let mut motion = Self::One::empty();
+        motion.each().zip(self.each()).for_each(|(one, lanes)| *one = [lanes[l]]);
+        motion
+    }
+}
+
+/// The [`Phase`] of each motion by numbers: two of the rate, two of the start.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Phases<const C: usize>(pub [[f64; C]; 4]);
+
+impl<const C: usize> Phases<C> {
+    /// Phases that stay 0.
+    pub const STILL: Phases<C> = Phases([[0.0; C]; 4]);
+
+    /// That of lane l.
+    #[inline(always)]
+    pub fn of(&self, l: usize) -> Phase {
+        let rate = DoubleDouble { hi: in_lane(&self.0[0], l), lo: in_lane(&self.0[1], l) };
+        Phase { rate, start: [in_lane(&self.0[2], l), in_lane(&self.0[3], l)] }
+    }
+}
+
+impl From<Phase> for Phases<1> {
+    fn from(Phase { rate, start }: Phase) -> Phases<1> {
+        Phases([[rate.hi], [rate.lo], [start[0]], [start[1]]])
+    }
+}
+
+/// The rotor along `Σ m_ij z_j`.
+#[inline(always)]
+pub(crate) fn unit_rotor<const W: usize, const C: usize>(
+    m: &[[[f64; C]; 4]; 4],
+    z: &[[f64; W]; 4],
+) -> [[f64; W]; 4] {
+    let mut rotor = [[0.0; W]; 4];
+    for l in 0..W {
+        let mut r = [0.0; 4];
+        for k in 0..4 {
+            let [a, b, c, d] = &m[k];
+            r[k] = (in_lane(a, l) * z[0][l] + in_lane(b, l) * z[1][l])
+                + (in_lane(c, l) * z[2][l] + in_lane(d, l) * z[3][l]);
+        }
+        let square = (r[0] * r[0] + r[1] * r[1]) + (r[2] * r[2] + r[3] * r[3]);
+        let factor = 1.0 / square.sqrt();
+        for k in 0..4 {
+            rotor[k][l] = r[k] * factor;
+        }
+    }
+    rotor
+}
+
+/// `Σ m_ij f_j`.
+#[inline(always)]
+pub(crate) fn mapped<const W: usize, const C: usize>(
+    m: &[[[f64; C]; 3]; 3],
+    f: &[[f64; W]; 3],
+) -> [[f64; W]; 3] {
+    let mut sum = [[0.0; W]; 3];
+    for k in 0..3 {
+        let [x, y, z] = &m[k];
+        for l in 0..W {
+            sum[k][l] = (in_lane(x, l) * f[0][l] + in_lane(y, l) * f[1][l]) + in_lane(z, l) * f[2][l];
+        }
+    }
+    sum
+}

@@ -1,0 +1,126 @@
+//! Motions in closed form of many bodies in lanes: the bits of single motions, under every law and in every regime.
+
+use polhode_ga::simd::threads::Threads;
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::Inertia;
+use polhode_rigid::exact::damped::DampedTop;
+use polhode_rigid::exact::free::FreeMotion;
+use polhode_rigid::exact::lagrange::LagrangeTop;
+use polhode_rigid::exact::larmor::LarmorSphere;
+use polhode_rigid::exact::many::{TILE, Tile, Times, at_each};
+use polhode_rigid::exact::motion::ExactMotion;
+
+fn start() -> Rotor {
+    Rotor::from_components([4.0, -2.0, 1.0, 2.0]).unwrap()
+}
+
+fn moments(moments: [f64; 3]) -> Inertia {
+    Inertia::from_principal_moments(moments).unwrap()
+}
+
+fn free() -> Vec<FreeMotion> {
+    let tilted = |k: usize| {
+        let x = k as f64 % 91.0 / 64.0;
+        FreeMotion::in_principal_axes([1.0, 1.0 + x, 2.0], start(), Bivector([0.25, x, 1.0 - x]))
+    };
+    (0..TILE + 90).map(tilted).collect()
+}
+
+/// Near the unstable axis, on the separatrix, at rest, steady and tumbling; damped, growing and without damping.
+fn damped() -> Vec<DampedTop> {
+    let omegas = [[0.001, 1.0, 0.001], [0.375, 0.5, 0.5], [0.0; 3], [0.0, 0.0, 2.0], [0.25, -0.5, 1.0]];
+    let gs = [0.3, -0.01, 0.0, 1e-20, 1e-310, 1e-3];
+    let one = |k: usize| {
+        DampedTop::new(&moments([1.0, 2.0, 2.25]), start(), Bivector(omegas[k % 5]), gs[k % 6]).unwrap()
+    };
+    (0..TILE + 70).map(one).collect()
+}
+
+/// Tops that precess, sleep, fall from near the upright and along the separatrix, hang, and turn without a torque.
+fn heavy() -> Vec<LagrangeTop> {
+    let tilt = |angle: f64| Rotor::exp(Bivector([-0.5 * angle, 0.0, 0.0]));
+    let i = moments([1.0, 1.0, 0.5]);
+    let up = Rotor::IDENTITY;
+    // The next to last tends to the upright: ½ ω² = 2 from below.
+    let kinds = [
+        (i, tilt(0.5), [0.25, -0.5, 8.0], [0.0, 0.0, 2.0]),
+        (i, tilt(1e-4), [0.0, 0.0, 1.0], [0.0, 0.0, 2.0]),
+        (i, tilt(1e-200), [0.0, 0.0, 1.0], [0.0, 0.0, 2.0]),
+        (i, up, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]),
+        (i, up, [0.0, 0.0, 3.0], [0.0, 0.0, 1.0]),
+        (i, tilt(1e-9), [0.0, 0.0, 30.0], [0.0, 0.0, 1.0]),
+        (i, start(), [0.5, 0.25, 3.0], [0.0, 0.0, 0.0]),
+        (i, start(), [0.0, 0.0, 3.0], [0.0, 0.0, 0.0]),
+        (i, tilt(3.0), [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]),
+        (i, Rotor::from_unit_components([0.0, 1.0, 0.0, 0.0]), [2.0, 0.0, 0.0], [0.0, 0.0, 1.0]),
+        (moments([1.5, 1.0, 1.0]), start(), [4.0, 0.5, -0.5], [-2.0, 0.0, 0.0]),
+    ];
+    let one = |k: usize| {
+        let (inertia, rotor, omega, c) = &kinds[k % kinds.len()];
+        // The multiples of rates and torques by a power of two are other motions of the same regime.
+        let unit = 2f64.powi((k / kinds.len() % 7) as i32);
+        let (omega, c) = (omega.map(|w| w * unit), c.map(|c| c * unit * unit));
+        LagrangeTop::new(inertia, *rotor, Bivector(omega), Vector(c)).unwrap()
+    };
+    (0..TILE + 50).map(one).collect()
+}
+
+fn spheres() -> Vec<LarmorSphere> {
+    let one = |k: usize| {
+        let x = (k % 33) as f64 / 16.0;
+        let (omega, b) = ([x, 1.0 - x, 0.25 * x], [0.0, x * x - 1.0, 1.0 - x]);
+        LarmorSphere::new(&moments([2.0; 3]), start(), Bivector(omega), Vector(b)).unwrap()
+    };
+    (0..TILE + 40).map(one).collect()
+}
+
+/// Many bodies at many times, from any row to any other, by any number of threads; and one body in lanes of times.
+fn check_bits<M: ExactMotion + Copy>(bodies: &[M]) {
+    let new = |motions: &[M]| Tile::new(motions.iter().copied().map(Ok::<_, ()>)).unwrap();
+    let tiles: Vec<Tile> = bodies.chunks(TILE).map(new).collect();
+    for each in [1, 5, 70] {
+        // Common times; own ones, twice for all bodies.
+        let common: Vec<f64> = (0..each).map(|k| k as f64 * 12.5 - 100.0).collect();
+        let own: Vec<f64> = (0..2 * each * bodies.len()).map(|k| k as f64 % 8192.0 * 0.125 - 100.0).collect();
+        for (times, list) in [(Times::Common(&common), &common), (Times::Own(&own, each), &own)] {
+            let all = list.len().max(bodies.len() * each);
+            for (rows, threads) in [(0..all, 1), (0..all, 3), (all / 3..all - 1, 2), (7..7, 2)] {
+                let (mut rotors, mut omegas) = (vec![0.0; 4 * rows.len()], vec![0.0; 3 * rows.len()]);
+                at_each(Threads::new(threads), &tiles, times, rows.clone(), &mut rotors, &mut omegas);
+                for (k, row) in rows.enumerate() {
+                    let (body, time) = (row / each % bodies.len(), list[row % list.len()]);
+                    let (rotor, omega) = bodies[body].at(time);
+                    assert_eq!(rotor.components(), rotors[4 * k..4 * k + 4], "body {body} at {time}");
+                    assert_eq!(omega.0, omegas[3 * k..3 * k + 3], "body {body} at {time}");
+                }
+            }
+        }
+    }
+    let times: Vec<f64> = (0..300).map(|k| 0.37 * f64::from(k) - 40.0).collect();
+    for body in &bodies[..40] {
+        let (mut rotors, mut omegas) = (vec![0.0; 4 * times.len()], vec![0.0; 3 * times.len()]);
+        body.at_many(Threads::new(2), &times, &mut rotors, &mut omegas);
+        for (k, &t) in times.iter().enumerate() {
+            let (rotor, omega) = body.at(t);
+            assert_eq!(rotors[4 * k..4 * k + 4], rotor.components());
+            assert_eq!(omegas[3 * k..3 * k + 3], omega.0);
+        }
+    }
+}
+
+#[test]
+fn many_bodies_give_the_bits_of_single_ones() {
+    check_bits(&free());
+    check_bits(&damped());
+    check_bits(&heavy());
+    check_bits(&spheres());
+}
+
+/// A tile takes the first motions, and reports the first error.
+#[test]
+fn tiles_report_the_first_error() {
+    let body = free()[0];
+    let made = |bad: usize| (0..2 * TILE).map(move |k| if k >= bad { Err(k) } else { Ok(body) });
+    assert_eq!(Tile::new(made(TILE)).map(|tile| tile.horizons().len()), Ok(TILE));
+    assert_eq!(Tile::new(made(17)).map(|_| ()), Err((17, 17)));
+}

@@ -26,6 +26,21 @@ class Algebra(_native.Algebra):
     Created by `algebra`, `pga` and `cga`. The basis is ordered by grade, then by rising generators
     (``e1e2, e1e3, …``); with three generators the bivectors are ``e2e3, e3e1, e1e2``. `pga` has the generator
     e0 and a basis of its own. `I` is the product of all generators.
+
+    Examples
+    --------
+    Space-time, with the time e1 and three axes of negative square:
+
+    >>> A = ph.algebra(1, 3)
+    >>> t, x, y, z = A.basis_vectors
+    >>> t * t, x * x, t * x + x * t
+    (1, -1, 0)
+
+    A boost to the velocity 0.6, in units of that of light:
+
+    >>> boost = (np.arctanh(0.6) / 2 * (x ^ t)).exp()
+    >>> boost(t)
+    1.25 e1 + 0.75 e2
     """
 
     __slots__ = ()
@@ -43,17 +58,35 @@ class Algebra(_native.Algebra):
 
     @property
     def dimension(self) -> int:
-        """Number of generators."""
+        """Number of generators.
+
+        Examples
+        --------
+        >>> ph.algebra(1, 3).dimension
+        4
+        """
         return sum(self.signature)
 
     @property
     def size(self) -> int:
-        """Number of basis elements, ``2**dimension``."""
+        """Number of basis elements, ``2**dimension``.
+
+        Examples
+        --------
+        >>> ph.algebra(1, 3).size
+        16
+        """
         return 1 << self.dimension
 
     @property
     def basis_vectors(self) -> tuple[Multivector, ...]:
-        """The generators in their order, e1 first; of `pga` e0."""
+        """The generators in their order, e1 first; of `pga` e0.
+
+        Examples
+        --------
+        >>> ph.algebra(2).basis_vectors
+        (e1, e2)
+        """
         return tuple(self.vector(row) for row in np.eye(self.dimension))
 
     @property
@@ -61,6 +94,13 @@ class Algebra(_native.Algebra):
         """The basis elements by name, such as ``"e1∧e2"``; the scalar is ``"1"``.
 
         ``"e12"``, ``"e1e2"`` and ``"e1^e2"`` name the same element, ``"e21"`` its negative.
+
+        Examples
+        --------
+        >>> list(ph.algebra(3).blades)
+        ['1', 'e1', 'e2', 'e3', 'e2∧e3', 'e3∧e1', 'e1∧e2', 'I']
+        >>> ph.algebra(3).blades["e21"]
+        -e1∧e2
         """
         names = self._names(self._all)
         elements = {
@@ -71,35 +111,78 @@ class Algebra(_native.Algebra):
 
     @property
     def I(self) -> Multivector:  # noqa: E743  # the handout's name
-        """The pseudoscalar, the product of all generators."""
+        """The pseudoscalar, the product of all generators.
+
+        Examples
+        --------
+        >>> I = ph.algebra(2).I
+        >>> I * I
+        -1
+        """
         return self.pseudoscalar(1.0)
 
     # --- constructors
 
     def scalar(self, x: Any, *, dtype: Any = None) -> Multivector:
-        """Create scalars from numbers; an array of shape S is a batch of shape S."""
+        """Create scalars from numbers; an array of shape S is a batch of shape S.
+
+        Examples
+        --------
+        >>> ph.algebra(2).scalar(3)
+        3
+        """
         return self._single(x, "scalar", 0, dtype)
 
     def vector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Create vectors from an array (..., n) over the generators."""
+        """Create vectors from an array (..., n) over the generators.
+
+        Examples
+        --------
+        >>> ph.algebra(4).vector([1, 2, 3, 4])
+        e1 + 2 e2 + 3 e3 + 4 e4
+        """
         return self._of_grade(components, "vector", 1, dtype, copy)
 
     def bivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Create bivectors from an array (..., n(n−1)/2) over the basis bivectors in their order."""
+        """Create bivectors from an array (..., n(n−1)/2) over the basis bivectors in their order.
+
+        Examples
+        --------
+        >>> ph.algebra(4).bivector([1, 0, 0, 0, 0, 2])
+        e1∧e2 + 2 e3∧e4
+        """
         return self._of_grade(components, "bivector", 2, dtype, copy)
 
     def k_vector(self, k: int, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Create values of grade k from an array (..., n over k)."""
+        """Create values of grade k from an array (..., n over k).
+
+        Examples
+        --------
+        >>> ph.algebra(4).k_vector(3, [1, 0, 0, 0])
+        e1∧e2∧e3
+        """
         if operator.index(k) not in range(self.dimension + 1):
             raise ValueError(f"{self} has grades 0 to {self.dimension}, got {k}")
         return self._of_grade(components, f"{k}-vector", k, dtype, copy)
 
     def pseudoscalar(self, x: Any, *, dtype: Any = None) -> Multivector:
-        """Create multiples of I from numbers; an array of shape S is a batch of shape S."""
+        """Create multiples of I from numbers; an array of shape S is a batch of shape S.
+
+        Examples
+        --------
+        >>> ph.algebra(4).pseudoscalar(2)
+        2 I
+        """
         return self._single(x, "pseudoscalar", self.dimension, dtype)
 
     def multivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Create multivectors from an array (..., 2**n) over the whole basis."""
+        """Create multivectors from an array (..., 2**n) over the whole basis.
+
+        Examples
+        --------
+        >>> ph.algebra(2).multivector([1, 2, 3, 4])
+        1 + 2 e1 + 3 e2 + 4 I
+        """
         return self._wrapped(components, "multivector", self.size, self._all, dtype, copy)
 
     def random(
@@ -119,6 +202,11 @@ class Algebra(_native.Algebra):
             A grade or several; all by default.
         rng
             A NumPy generator or a seed.
+
+        Examples
+        --------
+        >>> ph.algebra(3).random(5, grades=(0, 2), rng=0).shape
+        (5,)
         """
         wanted = range(self.dimension + 1) if grades is None else grades
         mask = mask_of(self, tuple(wanted) if isinstance(wanted, Iterable) else (wanted,))
@@ -223,6 +311,19 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
     ``algebra(3, 0, 1)`` the plane-based algebra of Euclidean space, with the null generator ``e4`` last;
     ``algebra(4, 1)`` the conformal algebra; ``algebra(1, 3)`` the algebra of space-time. `pga` and `cga` are
     the plane-based and the conformal algebra with points, lines, planes and spheres.
+
+    Examples
+    --------
+    >>> ph.algebra(3, 0, 1)
+    Cl(3,0,1)
+    >>> ph.e1.algebra is ph.algebra(3)
+    True
+
+    The complex numbers, with one generator of square −1:
+
+    >>> i = ph.algebra(0, 1).I
+    >>> (2 + 3 * i) * (2 - 3 * i)
+    13
     """
     for count in (p, q, r):
         if not hasattr(count, "__index__"):

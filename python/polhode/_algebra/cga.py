@@ -40,6 +40,20 @@ class CGA(Algebra):
 
     The components of a point at the distance s from the origin grow as ½ s², so its coordinates come back
     with a relative error of about ``ε s²``: choose the unit of length near the size of the scene.
+
+    Examples
+    --------
+    The circle through three points, the distance of two of them, and a dilation:
+
+    >>> A = ph.cga()
+    >>> a, b, c = A.up([1, 0, 0]), A.up([0, 1, 0]), A.up([-1, 0, 0])
+    >>> circle = a ^ b ^ c
+    >>> print(A.center(circle), A.radius(circle))
+    0 1.0
+    >>> a | c
+    -2
+    >>> print(A.radius(A.dilator(3) >> circle).round(6))
+    3.0
     """
 
     __slots__ = ()
@@ -80,7 +94,15 @@ class CGA(Algebra):
     # --- points
 
     def up(self, x: Any) -> Multivector:
-        """Return the points ``eo + x + ½ x² einf`` at the positions x."""
+        """Return the points ``eo + x + ½ x² einf`` at the positions x.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> P = A.up([3, 0, 0])
+        >>> P * P, P | A.up([0, 4, 0])
+        (0, -12.5)
+        """
         v = vector_in(self._space, x, "the position")
         kind, parts = kind_of(v._data), columns(v)
         half = kind.divide(v.norm_squared(), 2)
@@ -95,6 +117,12 @@ class CGA(Algebra):
         """Return the positions of points of any weight as vectors of ``ph.algebra(n)``, the inverse of `up`.
 
         A ValueError, with the batch index, at infinity, and for vectors that are not points, with ``X² ≠ 0``.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.down(2 * A.up([1, 2, 3]))
+        e1 + 2 e2 + 3 e3
         """
         P = require_value(self, X, "a point", (1,))
         square, kind = P.norm_squared(), kind_of(P._data)
@@ -106,7 +134,14 @@ class CGA(Algebra):
         return self._down(P)
 
     def coordinates(self, X: Multivector) -> Any:
-        """Return the coordinates (..., n) of points: the components of `down`."""
+        """Return the coordinates (..., n) of points: the components of `down`.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.coordinates(2 * A.up([1, 2, 3]))
+        array([1., 2., 3.])
+        """
         return self.down(X).components
 
     def _down(self, P: Multivector) -> Multivector:
@@ -119,7 +154,14 @@ class CGA(Algebra):
     # --- flats
 
     def line(self, point: Any, through: Any = None, *, direction: Any = None) -> Multivector:
-        """Return the line ``P∧d∧einf`` from `point` to `through`, or along `direction`, of norm 1."""
+        """Return the line ``P∧d∧einf`` from `point` to `through`, or along `direction`, of norm 1.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> bool(A.line([0, 0, 0], [1, 0, 0]) == A.line([7, 0, 0], direction=[3, 0, 0]))
+        True
+        """
         start, along = point_and_unit(self, point, through, direction)
         return self.up(start).wedge(self.embed(along)).wedge(as_precise(self.einf, along))
 
@@ -127,6 +169,12 @@ class CGA(Algebra):
         """Return the hyperplane ``n·x = distance``, with the unit vector n along `normal`, of norm 1.
 
         ``P∧E∧einf`` with the blade E of the plane, ``n∧E = I``: of the normal e3 it is ``e1∧e2``.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.up([5, 6, 2]) ^ A.plane([0, 0, 1], 2)
+        0
         """
         n = unit_in(self._space, normal, "the normal")
         foot = self._space.scalar(number_like(distance, "the distance", n._data)) * n
@@ -136,7 +184,14 @@ class CGA(Algebra):
     # --- rounds
 
     def point_pair(self, a: Any, b: Any) -> Multivector:
-        """Return the pair ``A∧B`` of two points."""
+        """Return the pair ``A∧B`` of two points.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.points(A.point_pair([1, 0, 0], [3, 0, 0]))
+        (e1, 3 e1)
+        """
         return self.up(position_in(self, a, "the first point")).wedge(
             self.up(position_in(self, b, "the second point"))
         )
@@ -144,8 +199,15 @@ class CGA(Algebra):
     def circle(self, center: Any, normal: Any, radius: Any) -> Multivector:
         """Return circles of a center, a normal and a radius, in three dimensions.
 
-        Those through three points are ``A ^ B ^ C``.
-        ``(eo + ½ r² einf)∧E``, shifted to the center, with the unit blade E of its plane, ``n∧E = I``.
+        They are ``(eo + ½ r² einf)∧E``, shifted to the center, with the unit blade E of their plane,
+        ``n∧E = I``. The circle through three points is ``A ^ B ^ C``.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> circle = A.circle([0, 0, 5], [0, 0, 1], 2)
+        >>> circle ^ A.up([2, 0, 5])
+        0
         """
         if self._n != 3:
             raise TypeError(f"a circle with a normal exists in ph.cga(3) only, not in {self}")
@@ -153,7 +215,16 @@ class CGA(Algebra):
         return self._round(center, n.right_complement(), radius)
 
     def sphere(self, center: Any, radius: Any) -> Multivector:
-        """Return spheres of a center and a radius, ``(eo + ½ r² einf)∧e123`` shifted; for n = 2 circles."""
+        """Return spheres of a center and a radius, ``(eo + ½ r² einf)∧e123`` shifted; for n = 2 circles.
+
+        Examples
+        --------
+        A sphere, and a point on it:
+
+        >>> A = ph.cga()
+        >>> A.sphere([0, 0, 0], 5) ^ A.up([3, 4, 0])
+        0
+        """
         return self._round(center, self._space.I, radius)
 
     def _round(self, center: Any, blade: Multivector, radius: Any) -> Multivector:
@@ -177,7 +248,14 @@ class CGA(Algebra):
     # --- back
 
     def center(self, X: Multivector) -> Multivector:
-        """Return the centers of spheres, circles and point pairs as vectors: those of ``X einf X``."""
+        """Return the centers of spheres, circles and point pairs as vectors: those of ``X einf X``.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.center(A.sphere([1, 2, 3], 5))
+        e1 + 2 e2 + 3 e3
+        """
         X = self._require_round(X)
         return self._down((X * as_precise(self.einf, X) * X).grade(1))
 
@@ -185,6 +263,12 @@ class CGA(Algebra):
         """Return r² of spheres, circles, point pairs and points, negative of an imaginary one.
 
         An imaginary round is the intersection of two spheres that do not meet.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> print(A.squared_radius(A.sphere([1, 2, 3], 5)).round(6))
+        25.0
         """
         X = self._require_round(X)
         k = X.grades[0]
@@ -195,7 +279,14 @@ class CGA(Algebra):
         return ratio._data[..., 0][()]
 
     def radius(self, X: Multivector) -> Any:
-        """Return the radii of spheres, circles and point pairs; a ValueError for imaginary ones."""
+        """Return the radii of spheres, circles and point pairs; a ValueError for imaginary ones.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> print(A.radius(A.sphere([1, 2, 3], 5)).round(6))
+        5.0
+        """
         square = self.squared_radius(X)
         kind = kind_of(as_coefficients(square, "the squared radius"))
         if not kind.exact:
@@ -203,7 +294,14 @@ class CGA(Algebra):
         return kind.sqrt(square)
 
     def points(self, pair: Multivector) -> tuple[Multivector, Multivector]:
-        """Return the positions of the points of point pairs as vectors, the inverse of `point_pair`."""
+        """Return the positions of the points of point pairs as vectors, the inverse of `point_pair`.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.points(A.point_pair([1, 0, 0], [3, 0, 0]))
+        (e1, 3 e1)
+        """
         pair = require_value(self, pair, "a point pair", (2,))
         center, radius = self.center(pair), self.radius(pair)
         _, along = self.point_and_direction(pair.wedge(as_precise(self.einf, pair)))
@@ -211,12 +309,27 @@ class CGA(Algebra):
         return center - arm, center + arm
 
     def point_and_direction(self, line: Multivector) -> tuple[Multivector, Multivector]:
-        """Return the point of lines nearest to the origin and the unit direction, as vectors."""
+        """Return the point of lines nearest to the origin and the unit direction, as vectors.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.point_and_direction(A.line([5, 2, 0], direction=[1, 0, 0]))
+        (2 e2, e1)
+        """
         direction, moment = self._flat(require_value(self, line, "a line", (3,)))
         return moment.right_contraction(direction), direction
 
     def normal_and_distance(self, plane: Multivector) -> tuple[Multivector, Any]:
-        """Return the unit normal and the distance of hyperplanes, the inverse of `plane`."""
+        """Return the unit normal and the distance of hyperplanes, the inverse of `plane`.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> normal, distance = A.normal_and_distance(A.plane([0, 0, 1], 2))
+        >>> print(normal, distance)
+        e3 2.0
+        """
         blade, moment = self._flat(require_value(self, plane, "a plane", (self.dimension - 1,)))
         distance = moment.right_complement()._data[..., 0]
         return blade.left_complement(), distance[()]
@@ -255,11 +368,26 @@ class CGA(Algebra):
     # --- versors
 
     def rotor(self, R: Multivector) -> Multivector:
-        """Return a rotor of ``ph.algebra(n)`` as an element of this algebra: it turns about the origin."""
+        """Return a rotor of ``ph.algebra(n)`` as an element of this algebra: it turns about the origin.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> R = A.rotor(ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True))
+        >>> A.down(R >> A.up([1, 0, 0]))
+        0.5 e1 + 0.8660254 e2
+        """
         return self.embed(require_value(self._space, R, "a rotor", tuple(range(0, self._n + 1, 2))))
 
     def translator(self, displacement: Any) -> Multivector:
-        """Return versors that shift by vectors t: ``1 − ½ t einf``."""
+        """Return versors that shift by vectors t: ``1 − ½ t einf``.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.down(A.translator([1, 2, 3]) >> A.eo)
+        e1 + 2 e2 + 3 e3
+        """
         t = vector_in(self._space, displacement, "the displacement")
         return 1 - self.embed(t) * as_precise(self.einf, t) / 2
 
@@ -267,6 +395,12 @@ class CGA(Algebra):
         """Return versors that scale lengths by a positive factor f, about the origin or a center.
 
         ``exp(½ ln f · eo∧einf) = ½ (√f + 1/√f) + ½ (√f − 1/√f) eo∧einf``.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.down(A.dilator(3) >> A.up([1, 2, 0]))
+        3 e1 + 6 e2
         """
         f = as_coefficients(factor, "the factor")
         kind = kind_of(f)
@@ -282,7 +416,15 @@ class CGA(Algebra):
         return shift * D * ~shift
 
     def motor(self, rotor: Rotor | RigidTransform | None = None, translation: Any = None) -> Multivector:
-        """Return the versor of ``R x ~R + x0`` for a rotor and a translation, or a `RigidTransform`."""
+        """Return the versor of ``R x ~R + x0`` for a rotor and a translation, or a `RigidTransform`.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> M = A.motor(ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True), [0, 0, 5])
+        >>> A.down(M >> A.up([1, 0, 0]))
+        0.5 e1 + 0.8660254 e2 + 5 e3
+        """
         if isinstance(rotor, RigidTransform):
             if translation is not None:
                 raise TypeError("a RigidTransform has a translation; omit the other")
@@ -293,7 +435,14 @@ class CGA(Algebra):
     # --- helpers
 
     def embed(self, X: Multivector) -> Multivector:
-        """Return a value of ``ph.algebra(n)`` or of ``ph.algebra(n + 1, 1)`` in this algebra."""
+        """Return a value of ``ph.algebra(n)`` or of ``ph.algebra(n + 1, 1)`` in this algebra.
+
+        Examples
+        --------
+        >>> A = ph.cga()
+        >>> A.embed(ph.e1 ^ ph.e2) ^ A.einf
+        e1∧e2∧e4 + e1∧e2∧e5
+        """
         n = self._n
         return embedded(X, self, {self._space: range(n), algebra(n + 1, 1): range(n + 2)})
 
@@ -307,6 +456,14 @@ def cga(n: int = 3) -> CGA:
 
     It has the generators of ``ph.algebra(n + 1, 1)`` and names for the null vectors, `CGA.eo` and `CGA.einf`.
     n is 1 to 6.
+
+    Examples
+    --------
+    The points of a line, wedged with infinity, span it; another point on it adds nothing:
+
+    >>> A = ph.cga(2)
+    >>> A.up([0, 0]) ^ A.up([1, 2]) ^ A.einf ^ A.up([3, 6])
+    0
     """
     return _cga(dimension_of(n, 6, "cga"))
 

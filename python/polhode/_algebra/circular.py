@@ -34,12 +34,23 @@ def sin(value: Multivector) -> Multivector:
     Of any value in any algebra, accurate near 0. If the part V of A without its scalar squares to a number,
     as a vector and a bivector of 3-d space do, it is a closed form; exact and symbolic coefficients outside
     3-d space need one. While JAX traces, values with ``Σ|a| > 2048`` of another form give NaN.
+
+    Examples
+    --------
+    >>> (np.pi / 6 * ph.e1).sin()
+    0.5 e1
     """
     return _pair("sin", value, -1)[1]
 
 
 def cos(value: Multivector) -> Multivector:
-    """``cos A = 1 − A²/2! + …``; ``cos²A + sin²A = 1``. See `sin`."""
+    """``cos A = 1 − A²/2! + …``; ``cos²A + sin²A = 1``. See `sin`.
+
+    Examples
+    --------
+    >>> (np.pi / 3 * ph.e1).cos()
+    0.5
+    """
     return _pair("cos", value, -1)[0]
 
 
@@ -54,7 +65,14 @@ def sinh(value: Multivector) -> Multivector:
 
 
 def cosh(value: Multivector) -> Multivector:
-    """``cosh A = 1 + A²/2! + …``, ``½(e^A + e^−A)``. See `sin`."""
+    """``cosh A = 1 + A²/2! + …``, ``½(e^A + e^−A)``. See `sin`.
+
+    Examples
+    --------
+    >>> c, s = ph.e1.cosh(), ph.e1.sinh()
+    >>> bool((c * c - s * s).is_close(1))
+    True
+    """
     return _pair("cosh", value, 1)[0]
 
 
@@ -68,6 +86,11 @@ def outer_exp(value: Multivector) -> Multivector:
 
     A scalar part s gives a factor ``e^s``. Of a bivector B it is proportional to a versor of size
     ``√(1 + |B|²)`` (in 3-d space): the Cayley form of a rotor.
+
+    Examples
+    --------
+    >>> (3 * ph.e1 ^ ph.e2).outer_exp()
+    1 + 3 e1∧e2
     """
     rest = value.grade(*[k for k in value.grades if k]) if value._mask != 1 else None
     total = _one(value)

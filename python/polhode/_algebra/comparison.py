@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode import _generic
 from polhode._algebra.coefficients import common, namespace
 from polhode._algebra.grades import over_grades
 from polhode._algebra.products import coerced, common_algebra
-from polhode._generic import exact
 from polhode._support.arrays import is_complex
 
 if TYPE_CHECKING:
@@ -32,6 +32,13 @@ def is_close(a: Multivector, other: Any, rtol: float = 1e-9, atol: float = 0.0) 
     """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``: a bool, or an array of the batch shape.
 
     Sizes are those of the components, ``√Σ c²``.
+
+    Examples
+    --------
+    >>> 0.1 * ph.e1 + 0.2 * ph.e1 == 0.3 * ph.e1
+    False
+    >>> bool((0.1 * ph.e1 + 0.2 * ph.e1).is_close(0.3 * ph.e1))
+    True
     """
     b = coerced(other, a)
     if b is None:
@@ -59,10 +66,15 @@ def is_finite(value: Multivector) -> Any:
     """Whether no component is NaN or infinite: a bool, or an array of the batch shape.
 
     It finds the rows without a value in results with ``errors="mask"``.
+
+    Examples
+    --------
+    >>> ph.vector([[1, 2, 3], [1, np.nan, 3]]).is_finite()
+    array([ True, False])
     """
     data = value._data
     if data.dtype == object:
-        result: Any = np.frompyfunc(exact.is_finite, 1, 1)(data).astype(bool).all(axis=-1)
+        result: Any = np.frompyfunc(_generic.exact.is_finite, 1, 1)(data).astype(bool).all(axis=-1)
         return result[()]
     xp = namespace(data)
     finite = xp.all(xp.isfinite(data), axis=-1)

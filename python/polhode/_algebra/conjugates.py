@@ -22,17 +22,34 @@ def conj(value: V) -> V:
     """Return the value with complex conjugate coefficients; the basis elements stay.
 
     It is neither the reverse nor `clifford_conjugate`. The Hermitian conjugate of 3-d space is ``~A.conj()``.
+
+    Examples
+    --------
+    >>> ((1 + 2j) * ph.e1).conj()
+    (1-2j) e1
     """
     return _mapped(value, np.conj, lambda x: x.conjugate(), lambda x: x)
 
 
 def real(value: V) -> V:
-    """The value with the real parts of the coefficients."""
+    """The value with the real parts of the coefficients.
+
+    Examples
+    --------
+    >>> ((1 + 2j) * ph.e1).real
+    e1
+    """
     return _mapped(value, np.real, lambda x: _part("re", x), lambda x: x)
 
 
 def imag(value: Multivector) -> Multivector:
-    """The value with the imaginary parts of the coefficients, 0 for real ones."""
+    """The value with the imaginary parts of the coefficients, 0 for real ones.
+
+    Examples
+    --------
+    >>> ((1 + 2j) * ph.e1).imag
+    2 e1
+    """
     plain = value.grade(*value.grades)  # not a rotor
     return _mapped(plain, np.imag, lambda x: _part("im", x), lambda x: kind_of(x).zeros_like(x))
 

@@ -20,44 +20,93 @@ _ALL = 0b1111
 
 
 def scalar(a: Any, *, dtype: Any = None) -> Multivector:
-    """Scalars from numbers; an array of shape S is a batch of shape S."""
+    """Create scalars from numbers; an array of shape S is a batch of shape S.
+
+    Examples
+    --------
+    >>> ph.scalar([1, 2]) * ph.e1
+    Multivector of shape (2,):
+    [e1,
+     2 e1]
+    """
     return _G3.scalar(a, dtype=dtype)
 
 
 def vector(xyz: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-    """Vectors ``x e1 + y e2 + z e3`` from an array (..., 3).
+    """Create vectors ``x e1 + y e2 + z e3`` from an array (..., 3).
 
     Real numbers become float64, complex ones complex128, float32 and complex64 are kept; fractions, SymPy
     expressions, integers beyond 2⁵³ and arrays of objects stay exact; arrays of JAX and other libraries keep
     their type. `dtype` converts (``np.float32``, ``float``, ``complex``, or ``object`` for exact integers).
     ``copy=False`` makes a read-only view of floats in C order.
+
+    Examples
+    --------
+    >>> a = ph.vector([3, 4, 0])
+    >>> a * a
+    25
+    >>> ph.vector([[1, 0, 0], [3, 4, 0]]).norm()
+    array([1., 5.])
     """
     return _G3.vector(xyz, dtype=dtype, copy=copy)
 
 
 def bivector(c3: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-    """Bivectors ``x e2∧e3 + y e3∧e1 + z e1∧e2`` from an array (..., 3): components of the axial vector.
+    """Create bivectors ``x e2∧e3 + y e3∧e1 + z e1∧e2`` from an array (..., 3).
 
-    `dtype` and `copy` as in `vector`.
+    The components are those of the axial vector, ``x e1 + y e2 + z e3``. `dtype` and `copy` as in `vector`.
+
+    Examples
+    --------
+    >>> ph.bivector([0, 0, 2])
+    2 e1∧e2
+    >>> ph.bivector([0, 0, 2]) == (2 * ph.e1).wedge(ph.e2)
+    True
     """
     return _G3.bivector(c3, dtype=dtype, copy=copy)
 
 
 def trivector(b: Any, *, dtype: Any = None) -> Multivector:
-    """Trivectors ``b I`` from numbers; an array of shape S is a batch of shape S."""
+    """Create trivectors ``b I`` from numbers; an array of shape S is a batch of shape S.
+
+    Examples
+    --------
+    >>> ph.trivector(2)
+    2 I
+    >>> ph.e1 ^ ph.e2 ^ ph.e3
+    I
+    """
     return _G3._single(b, "trivector", 3, dtype)
 
 
 def multivector(c8: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-    """Multivectors from an array (..., 8) over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``.
+    """Create multivectors from an array (..., 8) over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``.
 
     `dtype` and `copy` as in `vector`.
+
+    Examples
+    --------
+    >>> M = ph.multivector([1, 0, 0, 3, 0, 0, 2, 0])
+    >>> M
+    1 + 3 e3 + 2 e1∧e2
+    >>> M.grade(2)
+    2 e1∧e2
     """
     return _G3.multivector(c8, dtype=dtype, copy=copy)
 
 
 def cross(a: Multivector, b: Multivector) -> Multivector:
-    """Vector cross product ``a x b = −I a∧b`` (handout eq. 1.24)."""
+    """Return the cross product ``a x b = −I a∧b`` of vectors (handout eq. 1.24); batches broadcast.
+
+    A TypeError for values of other grades, and for arrays, which `vector` wraps.
+
+    Examples
+    --------
+    The torque of a force of 10 N along e2 at an arm of 0.5 m along e1, in N m:
+
+    >>> ph.cross(0.5 * ph.e1, 10 * ph.e2)
+    5 e3
+    """
     return one_grade(a, 1, "the left factor").wedge(one_grade(b, 1, "the right factor")).dual()
 
 
@@ -65,6 +114,13 @@ def axial(B: Any) -> Multivector:
     """Return the axial vectors ``B I⁻¹`` of bivectors, values or an array (..., 3).
 
     ``axial(e1∧e2) = e3``, ``axial(a∧b) = a x b`` (handout eq. 1.20, 1.24). The components are the same.
+
+    Examples
+    --------
+    >>> ph.axial(ph.e1 ^ ph.e2)
+    e3
+    >>> ph.axial([1, 2, 3]) == ph.vector([1, 2, 3])
+    True
     """
     return one_grade(B, 2, "the plane").dual() if isinstance(B, Multivector) else vector(B)
 
@@ -73,6 +129,16 @@ def from_axial(v: Any) -> Multivector:
     """Return the bivectors ``I v`` of axial vectors, values or an array (..., 3).
 
     The plane perpendicular to v, in its right-handed sense, as ``Ω = I ω`` (handout eq. 4.4).
+
+    Examples
+    --------
+    The angular velocity ω = 2 e3, and the velocity ``x·Ω`` that it gives to the point x = e1:
+
+    >>> Omega = ph.from_axial([0, 0, 2])
+    >>> Omega
+    2 e1∧e2
+    >>> ph.e1 | Omega
+    2 e2
     """
     return one_grade(v, 1, "the axial vector").undual() if isinstance(v, Multivector) else bivector(v)
 
@@ -80,7 +146,13 @@ def from_axial(v: Any) -> Multivector:
 def split(x: Multivector, blade: Multivector) -> tuple[Multivector, Multivector]:
     """Return the parts of x in the subspace of `blade` and perpendicular to it: a∥ and a⊥ of eq. 1.7.
 
-    ``(x.project(blade), x.reject(blade))``; they add up to x, to its rounding.
+    ``(x.project(blade), x.reject(blade))``; they add up to x, but for rounding.
+
+    Examples
+    --------
+    >>> parallel, perpendicular = ph.split(ph.vector([1, 2, 3]), ph.e1 ^ ph.e2)
+    >>> parallel, perpendicular
+    (e1 + 2 e2, 3 e3)
     """
     if not isinstance(x, Multivector):
         raise TypeError(f"split needs a multivector, got {type(x).__name__}; wrap arrays with ph.vector")
@@ -92,6 +164,12 @@ def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
     """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2).
 
     M has real coefficients: with complex ones, I and i would have the same matrix.
+
+    Examples
+    --------
+    >>> ph.to_pauli(ph.e2)
+    array([[0.+0.j, 0.-1.j],
+           [0.+1.j, 0.+0.j]])
     """
     value = coerced(M)
     if value is None:
@@ -102,7 +180,15 @@ def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
 
 
 def from_pauli(matrices: Any) -> Multivector:
-    """Return the multivectors of 2×2 complex matrices, shape (..., 2, 2); the inverse of `to_pauli`."""
+    """Return the multivectors of 2×2 complex matrices, shape (..., 2, 2); the inverse of `to_pauli`.
+
+    Examples
+    --------
+    >>> ph.from_pauli([[0, 1], [1, 0]])
+    e1
+    >>> ph.from_pauli(ph.to_pauli(ph.e1) @ ph.to_pauli(ph.e2))
+    e1∧e2
+    """
     p = np.asarray(matrices)
     if p.dtype.kind not in "iufc" or p.shape[-2:] != (2, 2):
         raise ValueError(f"from_pauli needs numeric matrices of shape (..., 2, 2), got {p.dtype} {p.shape}")

@@ -26,6 +26,15 @@ def eigenvectors(F: LinearMap) -> tuple[Multivector, Array]:
 
     The eigenvalues rise; the vectors are perpendicular and right-handed, ``a1 a2 … an = I``. The metric must
     be Euclidean; in others symmetric maps may have complex eigenvalues.
+
+    Examples
+    --------
+    >>> F = ph.LinearMap.from_matrix([[2, 1, 0], [1, 2, 0], [0, 0, 5]])
+    >>> vectors, factors = F.eigenvectors()
+    >>> factors.round(12)
+    array([1., 3., 5.])
+    >>> F(vectors).is_close(factors * vectors)
+    array([ True,  True,  True])
     """
     if F.grade == 2:
         raise ValueError("a map of bivectors has no eigenvectors; see eigenplanes")
@@ -38,6 +47,12 @@ def eigenplanes(F: LinearMap) -> tuple[Multivector, Array]:
 
     K is 3 in 3-d space. The eigenvalues rise. For a map of vectors they are the products of two eigenvalues
     of vectors. The metric must be Euclidean.
+
+    Examples
+    --------
+    >>> planes, factors = ph.LinearMap.from_matrix(np.diag([1, 2, 3])).eigenplanes()
+    >>> factors
+    array([2., 3., 6.])
     """
     stretch, axes = _principal_axes(F, "eigenplanes")
     if F.grade == 2:
@@ -80,6 +95,12 @@ def svd(F: LinearMap) -> tuple[Multivector, Array, Multivector]:
     ``F(a) = Σ s_k (a·v_k) u_k`` for a map of vectors, K their dimension. The singular values fall, as those
     of NumPy, and are not negative; the u are perpendicular, and so are the v, in either orientation. For a
     map of bivectors u and v are bivectors. The metric must be Euclidean.
+
+    Examples
+    --------
+    >>> u, s, v = ph.LinearMap.from_matrix(np.diag([1, 2, 3])).svd()
+    >>> s
+    array([3., 2., 1.])
     """
     _require_euclidean(F, "svd", "np.linalg.svd(F.matrix) measures components")
     u, sizes, rows = np.linalg.svd(F.matrix)
@@ -94,6 +115,19 @@ def polar(F: LinearMap) -> tuple[Rotor, LinearMap]:
     ``F.adjoint() * F``. A ValueError, with the batch index, for a map that changes orientation
     (``det F < 0``), such as a reflection; ``-F`` has a polar form then. Of a map with an image of less than
     two dimensions R is one of many.
+
+    Examples
+    --------
+    A stretch along e1, then a quarter turn:
+
+    >>> F = ph.LinearMap.from_matrix([[0, -1, 0], [2, 0, 0], [0, 0, 1]])
+    >>> R, S = F.polar()
+    >>> print(np.degrees(R.angle).round(6))
+    90.0
+    >>> S.matrix.round(6) + 0
+    array([[2., 0., 0.],
+           [0., 1., 0.],
+           [0., 0., 1.]])
     """
     if F.algebra.signature != (3, 0, 0):
         raise ValueError(f"polar needs a map of 3-d space, got one of {F.algebra}; svd() is for any Cl(n)")

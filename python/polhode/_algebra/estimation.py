@@ -32,6 +32,8 @@ def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None)
 
     The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
     Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0.
+    A ValueError if a mean is not unique, as for half turns about three axes; while JAX traces, the result is
+    then arbitrary. Arrays of other libraries keep their type; derivatives are right up to the third.
 
     Parameters
     ----------
@@ -43,8 +45,13 @@ def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None)
         Batch axis or axes to average over, as in NumPy; by default all of them, none for ``()``. The result
         has the batch shape of the others.
 
-    A ValueError if a mean is not unique, as for half turns about three axes; while JAX traces, the result is
-    then arbitrary. Arrays of other libraries keep their type; derivatives are right up to the third.
+    Examples
+    --------
+    >>> R = ph.Rotor.from_axis_angle(ph.e3, [10, 30], degrees=True)
+    >>> print(np.degrees(ph.mean(R).angle).round(6))
+    20.0
+    >>> print(np.degrees(ph.mean(R, weights=[3, 1]).angle).round(1))
+    15.0
     """
     rotors = stack(R) if isinstance(R, list | tuple) and R else R
     if not isinstance(rotors, Rotor) or not all(rotors.shape):
@@ -125,6 +132,14 @@ class Alignment(NamedTuple):
         Array (..., 3, 3) in rad², in the axes of b: of the small rotation vector ε by which R is off, if the
         errors of each b have the variance 1/w per component. With equal unknown variances, take weights 1 and
         multiply by the variance.
+
+    Examples
+    --------
+    >>> fit = ph.align(np.eye(3), [[0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+    >>> print(np.degrees(fit.rotor.angle).round(6), fit.residual.round(12))
+    90.0 0.0
+    >>> fit.covariance.diagonal().round(6)
+    array([0.5, 0.5, 0.5])
     """
 
     rotor: Rotor
@@ -138,6 +153,10 @@ def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> A
     Wahba's problem, or Kabsch's for points relative to their centroids. The rotor is the eigenvector of the
     largest eigenvalue of Davenport's matrix (Keat, 1977; Markley & Mortari, J. Astronaut. Sci. 48 (2000)).
     SciPy's ``Rotation.align_vectors`` takes the target first: ``align_vectors(b, a)``.
+
+    A ValueError, with the batch index, if the rotation is not unique: fewer than two directions, or b
+    a mirror image of a for which two rotations fit equally well; with ``errors="mask"`` such rows are NaN.
+    Arrays of JAX and other libraries keep their type and have derivatives.
 
     Parameters
     ----------
@@ -155,9 +174,16 @@ def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> A
         The rotor (...), the residual (...) and the covariance (..., 3, 3) of the error in axes of b. A large
         covariance flags directions that are almost collinear.
 
-    A ValueError, with the batch index, if the rotation is not unique: fewer than two directions, or b
-    a mirror image of a for which two rotations fit equally well; with ``errors="mask"`` such rows are NaN.
-    Arrays of JAX and other libraries keep their type and have derivatives.
+    Examples
+    --------
+    Two directions on board and in space: the first pair says 40°, the second, with an error, 42°:
+
+    >>> a = ph.vector([[1, 0, 0], [0, 1, 0]])
+    >>> b = ph.Rotor.from_axis_angle(ph.e3, [40, 42], degrees=True)(a)
+    >>> print(np.degrees(ph.align(a, b).rotor.angle).round(6))
+    41.0
+    >>> print(np.degrees(ph.align(a, b, weights=[3, 1]).rotor.angle).round(3))
+    40.5
     """
     if errors != "raise":
         sets = [(_rows(a, "a"), 2), (_rows(b, "b"), 2)]

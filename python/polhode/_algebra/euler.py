@@ -21,6 +21,7 @@ import numpy as np
 
 from polhode._algebra.coefficients import kind_of
 from polhode._generic import exact
+from polhode._generic.compiled import compiled
 from polhode._generic.exact import Exact, by_rows
 from polhode._generic.numeric import Numeric, components
 from polhode._support.arrays import is_float
@@ -68,7 +69,12 @@ def angles_of(wxyz: Any, seq: str) -> Any:
     d = Numeric(np, wxyz.dtype) if is_float(wxyz) else kind_of(wxyz)
     if isinstance(d, Exact):
         return by_rows(lambda q: _exact_angles(d, q, axes, turning), wxyz, range(3))
-    (a, b, c, e), sign = _two_numbers(components(wxyz), axes, turning)
+    return _angles(d, wxyz, axes, turning)
+
+
+@compiled
+def _angles(d: Numeric, wxyz: Any, axes: list[int], turning: bool) -> Any:
+    (a, b, c, e), sign = _two_numbers(components(wxyz), list(axes), turning)
     # Equal to the other, or to its conjugate, the number in lock gives 0 for the angle named last.
     with np.errstate(all="ignore"):
         cosine, sine = d.length([a, b]), d.length([c, e])

@@ -31,6 +31,13 @@ def factor(blade: Multivector, *, errors: Errors = "raise") -> tuple[Multivector
     in this order: of ``3 e1∧e2`` they are ``3 e1`` and ``e2``. Batches give batches. A ValueError, with the
     batch index, for zero and for a value that is not a blade, such as ``e1∧e2 + e3∧e4``; with
     ``errors="mask"`` NaN there.
+
+    Examples
+    --------
+    >>> B = ph.vector([1, 2, 3]) ^ ph.vector([4, 5, 6])
+    >>> a, b = B.factor()
+    >>> bool((a * b).is_close(B))
+    True
     """
     data, algebra = blade._data, blade.algebra
     held = blade._held() or blade._mask
@@ -108,6 +115,16 @@ def reciprocal_frame(vectors: Sequence[Multivector]) -> tuple[Multivector, ...]:
     ``b^i = (−1)^(i−1) (b_1∧…∧b_(i−1)∧b_(i+1)∧…∧b_k) (b_1∧…∧b_k)⁻¹``. `vectors` is a sequence of them, whose
     batches broadcast, or a batch (k,). The components of a vector in the frame are ``a·b^i``. A ValueError
     where the vectors are linearly dependent, or span a blade without an inverse.
+
+    Examples
+    --------
+    >>> b1, b2 = ph.e1, ph.e1 + 2 * ph.e2
+    >>> r1, r2 = ph.reciprocal_frame([b1, b2])
+    >>> r1 | b1, r1 | b2
+    (1, 0)
+    >>> a = 5 * b1 + 7 * b2
+    >>> a | r1, a | r2
+    (5, 7)
     """
     frame = list(vectors)
     for i, b in enumerate(frame):

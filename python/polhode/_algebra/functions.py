@@ -85,12 +85,20 @@ def norm_squared(value: Multivector) -> Any:
 
     Of complex coefficients the real ``⟨A ~A*⟩``, with the complex conjugate: squared magnitudes. For the
     complex number without it see ``A.scalar_product(~A)``.
+
+    Examples
+    --------
+    >>> print(ph.vector([3, 4, 0]).norm_squared())
+    25.0
     """
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if is_float(data) or is_complex(data):
         with np.errstate(over="ignore"):
             counted, signs = _counted(data, signs)
             return (kind_of(counted).squared(counted) * signs).sum(axis=-1)[()]
+    kind = kind_of(data)
+    if not kind.exact and min(signs) > 0:
+        return _generic.functions.norm_squared(kind, data)
     square = value.scalar_product(~value)._data[..., 0]
     return square[()] if isinstance(square, np.ndarray) else square
 
@@ -100,6 +108,13 @@ def norm(value: Multivector) -> Any:
 
     Where squares may be negative, ``√abs⟨A ~A⟩``. Of complex coefficients, the norm of their magnitudes. The
     norm has no derivative at zero; JAX gives 0 there. Use `norm_squared` to differentiate the square.
+
+    Examples
+    --------
+    >>> print(ph.vector([3, 4, 0]).norm())
+    5.0
+    >>> print((2 * ph.e1 ^ 3 * ph.e2).norm())
+    6.0
     """
     if value._is_one:
         return np.float64(value._norm_of_one())
@@ -141,6 +156,11 @@ def normalized(value: Multivector, *, errors: Errors = "raise") -> Multivector:
 
     Even values of Cl(3,0,1) with scalars and bivectors, such as motors, are divided by the dual number
     ``√(M ~M)``, so that the result is a motor, with ``M ~M = 1``.
+
+    Examples
+    --------
+    >>> ph.vector([3, 4, 0]).normalized()
+    0.6 e1 + 0.8 e2
     """
     if errors != "raise":
         return masked(errors, normalized, (value, 1))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from polhode import _native
+from polhode import _generic, _native
 from polhode._algebra.coefficients import as_coefficients, common, duplicate, kind_of, namespace
 from polhode._algebra.coefficients import reshaped as coefficients_reshaped
 from polhode._algebra.products import coerced, common_algebra
@@ -49,9 +49,7 @@ def with_grades(value: Multivector, mask: int) -> Any:
         full[..., held] = data
         return np.ascontiguousarray(full[..., wanted])
     place = {index: k for k, index in enumerate(held)}
-    kind = kind_of(data)
-    zero = kind.zeros_like(data[..., 0])
-    return kind.stack([data[..., place[i]] if i in place else zero for i in wanted])
+    return _generic.layout.rearranged(kind_of(data), data, [place.get(i) for i in wanted])
 
 
 def over_grades(value: Multivector, mask: int) -> Any:
@@ -91,14 +89,18 @@ def with_signs(data: Any, signs: Sequence[float]) -> Any:
     """Return the components times these signs."""
     if is_float(data):
         return np.where(np.array(signs) < 0, -data, data)
-    parts = [data[..., k] if sign > 0 else -data[..., k] for k, sign in enumerate(signs)]
-    return kind_of(data).stack(parts)
+    return _generic.layout.rearranged(kind_of(data), data, range(len(signs)), tuple(signs))
 
 
 def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
     """Return the value with each component changed by f, such as ``sympy.simplify``; never a rotor.
 
     Components of dtype object are passed one by one, others as one array.
+
+    Examples
+    --------
+    >>> ph.vector([1.2, -3.7, 0.1]).map(np.round)
+    e1 - 4 e2
     """
     data = value._data
     changed = np.frompyfunc(f, 1, 1)(data) if data.dtype == object else f(data)
@@ -116,7 +118,13 @@ def check_index(shape: Shape, index: tuple[Any, ...]) -> None:
 
 
 def reshaped(value: V, *shape: Any) -> V:
-    """Return a batch of another shape; one length may be −1. ``reshape(2, 3)`` or ``reshape((2, 3))``."""
+    """Return a batch of another shape; one length may be −1. ``reshape(2, 3)`` or ``reshape((2, 3))``.
+
+    Examples
+    --------
+    >>> ph.vector(np.ones((6, 3))).reshape(2, -1).shape
+    (2, 3)
+    """
     if len(shape) == 1 and not hasattr(shape[0], "__index__"):
         shape = tuple(shape[0])
     lengths = [operator.index(length) for length in shape]
@@ -130,9 +138,20 @@ def reshaped(value: V, *shape: Any) -> V:
 
 
 def stack(values: Iterable[V], axis: int = 0) -> V:
-    """Join values of one batch shape along a new batch axis; all rotors give rotors.
+    """Join values of equal batch shape along a new batch axis; rotors give rotors.
 
     Values of different grades are joined over the grades of all. `axis` counts batch axes.
+
+    Examples
+    --------
+    >>> axes = ph.stack([ph.e1, ph.e2, ph.e3])
+    >>> axes.shape
+    (3,)
+    >>> axes | ph.vector([1, 2, 3])
+    Multivector of shape (3,):
+    [1,
+     2,
+     3]
     """
     parts, shapes, build = _unified(values, "stack")
     if len(shapes) > 1:
@@ -142,7 +161,13 @@ def stack(values: Iterable[V], axis: int = 0) -> V:
 
 
 def summed(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Multivector:
-    """Return the sum of a batch over some of its axes, or all; a sum of rotors is not a rotor."""
+    """Return the sum of a batch over some of its axes, or all; a sum of rotors is not a rotor.
+
+    Examples
+    --------
+    >>> ph.vector([[1, 0, 0], [0, 2, 0]]).sum()
+    e1 + 2 e2
+    """
     count = len(value.shape)
     chosen = tuple(range(count)) if axis is None else axis if isinstance(axis, tuple) else (axis,)
     axes = tuple(_batch_axis(k, count) for k in chosen)
@@ -151,7 +176,13 @@ def summed(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Mul
 
 
 def averaged(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Multivector:
-    """Return the mean of a batch over some of its axes, or all. Of rotors a TypeError: see `ph.mean`."""
+    """Return the mean of a batch over some of its axes, or all. Of rotors a TypeError: see `ph.mean`.
+
+    Examples
+    --------
+    >>> ph.vector([[1, 0, 0], [0, 2, 0]]).mean()
+    0.5 e1 + e2
+    """
     if isinstance(value, _native.Rotor):
         raise TypeError("the mean of components is not a rotor; use ph.mean(R) for the mean attitude")
     total = summed(value, axis)
@@ -162,7 +193,14 @@ def averaged(value: Multivector, axis: int | tuple[int, ...] | None = None) -> M
 
 
 def concatenate(values: Iterable[V], axis: int = 0) -> V:
-    """Join batches along an existing batch axis; all rotors give rotors. `axis` counts batch axes."""
+    """Join batches along an existing batch axis; rotors give rotors. `axis` counts batch axes.
+
+    Examples
+    --------
+    >>> two = ph.vector([[1, 0, 0], [0, 1, 0]])
+    >>> ph.concatenate([two, 10 * two])["e1"]
+    array([ 1.,  0., 10.,  0.])
+    """
     parts, shapes, build = _unified(values, "concatenate")
     dimensions = {len(shape) for shape in shapes}
     if dimensions == {0} or len(dimensions) > 1:

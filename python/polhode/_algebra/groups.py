@@ -29,6 +29,13 @@ def group(name: str, axis: str = "z") -> Rotor:
     the order x, y, z, x. The identity comes first. Scalar parts are >= 0.
 
     The order of the others is not SciPy's.
+
+    Examples
+    --------
+    >>> ph.Rotor.group("O").shape
+    (24,)
+    >>> np.degrees(ph.Rotor.group("C4").angle).round(6)
+    array([  0.,  90., 180.,  90.])
     """
     match = re.fullmatch(r"([CD])([1-9]\d*)|[TOI]", name) if isinstance(name, str) else None
     if match is None:
@@ -65,17 +72,25 @@ def reduce(
     """Return the rotors ``l R r`` of the smallest angle, for l and r of two groups: SciPy's ``reduce``.
 
     For symmetries `right` of a body and `left` of its surroundings, attitudes that cannot be told apart have
-    the same reduced angle: the misorientation of crystals.
+    the same reduced angle: the misorientation of crystals. The scalar part of
+    the result is >= 0. Of several equal angles, to rounding, any may be taken.
 
     Parameters
     ----------
     left, right
         Batches of rotors (m,) and (k,), such as ``Rotor.group("O")``; the identity by default.
     return_indices
-        Whether to return ``(reduced, left_index, right_index)``, with arrays of R's batch shape that tell
-        which elements were used (None for a group not given).
+        Whether to return ``(reduced, left_index, right_index)``, with arrays of R's batch shape of
+        the places of the elements used (None for a group not given).
 
-    The scalar part of the result is >= 0. Of several equal angles, to rounding, any may be taken.
+    Examples
+    --------
+    A cube looks the same after a quarter turn, so a turn of 100° looks like one of 10°:
+
+    >>> R = ph.Rotor.from_axis_angle(ph.e3, 100, degrees=True)
+    >>> reduced = R.reduce(right=ph.Rotor.group("O"))
+    >>> print(np.degrees(reduced.angle).round(6))
+    10.0
     """
     groups = [_checked(value, what) for value, what in ((left, "left"), (right, "right"))]
     if not all(is_float(value._data) for value in (R, *groups)):

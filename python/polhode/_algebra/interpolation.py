@@ -8,7 +8,7 @@ from typing import Any, overload
 import numpy as np
 
 from polhode import _generic
-from polhode._algebra.coefficients import foreign_kind, kind_of
+from polhode._algebra.coefficients import foreign_kind, kind_of, number_like
 from polhode._algebra.constructors import bivector
 from polhode._algebra.grades import stack
 from polhode._algebra.multivector import Multivector
@@ -34,9 +34,25 @@ def slerp(R: Any, S: Any, t: Any) -> Any:
 
     Of motors of ``ph.algebra(3, 0, 1)`` the motor, along the screw from one to the other, a turn of at most
     π; of other even versors ``R (R⁻¹ S)^t``, whose norms are interpolated as well.
+
+    Examples
+    --------
+    A third of the way through a turn of 90°:
+
+    >>> R, S = ph.Rotor.identity(), ph.Rotor.from_axis_angle(ph.e3, 90, degrees=True)
+    >>> print(np.degrees(ph.slerp(R, S, 1 / 3).angle).round(6))
+    30.0
+    >>> ph.slerp(R, S, [0, 0.5, 1]).shape
+    (3,)
     """
     if not (isinstance(R, Rotor) and isinstance(S, Rotor)):
         return _slerp_of_versors(R, S, t)
+    data = R._data, S._data
+    if not all(map(is_float, data)) and kind_of(*data).is_jax:
+        fraction = number_like(t, "the fraction of the way", R._data)
+        kind = kind_of(*data, fraction)
+        first, last, share = map(kind.asarray, (*data, fraction))
+        return Rotor._from_rows(_generic.rotors.slerp(kind, first, last, share, half_turn(R._data)))
     step = (~R * S)._data
     return R * Rotor.from_components(_shorter(step, step[..., :1])) ** t
 
@@ -83,8 +99,16 @@ class RotorSpline:
     Times beyond the first and last are an error; with `extrapolate` the path goes on there at the constant
     angular velocity of that end.
 
-    >>> spline = RotorSpline(times, rotors)
-    >>> spline(t), spline.omega_body(t), spline.alpha_body(t)
+    Examples
+    --------
+    A turn about e3 that speeds up, ``θ = t²/2``, given at 21 times:
+
+    >>> times = np.linspace(0, 2, 21)
+    >>> spline = ph.RotorSpline(times, ph.Rotor.from_axis_angle(ph.e3, times**2 / 2))
+    >>> print(spline(1.05).angle.round(5), 1.05**2 / 2)
+    0.55125 0.55125
+    >>> print(spline.omega_body(1.05)["e12"].round(3), spline.alpha_body(1.05)["e12"].round(2))
+    1.05 1.0
     """
 
     __slots__ = ("_extrapolate", "_slopes", "_times", "_values")
@@ -113,7 +137,17 @@ class RotorSpline:
 
     @property
     def rotors(self) -> Rotor:
-        """The rotors (n,), with the signs that they have on the path."""
+        """The rotors (n,), with the signs that they have on the path.
+
+        Examples
+        --------
+        The last rotor takes the sign nearer to the first:
+
+        >>> R = ph.Rotor.from_axis_angle(ph.e3, [0, 60], degrees=True)
+        >>> spline = ph.RotorSpline([0, 1], [R[0], -R[1]])
+        >>> bool((spline.rotors == R).all())
+        True
+        """
         return Rotor.from_components(self._values)
 
     def __call__(self, t: Any) -> Rotor:
@@ -126,7 +160,15 @@ class RotorSpline:
         return further
 
     def omega_body(self, t: Any) -> Multivector:
-        """Return the angular velocity at the times t, a bivector in body axes, in rad per unit of time."""
+        """Return the angular velocity at the times t, a bivector in body axes, in rad per unit of time.
+
+        Examples
+        --------
+        >>> times = np.linspace(0, 2, 21)
+        >>> spline = ph.RotorSpline(times, ph.Rotor.from_axis_angle(ph.e3, 3 * times))
+        >>> spline.omega_body([0.25, 1.25])["e12"].round(2)
+        array([3., 3.])
+        """
         s, rate, _, _ = self._at(t)
         return _omega(s, rate)
 
@@ -134,6 +176,13 @@ class RotorSpline:
         """Return the angular acceleration at the times t: the rate of `omega_body`, a bivector in body axes.
 
         It is continuous, of second order in the distance of the rotors, and 0 beyond the ends.
+
+        Examples
+        --------
+        >>> times = np.linspace(0, 2, 21)
+        >>> spline = ph.RotorSpline(times, ph.Rotor.from_axis_angle(ph.e3, times**2))
+        >>> print(spline.alpha_body(1.0)["e12"].round(1))
+        2.0
         """
         s, rate, bend, beyond = self._at(t)
         # (<~s s'>₂)' = <~s s''>₂, since ~s' s' is a scalar.

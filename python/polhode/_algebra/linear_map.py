@@ -35,6 +35,18 @@ class LinearMap:
     scales as a batch.
 
     Created by `from_matrix`, `from_function` and `identity`.
+
+    Examples
+    --------
+    A stretch by 1, 2 and 3 along the axes scales planes by 2, 3 and 6, and volumes by 6:
+
+    >>> F = ph.LinearMap.from_matrix(np.diag([1, 2, 3]))
+    >>> F(ph.e1 + ph.e2)
+    e1 + 2 e2
+    >>> F(ph.e1 ^ ph.e2), F(ph.I)
+    (2 e1∧e2, 6 I)
+    >>> (F * F)(ph.e3)
+    9 e3
     """
 
     __slots__ = ("_algebra", "_grade", "_matrix")
@@ -55,6 +67,12 @@ class LinearMap:
 
         Of shape (..., 3, 3) over e1, e2, e3, or over e2e3, e3e1, e1e2; in another `algebra` (..., K, K) over
         its K basis elements of the grade.
+
+        Examples
+        --------
+        >>> F = ph.LinearMap.from_matrix([[1, 5, 0], [0, 1, 0], [0, 0, 1]])
+        >>> F(ph.e2)
+        5 e1 + e2
         """
         own, size = _space(algebra, grade)
         matrix = np.array(as_floats(m, "the matrix of a linear map"))
@@ -78,6 +96,14 @@ class LinearMap:
 
         It is called with the basis values of the algebra, by default of 3-d space, and with another to check
         that it is linear; a ValueError if it is not. Versors of other algebras are such functions, too.
+
+        Examples
+        --------
+        >>> F = ph.LinearMap.from_function(lambda a: a.project(ph.e1 ^ ph.e2))
+        >>> F.matrix
+        array([[1., 0., 0.],
+               [0., 1., 0.],
+               [0., 0., 0.]])
         """
         own, size = _space(algebra, grade)
         images = [_components(f(own.k_vector(grade, row)), own, grade, "the image") for row in np.eye(size)]
@@ -94,7 +120,13 @@ class LinearMap:
 
     @staticmethod
     def identity(shape: int | Shape = (), *, grade: int = 1, algebra: Algebra | None = None) -> LinearMap:
-        """Return the identity map, or a batch of it of this shape."""
+        """Return the identity map, or a batch of it of this shape.
+
+        Examples
+        --------
+        >>> ph.LinearMap.identity()(ph.e1 + ph.I)
+        e1 + I
+        """
         own, size = _space(algebra, grade)
         matrix = np.broadcast_to(np.eye(size), (*batch_shape(shape), size, size))
         return LinearMap.from_matrix(matrix, grade, algebra=own)
@@ -116,6 +148,13 @@ class LinearMap:
         """The matrices (..., 3, 3) over e1, e2, e3, or for grade 2 over e2e3, e3e1, e1e2.
 
         In other algebras (..., K, K) over the K basis elements of the grade, in their order.
+
+        Examples
+        --------
+        >>> ph.LinearMap.from_function(lambda a: a.reflect(ph.e3)).matrix
+        array([[ 1.,  0.,  0.],
+               [ 0.,  1.,  0.],
+               [ 0.,  0., -1.]])
         """
         return self._matrix.copy()
 
@@ -129,12 +168,25 @@ class LinearMap:
         """The matrices of the action on bivectors; for a map of vectors of 3-d space, that of its cofactors.
 
         Of shape (..., 3, 3) in 3-d space; the columns are ``F(e2)∧F(e3)``, ``F(e3)∧F(e1)``, ``F(e1)∧F(e2)``.
+
+        Examples
+        --------
+        >>> ph.LinearMap.from_matrix(np.diag([1, 2, 3])).bivector_matrix
+        array([[6., 0., 0.],
+               [0., 3., 0.],
+               [0., 0., 2.]])
         """
         return self.matrix if self.grade == 2 else compound(self.algebra, self.matrix, 2)
 
     @property
     def outermorphism_matrix(self) -> Array:
-        """The matrices (..., 2**n, 2**n) of the action of a map of vectors on all components, `dense`."""
+        """The matrices (..., 2**n, 2**n) of the action of a map of vectors on all components, `dense`.
+
+        Examples
+        --------
+        >>> ph.LinearMap.from_matrix(np.diag([1, 2, 3])).outermorphism_matrix.diagonal()
+        array([1., 1., 2., 3., 6., 3., 2., 6.])
+        """
         if self.grade == 2:
             raise TypeError("a map of bivectors has no outermorphism; see its matrix")
         return outermorphism(self.algebra, self.matrix)
@@ -144,6 +196,11 @@ class LinearMap:
         """The factor by which the map scales volumes, ``F(I) = det F · I``: a float, or an array.
 
         For a map of bivectors, the determinant of its matrix.
+
+        Examples
+        --------
+        >>> print(ph.LinearMap.from_matrix(np.diag([1, 2, 3])).determinant)
+        6.0
         """
         n, matrix = self.algebra.dimension, self.matrix
         if matrix.shape[-1] != n:
@@ -151,7 +208,13 @@ class LinearMap:
         return compound(self.algebra, matrix, n)[..., 0, 0][()]
 
     def trace(self) -> Any:
-        """Return the trace of the matrix, ``Σ e^k·F(e_k)``: a float, or an array of the batch shape."""
+        """Return the trace of the matrix, ``Σ e^k·F(e_k)``: a float, or an array of the batch shape.
+
+        Examples
+        --------
+        >>> print(ph.LinearMap.from_matrix(np.diag([1, 2, 3])).trace())
+        6.0
+        """
         return np.trace(self.matrix, axis1=-2, axis2=-1)[()]
 
     def __call__(self, X: Any) -> Multivector:
@@ -251,6 +314,13 @@ class LinearMap:
 
         In an indefinite metric ``η Fᵀ η``, with the squares of the basis elements in η. A ValueError in a
         degenerate metric, where the equation does not determine it.
+
+        Examples
+        --------
+        >>> F = ph.LinearMap.from_matrix([[1, 5, 0], [0, 1, 0], [0, 0, 1]])
+        >>> a, b = ph.vector([1, 2, 3]), ph.vector([4, 5, 6])
+        >>> F(a) | b, a | F.adjoint()(b)
+        (72, 72)
         """
         transposed: Array = np.swapaxes(self.matrix, -1, -2)
         _, q, r = self.algebra.signature
@@ -268,6 +338,12 @@ class LinearMap:
         """Return the inverse map, which is also ``A ↦ I adj(F)(I⁻¹ A) / det F``.
 
         A ValueError, with the batch index, where the map is singular to rounding.
+
+        Examples
+        --------
+        >>> F = ph.LinearMap.from_matrix(np.diag([1, 2, 4]))
+        >>> F.inverse()(ph.vector([1, 1, 1]))
+        e1 + 0.5 e2 + 0.25 e3
         """
         sizes = np.linalg.svd(self.matrix, compute_uv=False)
         singular = sizes[..., -1] <= 4 * np.finfo(float).eps * sizes[..., 0]
@@ -279,11 +355,29 @@ class LinearMap:
         return self._with(np.linalg.inv(self.matrix))
 
     def symmetric_part(self) -> LinearMap:
-        """Return ``½ (F + adj F)``, as maps of vectors or, for grade 2, of bivectors."""
+        """Return ``½ (F + adj F)``, as maps of vectors or, for grade 2, of bivectors.
+
+        Examples
+        --------
+        >>> ph.LinearMap.from_matrix([[1, 4, 0], [0, 2, 0], [0, 0, 3]]).symmetric_part().matrix
+        array([[1., 2., 0.],
+               [2., 2., 0.],
+               [0., 0., 3.]])
+        """
         return self._with(0.5 * self.matrix + 0.5 * self.adjoint().matrix)
 
     def antisymmetric_part(self) -> LinearMap:
-        """Return ``½ (F − adj F)``; of vectors, it is ``a ↦ a·B`` for a bivector B."""
+        """Return ``½ (F − adj F)``; of vectors, it is ``a ↦ a·B`` for a bivector B.
+
+        Examples
+        --------
+        Of the velocities ``v = x·Ω`` of a spinning body, and a stretch, only the spin is left:
+
+        >>> Omega = 3 * ph.e1 ^ ph.e2
+        >>> F = ph.LinearMap.from_function(lambda x: (x | Omega) + 2 * x)
+        >>> F.antisymmetric_part()(ph.e1), ph.e1 | Omega
+        (3 e2, 3 e2)
+        """
         return self._with(0.5 * self.matrix - 0.5 * self.adjoint().matrix)
 
     eigenvectors = _decompositions.eigenvectors
@@ -306,7 +400,14 @@ class LinearMap:
         return equal if equal is NotImplemented else np.logical_not(equal)[()]
 
     def is_close(self, other: Any, rtol: float = 1e-9, atol: float = 0.0) -> Any:
-        """Whether ``|F − G| <= max(rtol · max(|F|, |G|), atol)``, |F|² the sum of the squared entries."""
+        """Whether ``|F − G| <= max(rtol · max(|F|, |G|), atol)``, |F|² the sum of the squared entries.
+
+        Examples
+        --------
+        >>> F = ph.LinearMap.from_matrix(np.diag([0.1, 0.2, 0.3]))
+        >>> bool((F + 2 * F).is_close(3 * F))
+        True
+        """
         if not isinstance(other, LinearMap) or other.grade != self.grade:
             raise TypeError(f"is_close needs another map of {_NAMES[self.grade]}, got {other!r}")
         self._require_algebra(other)

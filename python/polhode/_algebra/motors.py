@@ -56,6 +56,14 @@ def columns(value: Multivector) -> list[Any]:
     return [data[..., place[k]] * sign for k, sign in places(algebra) or ()]
 
 
+def rows(value: Multivector) -> Any:
+    """Return the components (..., 8) of an even element in the order of `places`."""
+    algebra = value.algebra
+    held = {index: k for k, index in enumerate(algebra._indices(value._mask))}
+    where, signs = zip(*(places(algebra) or ()), strict=True)
+    return _generic.layout.rearranged(kind_of(value._data), value._data, [held.get(k) for k in where], signs)
+
+
 def of_columns(algebra: Algebra, parts: list[Any], mask: int = EVEN) -> Multivector:
     """Return the element with these components in the order of `places`, over the grades in the mask."""
     at = {index: sign * part for (index, sign), part in zip(places(algebra) or (), parts, strict=True)}
@@ -65,9 +73,18 @@ def of_columns(algebra: Algebra, parts: list[Any], mask: int = EVEN) -> Multivec
 
 def function(name: str, value: Multivector, mask: int) -> Multivector:
     """Return exp, log or sqrt of an even element of any coefficients, over the grades in the mask."""
-    kind = kind_of(value._data)
-    rows = getattr(_generic.motors, name)(kind, kind.stack(columns(value)))
-    return of_columns(value.algebra, [rows[..., k] for k in range(8)], mask)
+    algebra, kind = value.algebra, kind_of(value._data)
+    held, kept = (tuple(k for k in (0, 2, 4) if grades >> k & 1) for grades in (value._mask, mask))
+    data = kind.asarray(value._data)
+    rows = _generic.motors.function(kind, name, data, held, _order(algebra), kept)
+    return _native.Multivector._of(rows, mask, algebra)
+
+
+@functools.cache
+def _order(algebra: Algebra) -> tuple[Place, ...]:
+    """Return `places` among the even elements instead of all."""
+    place = {index: k for k, index in enumerate(algebra._indices(EVEN))}
+    return tuple((place[index], sign) for index, sign in places(algebra) or ())
 
 
 def without_excess(unit: Multivector) -> Multivector:

@@ -55,6 +55,36 @@ class Multivector(_native.Multivector):
     the product. Put brackets around them, or use the named methods ``A.wedge(B)`` and ``A.dot(B)``.
 
     Created by `scalar`, `vector`, `bivector`, `trivector` and `multivector`, not directly.
+
+    Examples
+    --------
+    The product of two vectors has a scalar and a bivector, their dot and their wedge:
+
+    >>> a, b = ph.vector([1, 2, 0]), ph.vector([0, 3, 0])
+    >>> a * b
+    6 + 3 e1∧e2
+    >>> a | b, a ^ b
+    (6, 3 e1∧e2)
+    >>> (a * b).grade(2).dual()
+    3 e3
+
+    Vectors have inverses, bivectors square to a negative number, and their exponentials are rotors:
+
+    >>> b.inverse()
+    0.33333333 e2
+    >>> (ph.e1 ^ ph.e2) * (ph.e1 ^ ph.e2)
+    -1
+    >>> (-np.pi / 6 * (ph.e1 ^ ph.e2)).exp()
+    0.8660254 - 0.5 e1∧e2
+
+    Components have names; batches broadcast:
+
+    >>> print(a["e2"])
+    2.0
+    >>> ph.vector([[1, 0, 0], [0, 1, 0]]) ^ ph.e3
+    Multivector of shape (2,):
+    [-e3∧e1,
+     e2∧e3]
     """
 
     __slots__ = ()
@@ -79,7 +109,13 @@ class Multivector(_native.Multivector):
 
     @property
     def grades(self) -> tuple[int, ...]:
-        """The grades present, e.g. ``(0, 2)``."""
+        """The grades present, e.g. ``(0, 2)``.
+
+        Examples
+        --------
+        >>> (ph.e1 * (ph.e1 + ph.e2)).grades
+        (0, 2)
+        """
         return tuple(k for k in range(self._mask.bit_length()) if self._mask >> k & 1)
 
     @property
@@ -88,18 +124,37 @@ class Multivector(_native.Multivector):
 
         A copy at each access: changing it does not change the value. In a loop over a large batch keep it in
         a variable. Arrays of other libraries are not copied.
+
+        Examples
+        --------
+        >>> ph.vector([1, 2, 3]).components
+        array([1., 2., 3.])
+        >>> (2 + (ph.e1 ^ ph.e2)).components
+        array([2., 0., 0., 1.])
         """
         data: NDArray[Any] = self._data
         return data if self._is_one else copied(data)
 
     def dense(self) -> NDArray[Any]:
-        """Return all components in basis order, zeros where grades are absent: shape ``(*shape, 2**n)``."""
+        """Return all components in basis order, zeros where grades are absent: shape ``(*shape, 2**n)``.
+
+        Examples
+        --------
+        >>> (2 + (ph.e1 ^ ph.e2)).dense()
+        array([2., 0., 0., 0., 0., 0., 1., 0.])
+        """
         data: NDArray[Any] = self._with_grades(self.algebra._all)
         return data
 
     @property
     def shape(self) -> Shape:
-        """Shape of the batch; ``()`` for a single value."""
+        """Shape of the batch; ``()`` for a single value.
+
+        Examples
+        --------
+        >>> ph.vector(np.ones((5, 4, 3))).shape
+        (5, 4)
+        """
         return () if self._is_one else tuple(self._data.shape[:-1])
 
     @property
@@ -112,7 +167,13 @@ class Multivector(_native.Multivector):
         return self._part(_grades.mask_of(self.algebra, grades))
 
     def astype(self, dtype: Any) -> Self:
-        """Return the value with components of another type: ``np.float32``, ``float``, ``complex``."""
+        """Return the value with components of another type: ``np.float32``, ``float``, ``complex``.
+
+        Examples
+        --------
+        >>> ph.e1.astype(np.float32).dtype
+        dtype('float32')
+        """
         return self._like(as_coefficients(self._data, "a component", dtype, complex_too=True))
 
     real = property(_conjugates.real)
@@ -303,22 +364,49 @@ class Multivector(_native.Multivector):
         return _grades.signed(self, lambda k: k % 4 in (2, 3))
 
     def grade_involution(self) -> Multivector:
-        """Reverse the sign of odd grades."""
+        """Reverse the sign of odd grades.
+
+        Examples
+        --------
+        >>> (1 + ph.e1 + (ph.e1 ^ ph.e2) + ph.I).grade_involution()
+        1 - e1 + e1∧e2 - I
+        """
         return _grades.signed(self, lambda k: k % 2 == 1)
 
     def clifford_conjugate(self) -> Multivector:
-        """Reverse and grade involution: the sign of grades 1, 2, 5, 6 is reversed."""
+        """Reverse and grade involution: the sign of grades 1, 2, 5, 6 is reversed.
+
+        Examples
+        --------
+        >>> (1 + ph.e1 + (ph.e1 ^ ph.e2) + ph.I).clifford_conjugate()
+        1 - e1 - e1∧e2 + I
+        """
         return _grades.signed(self, lambda k: k % 4 in (1, 2))
 
     def dual(self) -> Multivector:
         """``A I⁻¹``: the dual of a bivector of 3-d space is its axial vector, ``dual(e1∧e2) = e3``.
 
         A TypeError where I has no inverse, as in Cl(3,0,1); use `right_complement` there.
+
+        Examples
+        --------
+        >>> (ph.e1 ^ ph.e2).dual()
+        e3
+        >>> ph.e3.dual()
+        -e1∧e2
         """
         return self * _functions.as_precise(self.algebra._inverse_of_I(), self)
 
     def undual(self) -> Multivector:
-        """``A I``, the inverse of `dual`."""
+        """``A I``, the inverse of `dual`.
+
+        Examples
+        --------
+        >>> ph.e3.undual()
+        e1∧e2
+        >>> ph.e3.undual().dual()
+        e3
+        """
         self.algebra._inverse_of_I()
         return self * _functions.as_precise(self.algebra.I, self)
 

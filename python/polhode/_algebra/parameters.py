@@ -12,7 +12,6 @@ from polhode._algebra.constructors import from_axial, one_grade, vector
 from polhode._algebra.grades import held, with_grades
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
-from polhode._generic.exact import atan2, is_symbolic
 from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float
 
 if TYPE_CHECKING:
@@ -29,16 +28,27 @@ _RIGHT_ANGLE = 1e-7
 
 
 def from_axis_angle(axis: Any, angle: Any, degrees: bool = False, *, errors: Errors = "raise") -> Rotor:
-    """Turn by `angle` about `axis`, in the right-handed sense: ``exp(−I n θ/2)``.
+    """Turn by `angle` about `axis`, in the right-handed sense: ``exp(−I n θ/2)``, n of length 1.
+
+    A ValueError for an axis of zero length, with its batch index, or NaN with ``errors="mask"``.
 
     Parameters
     ----------
     axis
         Vectors, or an array (..., 3); their length is ignored.
     angle
-        In radians, or degrees; batch shapes broadcast. Any size: a rotor distinguishes turns to 4π.
+        Angles (...) in radians, or degrees; batch shapes broadcast. Of any size: a rotor distinguishes turns
+        up to 4π.
 
-    A ValueError for an axis of zero length, with its batch index, or NaN with ``errors="mask"``.
+    Examples
+    --------
+    >>> R = ph.Rotor.from_axis_angle([0, 0, 1], 60, degrees=True)
+    >>> R(ph.e1)
+    0.5 e1 + 0.8660254 e2
+    >>> ph.Rotor.from_axis_angle(ph.e3, [0, np.pi / 3])(ph.e1)
+    Multivector of shape (2,):
+    [e1,
+     0.5 e1 + 0.8660254 e2]
     """
     if errors != "raise":
         return masked(errors, lambda n, theta: from_axis_angle(n, theta, degrees), (axis, 1), (angle, 0))
@@ -60,14 +70,26 @@ def angle(R: Rotor) -> Any:
 
     A float, or an array of the batch shape; accurate for small angles and near π, too. `plane_angle` returns
     the angle of the rotor, to 2π.
+
+    Examples
+    --------
+    >>> R = ph.Rotor.from_axis_angle(ph.e3, [30, 330], degrees=True)
+    >>> np.degrees(R.angle).round(6)
+    array([30., 30.])
     """
-    if kind_of(R._data).exact:
-        return _generic.rotors.angle(R._data)
+    if not is_float(R._data):
+        return _generic.rotors.angle(kind_of(R._data), R._data)
     return R.canonical().plane_angle()[1]
 
 
 def magnitude(R: Rotor) -> Any:
-    """Return the angle of the rotation in [0, π], as SciPy's method of this name: `angle`."""
+    """Return the angle of the rotation in [0, π], as SciPy's method of this name: `angle`.
+
+    Examples
+    --------
+    >>> print(ph.Rotor.from_rotation_vector([0, 0, 0.5]).magnitude().round(6))
+    0.5
+    """
     return angle(R)
 
 
@@ -79,6 +101,12 @@ def from_mrp(mrp: Any, *, errors: Errors = "raise") -> Rotor:
 
     The rotor is the square of ``1 − I p`` divided by its norm, which turns by θ/2. A ValueError for NaN and
     infinity, or NaN with ``errors="mask"``.
+
+    Examples
+    --------
+    >>> R = ph.Rotor.from_mrp([0, 0, np.tan(np.pi / 12)])
+    >>> print(np.degrees(R.angle).round(6))
+    60.0
     """
     if errors != "raise":
         return masked(errors, from_mrp, (mrp, 1))
@@ -91,7 +119,16 @@ def from_mrp(mrp: Any, *, errors: Errors = "raise") -> Rotor:
 
 
 def to_mrp(R: Rotor) -> Any:
-    """Return modified Rodrigues parameters (..., 3), ``tan(θ/4)`` along the axis, of length at most 1."""
+    """Return modified Rodrigues parameters (..., 3), ``tan(θ/4)`` along the axis, of length at most 1.
+
+    Examples
+    --------
+    >>> R = ph.Rotor.from_rotation_vector([0.1, 0.2, 0.2])
+    >>> R.to_mrp().round(6)
+    array([0.025047, 0.050094, 0.050094])
+    >>> print(np.tan(0.3 / 4).round(6))
+    0.075141
+    """
     data = R.canonical()._data
     s, x, y, z = (data[..., k] for k in range(4))
     kind = kind_of(s)
@@ -114,6 +151,12 @@ def from_davenport(axes: Any, order: str, angles: Any, degrees: bool = False) ->
     angles
         Array (..., n) in radians, or degrees, one for each axis; for one axis a single angle need not be an
         array. Batch shapes broadcast with those of the axes.
+
+    Examples
+    --------
+    >>> R = ph.Rotor.from_davenport([ph.e3, ph.e1, ph.e3], "intrinsic", [0.1, 0.2, 0.3])
+    >>> bool(R.is_close(ph.Rotor.from_euler("ZXZ", [0.1, 0.2, 0.3])))
+    True
     """
     unit, intrinsic = _davenport_axes(axes, (1, 2, 3)), _intrinsic(order)
     theta = _radians(angles, degrees)
@@ -137,6 +180,13 @@ def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
     axis to the third about the second (for turns about fixed axes: from the third to the first), or, where
     λ < 0, in [−π − λ, −λ]. At the ends of its range, in gimbal lock, the third angle is 0. There the three
     angles still give the attitude, so there is no warning.
+
+    Examples
+    --------
+    >>> axes = [ph.e3, ph.e1, ph.e3]
+    >>> R = ph.Rotor.from_davenport(axes, "intrinsic", [0.1, 0.2, 0.3])
+    >>> R.to_davenport(axes, "intrinsic").round(6)
+    array([0.1, 0.2, 0.3])
     """
     first, second, third = np.moveaxis(_davenport_axes(axes, (3,)), -2, 0)
     intrinsic = _intrinsic(order)
@@ -147,11 +197,11 @@ def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
     sine, cosine = (second * np.cross(first, third)).sum(axis=-1), (first * third).sum(axis=-1)
     lead: Any = np.arctan2(sine, cosine)
     sign: Any = np.where(lead < 0, -1.0, 1.0)
-    symbolic = kind_of(R._data).exact and any(map(is_symbolic, R._data.flat))
+    symbolic = kind_of(R._data).exact and any(map(_generic.exact.is_symbolic, R._data.flat))
     if symbolic:
         numbers = (first, second, third, sine, cosine, sign)
         first, second, third, sine, cosine, sign = map(_as_symbols, numbers)
-        lead = np.frompyfunc(atan2, 2, 1)(sine, cosine)
+        lead = np.frompyfunc(_generic.exact.atan2, 2, 1)(sine, cosine)
     second, lead = sign[..., np.newaxis] * second, sign * lead
     frame = Rotor.from_matrix(np.stack([np.cross(second, first), second, first], axis=-1))
     proper = ~frame * R * from_axis_angle(second, lead) * frame
@@ -225,6 +275,17 @@ def from_multivector(M: Multivector, *, tolerance: float = 0.1, errors: Errors =
     For sums and products that were rotors but for rounding or a small step, such as ``R − ½ R Ω dt``. Odd
     grades must be absent or zero. A ValueError if the norm differs from 1 by more than `tolerance`, which is
     mostly a mistake: pass ``M.normalized()`` if it is not. With ``errors="mask"`` such rows are NaN.
+
+    Examples
+    --------
+    One step of ``R' = −½ R Ω``, which leaves the norm near 1:
+
+    >>> R, Omega, dt = ph.Rotor.identity(), ph.e1 ^ ph.e2, 0.01
+    >>> M = R - R * Omega * dt / 2
+    >>> print(M.norm().round(8))
+    1.0000125
+    >>> print(ph.Rotor.from_multivector(M).angle.round(6))
+    0.01
     """
     if errors != "raise":
         return masked(errors, lambda x: from_multivector(x, tolerance=tolerance), (M, 1))

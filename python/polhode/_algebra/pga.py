@@ -41,6 +41,21 @@ class PGA(Algebra):
 
     Points, directions and normals are given as arrays (..., n) or vectors of ``ph.algebra(n)``, with leading
     batch axes and any coefficients.
+
+    Examples
+    --------
+    The line through two points, and its intersection with the plane x = 3:
+
+    >>> A = ph.pga()
+    >>> P, Q = A.point([0, 0, 0]), A.point([1, 2, 0])
+    >>> A.coordinates((P & Q) ^ A.plane([1, 0, 0], 3))
+    array([3., 6., 0.])
+
+    A motor moves points, lines and planes:
+
+    >>> M = A.motor(ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True), [0, 0, 5])
+    >>> A.coordinates(M >> A.point([1, 0, 0]))
+    array([0.5      , 0.8660254, 5.       ])
     """
 
     __slots__ = ()
@@ -67,12 +82,25 @@ class PGA(Algebra):
     # --- points, planes and lines
 
     def point(self, x: Any) -> Multivector:
-        """Return points at the positions x, of weight 1."""
+        """Return points at the positions x, of weight 1.
+
+        Examples
+        --------
+        >>> ph.pga().point([1, 2, 3])
+        3 e0∧e2∧e1 + 2 e0∧e1∧e3 + e0∧e3∧e2 + e1∧e2∧e3
+        """
         v = vector_in(self._space, x, "the position")
         return self._vector(kind_of(v._data).zeros_like(v._data[..., :1]) + 1, v).right_complement()
 
     def direction(self, x: Any) -> Multivector:
-        """Return points at infinity in the directions x; a motion turns, but does not shift them."""
+        """Return points at infinity in the directions x; a motion turns, but does not shift them.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> bool(A.translator([5, 5, 5]) >> A.direction([1, 0, 0]) == A.direction([1, 0, 0]))
+        True
+        """
         v = vector_in(self._space, x, "the direction")
         return self.embed(v).right_complement()
 
@@ -81,6 +109,11 @@ class PGA(Algebra):
 
         It is ``n − distance e0``, with the distance from the origin in the sense of the normal, a number or
         an array. In two dimensions it is a line. A ValueError for a normal of zero.
+
+        Examples
+        --------
+        >>> ph.pga().plane([0, 0, 1], 2)
+        -2 e0 + e3
         """
         n = unit_in(self._space, normal, "the normal")
         return self._vector(-number_like(distance, "the distance", n._data)[..., None], n)
@@ -90,6 +123,14 @@ class PGA(Algebra):
 
         Points are positions, or points of this algebra. ``exp(−θ/2 L)`` of a line turns about it by θ in the
         right-handed sense. A ValueError for two equal points and for a direction of zero.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> A.line([0, 0, 0], direction=[1, 0, 0])
+        e2∧e3
+        >>> bool(A.line([0, 0, 0], [1, 0, 0]) == A.line([7, 0, 0], [8, 0, 0]))
+        True
         """
         start, along = point_and_unit(self, point, through, direction)
         return self.point(start).vee(self.direction(along))
@@ -97,24 +138,53 @@ class PGA(Algebra):
     # --- back
 
     def coordinates(self, P: Multivector) -> Any:
-        """Return the coordinates (..., n) of points; a ValueError, with the batch index, at infinity."""
+        """Return the coordinates (..., n) of points; a ValueError, with the batch index, at infinity.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> A.coordinates(5 * A.point([1, 2, 3]))
+        array([1., 2., 3.])
+        """
         weight, *parts = columns(require_value(self, P, "a point", (self.dimension - 1,)).left_complement())
         require(weight != 0, P, "the point is at infinity, without coordinates; it is a direction")
         kind = kind_of(P._data)
         return copied(kind.stack([kind.divide(x, weight) for x in parts]))
 
     def down(self, P: Multivector) -> Multivector:
-        """Return the positions of points as vectors of ``ph.algebra(n)``, the inverse of `point`."""
+        """Return the positions of points as vectors of ``ph.algebra(n)``, the inverse of `point`.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> A.down(5 * A.point([1, 2, 3]))
+        e1 + 2 e2 + 3 e3
+        """
         return self._space.vector(self.coordinates(P))
 
     def normal_and_distance(self, plane: Multivector) -> tuple[Multivector, Any]:
-        """Return the unit normal and the distance of hyperplanes, the inverse of `plane`."""
+        """Return the unit normal and the distance of hyperplanes, the inverse of `plane`.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> normal, distance = A.normal_and_distance(A.plane([0, 3, 4], 2))
+        >>> print(normal, distance)
+        0.6 e2 + 0.8 e3 2.0
+        """
         unit = self._unit(require_value(self, plane, "a plane", (1,)))
         first, *normal = columns(unit)
         return self._space.vector(kind_of(unit._data).stack(normal)), (-first)[()]
 
     def point_and_direction(self, line: Multivector) -> tuple[Multivector, Multivector]:
-        """Return the point of lines nearest to the origin and the unit direction, as vectors."""
+        """Return the point of lines nearest to the origin and the unit direction, as vectors.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> A.point_and_direction(A.line([5, 2, 0], direction=[1, 0, 0]))
+        (2 e2, e1)
+        """
         unit = self._unit(require_value(self, line, "a line", (self.dimension - 2,)))
         # The line meets the plane at infinity in its direction.
         _, *parts = columns(-as_precise(self.e0, unit).wedge(unit).left_complement())
@@ -127,6 +197,12 @@ class PGA(Algebra):
         Points get the weight 1, planes and lines the norm 1, and motors M become ``M (M ~M)^(−1/2)``, with
         the dual number ``M ~M``. A ValueError, with the batch index, for values at infinity, which have the
         norm 0, and for a bivector that is not a line, such as a screw.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> A.normalized(2 * A.plane([0, 0, 1], 3))
+        -3 e0 + e3
         """
         X = require_value(self, X, "the value")
         held = X._held() or X._mask
@@ -160,7 +236,15 @@ class PGA(Algebra):
     # --- motors
 
     def translator(self, displacement: Any) -> Multivector:
-        """Return motors that shift by vectors t: ``1 − ½ e0 t``."""
+        """Return motors that shift by vectors t: ``1 − ½ e0 t``.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> T = A.translator([1, 2, 3])
+        >>> A.down(T >> A.point([0, 0, 0]))
+        e1 + 2 e2 + 3 e3
+        """
         t = vector_in(self._space, displacement, "the displacement")
         return 1 - as_precise(self.e0, t) * self.embed(t) / 2
 
@@ -168,6 +252,13 @@ class PGA(Algebra):
         """Return the motor ``M = (1 − ½ e0 x0) R`` of a rotor and a translation, or of a `RigidTransform`.
 
         ``M >> X`` is ``R x ~R + x0`` for points. In three dimensions only; see `translator` for others.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> M = A.motor(ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True), [0, 0, 5])
+        >>> A.down(M >> A.point([1, 0, 0]))
+        0.5 e1 + 0.8660254 e2 + 5 e3
         """
         self._require_3d("a motor of a rotor")
         if isinstance(rotor, RigidTransform):
@@ -179,7 +270,14 @@ class PGA(Algebra):
         return move.to_motor(self)
 
     def transform(self, M: Multivector) -> RigidTransform:
-        """Return the `RigidTransform` of a motor, the inverse of `motor`, divided by its norm."""
+        """Return the `RigidTransform` of a motor, the inverse of `motor`, divided by its norm.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> A.transform(A.translator([1, 2, 3])).translation
+        e1 + 2 e2 + 3 e3
+        """
         self._require_3d("a RigidTransform")
         return RigidTransform.from_motor(require_value(self, M, "a motor", (0, 2, 4)))
 
@@ -189,13 +287,26 @@ class PGA(Algebra):
         """Return a value of ``ph.algebra(n)`` or of ``ph.algebra(n, 0, 1)`` in this algebra.
 
         In three dimensions the null generator e4 there is e0 here; the inverse is `null_last`.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> A.embed(ph.e1 ^ ph.e2)
+        e1∧e2
         """
         n = self.dimension - 1
         places = {self._space: range(1, n + 1), algebra(n, 0, 1): (*range(1, n + 1), 0)}
         return embedded(X, self, places)
 
     def null_last(self, X: Multivector) -> Multivector:
-        """Return a value in ``ph.algebra(n, 0, 1)``, whose null generator is the last."""
+        """Return a value in ``ph.algebra(n, 0, 1)``, whose null generator is the last.
+
+        Examples
+        --------
+        >>> A = ph.pga()
+        >>> A.null_last(A.plane([0, 0, 1], 2))
+        e3 - 2 e4
+        """
         n = self.dimension - 1
         return relabelled(require_value(self, X, "the value"), algebra(n, 0, 1), (n, *range(n)))
 
@@ -217,6 +328,14 @@ def pga(n: int = 3) -> PGA:
 
     Its null generator is e0 and comes first; ``ph.algebra(n, 0, 1)`` is the same algebra with the null
     generator last. n is 1 to 7.
+
+    Examples
+    --------
+    Two lines of the plane, y = 1 and x = 3, meet in a point:
+
+    >>> A = ph.pga(2)
+    >>> A.coordinates(A.plane([0, 1], 1) ^ A.plane([1, 0], 3))
+    array([3., 1.])
     """
     return _pga(dimension_of(n, 7, "pga"))
 

@@ -26,7 +26,7 @@ def product(name: str, left: Multivector, right: Multivector, out: Any = None) -
         terms, _ = algebra._terms(name, left._mask, right._mask)
         kind = kind_of(a, b)
         with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the core
-            result = _generic.products.product(kind, terms, size, kind.asarray(a), kind.asarray(b))
+            result = _generic.products.product(kind, terms, size, kind.factor(a), kind.factor(b))
         if rotors:
             return _native.Rotor._from_rows(_generic.rotors.from_components(kind, result))
         return _native.Multivector._of(result, mask, algebra)
@@ -40,7 +40,14 @@ def product(name: str, left: Multivector, right: Multivector, out: Any = None) -
 
 
 def anticommutator(value: Multivector, other: Any) -> Multivector:
-    """``½(AB + BA)``: of two vectors their dot. With `commutator` it adds up to ``AB``."""
+    """``½(AB + BA)``: of two vectors their dot. With `commutator` it adds up to ``AB``.
+
+    Examples
+    --------
+    >>> a, b = ph.vector([1, 2, 0]), ph.vector([0, 3, 0])
+    >>> a.anticommutator(b), a.commutator(b)
+    (6, 3 e1∧e2)
+    """
     right = coerced(other, value)
     if right is None:
         raise TypeError(

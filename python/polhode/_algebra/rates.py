@@ -34,6 +34,15 @@ def attitude_from_rates(times: Any, omega_body: Any, start: Rotor | None = None)
     Returns
     -------
     Rotors (..., n), continuous from `start` on.
+
+    Examples
+    --------
+    A gyroscope reads 0.5 rad/s about e3 for 2 s:
+
+    >>> times = np.linspace(0, 2, 5)
+    >>> R = ph.attitude_from_rates(times, np.tile([0, 0, 0.5], (5, 1)))
+    >>> R.angle.round(6)
+    array([0.  , 0.25, 0.5 , 0.75, 1.  ])
     """
     rates = as_bivectors(omega_body, "omega_body")
     if rates.ndim < 2 or not rates.shape[-2]:
@@ -107,6 +116,13 @@ def rates_from_attitude(times: Any, R: Rotor) -> Multivector:
     -------
     Bivectors (n,) in rad/s, with an error of third order in the steps. Splines have rates at other times, and
     accelerations.
+
+    Examples
+    --------
+    >>> times = np.linspace(0, 2, 41)
+    >>> R = ph.Rotor.from_axis_angle(ph.e3, 0.5 * times)
+    >>> ph.rates_from_attitude(times, R)["e12"][:3].round(4)
+    array([0.5, 0.5, 0.5])
     """
     spline = RotorSpline(times, R)
     return spline.omega_body(spline.times)

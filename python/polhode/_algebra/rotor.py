@@ -76,6 +76,26 @@ class Rotor(_native.Rotor, Multivector):
 
     A derivative with respect to a rotor by JAX has the type Rotor, but is not a rotor: only its `components`
     are meaningful. Differentiate with respect to a bivector, a rotation vector or components instead.
+
+    Examples
+    --------
+    A quarter turn in the plane e1∧e2, in its sense from e1 to e2:
+
+    >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, np.pi / 2)
+    >>> R
+    0.70710678 - 0.70710678 e1∧e2
+    >>> bool(R(ph.e1).is_close(ph.e2))
+    True
+
+    A batch of two rotors turns one vector into two. The turn by 60° after that by 30° is the quarter turn:
+
+    >>> S = ph.Rotor.from_axis_angle(ph.e3, [30, 60], degrees=True)
+    >>> S(ph.e1)
+    Multivector of shape (2,):
+    [0.8660254 e1 + 0.5 e2,
+     0.5 e1 + 0.8660254 e2]
+    >>> bool((S[1] * S[0]).is_close(R))
+    True
     """
 
     __slots__ = ()
@@ -91,7 +111,13 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def identity(shape: int | Shape = ()) -> Rotor:
-        """Return the rotor 1, the identity rotation."""
+        """Return the rotor 1, the identity rotation, or a batch of it of this shape.
+
+        Examples
+        --------
+        >>> ph.Rotor.identity()(ph.e1)
+        e1
+        """
         return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*batch_shape(shape), 4)).copy())
 
     @staticmethod
@@ -101,6 +127,11 @@ class Rotor(_native.Rotor, Multivector):
         A ValueError, with the batch index, where they are 0 or not finite. With ``errors="mask"``, here and
         in the other constructors, such rows are NaN, and `is_finite` finds them; the other rows have the same
         bits as without these.
+
+        Examples
+        --------
+        >>> ph.Rotor.from_components([1, 0, 0, -1])
+        0.70710678 - 0.70710678 e1∧e2
         """
         if errors != "raise":
             return masked(errors, Rotor.from_components, (c4, 1))
@@ -112,6 +143,14 @@ class Rotor(_native.Rotor, Multivector):
 
         B is a bivector, or an array or list (..., 3) of its components over ``(e2e3, e3e1, e1e2)``, which are
         those of the axis: ``[0, 0, 1]`` is the plane e1∧e2.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, np.pi / 3)
+        >>> R
+        0.8660254 - 0.5 e1∧e2
+        >>> R(ph.e1), R(ph.e3)
+        (0.5 e1 + 0.8660254 e2, e3)
         """
         if errors != "raise":
             return masked(errors, Rotor.from_plane_angle, (B, 1), (theta, 0))
@@ -128,6 +167,12 @@ class Rotor(_native.Rotor, Multivector):
         Each is a vector, or an array or list (..., 3): ``from_vectors([1, 0, 0], [0, 1, 0])``.
         For opposite directions the plane is not unique; it is taken through a and the basis vector farthest
         from a. `ph.align` finds the best rotation for many pairs.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_vectors([1, 0, 0], [3, 4, 0])
+        >>> R(ph.e1)
+        0.6 e1 + 0.8 e2
         """
         if errors != "raise":
             return masked(errors, Rotor.from_vectors, (a, 1), (b, 1))
@@ -144,6 +189,12 @@ class Rotor(_native.Rotor, Multivector):
         ``Σ (M − Q)²``, for a singular value decomposition ``M = U S Vᵀ`` the matrix
         ``U diag(1, 1, det U Vᵀ) Vᵀ`` (Kabsch, Acta Cryst. A 34 (1978)). A ValueError, with the batch index,
         where it is not unique: where the two smallest singular values are 0, or equal in a reflection.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_matrix([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]])
+        >>> R(ph.e1)
+        0.6 e1 + 0.8 e2
         """
         if errors != "raise":
             return masked(errors, lambda rows: Rotor.from_matrix(rows, nearest), (m, 2))
@@ -158,7 +209,21 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def from_quaternion(q: Any, *, order: QuaternionOrder, errors: Errors = "raise") -> Rotor:
-        """From quaternions (..., 4), Hamilton's and active, divided by their norm; `order` is required."""
+        """From quaternions (..., 4), Hamilton's and active, divided by their norm.
+
+        `order` is required, because libraries differ: "wxyz" (MuJoCo, SPICE) or "xyzw" (SciPy, ROS). A
+        ValueError, with the batch index, for 0 and for values that are not finite.
+
+        Examples
+        --------
+        A quarter turn about e3, ``cos 45° + k sin 45°``; its components need not have norm 1:
+
+        >>> R = ph.Rotor.from_quaternion([1, 0, 0, 1], order="wxyz")
+        >>> R
+        0.70710678 - 0.70710678 e1∧e2
+        >>> R == ph.Rotor.from_quaternion([0, 0, 1, 1], order="xyzw")
+        True
+        """
         if errors != "raise":
             return masked(errors, lambda rows: Rotor.from_quaternion(rows, order=order), (q, 1))
         given = _components(q, 4, "quaternion")
@@ -166,7 +231,14 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def from_rotation_vector(v: Any, *, errors: Errors = "raise") -> Rotor:
-        """From vectors (..., 3) along the axis, of length the angle in radians; an array or a Multivector."""
+        """From vectors (..., 3) along the axis, whose length is the angle in radians; an array or vectors.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_rotation_vector([0, 0, np.pi / 3])
+        >>> R(ph.e1)
+        0.5 e1 + 0.8660254 e2
+        """
         if errors != "raise":
             return masked(errors, Rotor.from_rotation_vector, (v, 1))
         given = _triples(v, 1, "a rotation vector")
@@ -174,7 +246,14 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def from_scipy(rot: Rotation) -> Rotor:
-        """From a ``scipy.spatial.transform.Rotation``."""
+        """From a ``scipy.spatial.transform.Rotation``.
+
+        Examples
+        --------
+        >>> from scipy.spatial.transform import Rotation
+        >>> ph.Rotor.from_scipy(Rotation.from_euler("z", 60, degrees=True))
+        0.8660254 - 0.5 e1∧e2
+        """
         if not hasattr(rot, "as_quat"):
             raise TypeError(f"from_scipy needs a scipy.spatial.transform.Rotation, got {type(rot).__name__}")
         return Rotor.from_quaternion(rot.as_quat(), order="xyzw")
@@ -196,6 +275,17 @@ class Rotor(_native.Rotor, Multivector):
         so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
         For one axis a single angle need not be an array. Angles are numbers, SymPy expressions, or arrays of
         any library.
+
+        Examples
+        --------
+        Yaw, pitch and roll of an aircraft, about the axes of the body:
+
+        >>> R = ph.Rotor.from_euler("ZYX", [60, 0, 0], degrees=True)
+        >>> R(ph.e1)
+        0.5 e1 + 0.8660254 e2
+        >>> R = ph.Rotor.from_euler("ZYX", [60, 20, 10], degrees=True)
+        >>> R.to_euler("ZYX", degrees=True).round(6)
+        array([60., 20., 10.])
         """
         from polhode._algebra import euler
 
@@ -225,7 +315,16 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
-        """Return rotors distributed uniformly over all attitudes; `rng` is a NumPy generator or a seed."""
+        """Return rotors (*shape), uniform over all attitudes; `rng` is a NumPy generator or a seed.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.random(1000, rng=0)
+        >>> R.shape
+        (1000,)
+        >>> bool((np.abs(R.norm() - 1) < 1e-12).all())
+        True
+        """
         return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch_shape(shape), 4)))
 
     from_axis_angle = staticmethod(_parameters.from_axis_angle)
@@ -242,21 +341,54 @@ class Rotor(_native.Rotor, Multivector):
     to_davenport = _parameters.to_davenport
 
     def to_matrix(self) -> Any:
-        """Return rotation matrices (..., 3, 3) acting on columns."""
+        """Return rotation matrices (..., 3, 3) acting on columns.
+
+        Examples
+        --------
+        The turn by 120° about e1 + e2 + e3 takes each axis to the next; the columns are the turned axes:
+
+        >>> R = ph.Rotor.from_quaternion([1, 1, 1, 1], order="wxyz")
+        >>> R.to_matrix()
+        array([[0., 0., 1.],
+               [1., 0., 0.],
+               [0., 1., 0.]])
+        """
         return reshaped(_computed("to_matrix", self._data), (*self.shape, 3, 3))
 
     def to_quaternion(self, *, order: QuaternionOrder) -> Any:
-        """Return quaternions (..., 4), Hamilton's and active; `order` is required."""
+        """Return quaternions (..., 4), Hamilton's and active; `order` is required, "wxyz" or "xyzw".
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, np.pi / 2)
+        >>> R.to_quaternion(order="wxyz")
+        array([0.70710678, 0.        , 0.        , 0.70710678])
+        >>> R.to_quaternion(order="xyzw")
+        array([0.        , 0.        , 0.70710678, 0.70710678])
+        """
         wxyz_first = _to_wxyz(order)[0] == 0
         wxyz = _computed("to_quaternion", self._data)
         return wxyz if wxyz_first else taken(wxyz, [1, 2, 3, 0])
 
     def to_rotation_vector(self) -> Any:
-        """Return vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
+        """Return vectors (..., 3) along the axis whose length is the angle in radians, at most π.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_rotation_vector([0.1, 0.2, 0.3])
+        >>> (R * R).to_rotation_vector()
+        array([0.2, 0.4, 0.6])
+        """
         return _computed("to_rotation_vector", self._data)
 
     def to_scipy(self) -> Rotation:
-        """Return a ``scipy.spatial.transform.Rotation``."""
+        """Return a ``scipy.spatial.transform.Rotation``.
+
+        Examples
+        --------
+        >>> ph.Rotor.from_rotation_vector([0.1, 0.2, 0.3]).to_scipy().as_rotvec()
+        array([0.1, 0.2, 0.3])
+        """
         transform = optional("scipy.spatial.transform", "scipy", "to_scipy")
         rotation: Rotation = transform.Rotation.from_quat(self.to_quaternion(order="xyzw"))
         return rotation
@@ -273,6 +405,16 @@ class Rotor(_native.Rotor, Multivector):
         ("zxz"), in [−π/2, π/2] if all differ. At the ends of its range, in gimbal lock, only a sum or
         difference of the others is determined: the third angle is then 0. The three angles still give the
         attitude, so there is no warning.
+
+        Examples
+        --------
+        The same attitude by turns about the axes of the body, and about fixed axes in the opposite order:
+
+        >>> R = ph.Rotor.from_euler("ZYX", [60, 20, 10], degrees=True)
+        >>> R.to_euler("ZYX", degrees=True).round(6)
+        array([60., 20., 10.])
+        >>> R.to_euler("xyz", degrees=True).round(6)
+        array([10., 20., 60.])
         """
         from polhode._algebra import euler
 
@@ -280,7 +422,16 @@ class Rotor(_native.Rotor, Multivector):
         return euler.to_degrees(angles) if degrees else angles
 
     def plane_angle(self) -> tuple[Multivector, Any]:
-        """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
+        """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2.
+
+        Examples
+        --------
+        >>> B, theta = ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True).plane_angle()
+        >>> B
+        e1∧e2
+        >>> print(np.degrees(theta).round(6))
+        60.0
+        """
         if not is_float(self._data):
             plane, angle = _generic.rotors.plane_angle(kind_of(self._data), self._data)
             return Multivector._of(plane, _BIVECTOR), angle
@@ -292,6 +443,12 @@ class Rotor(_native.Rotor, Multivector):
 
         A float, or an array of the batch shape; accurate for close attitudes, too. Derivatives at 0, where
         there are none, are 0; ``4 * (~R * S).log().norm_squared()`` is the square, smooth at 0.
+
+        Examples
+        --------
+        >>> R, S = ph.Rotor.from_axis_angle(ph.e3, [10, 50], degrees=True)
+        >>> print(np.degrees(R.distance(S)).round(6))
+        40.0
         """
         # Half the angle has the cosine |⟨~R S⟩| and the sine |⟨~R S⟩₂| = |⟨~R (S ∓ R)⟩₂|, since ~R R is a
         # scalar; between close attitudes that difference has no rounding.
@@ -346,11 +503,26 @@ class Rotor(_native.Rotor, Multivector):
         return Multivector._of(result, _BIVECTOR)
 
     def inverse(self, *, errors: Errors = "raise") -> Rotor:
-        """``~R``."""
+        """Return the rotor that turns back, ``~R``.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True)
+        >>> a = ph.vector([1, 2, 3])
+        >>> bool(R.inverse()(R(a)).is_close(a))
+        True
+        """
         return ~self
 
     def sqrt(self, *, errors: Errors = "raise") -> Rotor:
-        """Return the rotor of half the angle, whose square is R."""
+        """Return the rotor of half the angle, whose square is R.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True)
+        >>> print(np.degrees(R.sqrt().angle).round(6))
+        30.0
+        """
         return self**0.5 if errors == "raise" else masked(errors, lambda R: R**0.5, (self, 1))
 
     def normalized(self, *, errors: Errors = "raise") -> Rotor:

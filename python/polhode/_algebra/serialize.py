@@ -31,13 +31,18 @@ _DTYPES = {
 
 
 def to_dict(value: Multivector) -> dict[str, Any]:
-    """Return algebra, grades, whether it is a rotor, batch shape, dtype and components as nested lists.
+    """Return a value as a dictionary that JSON can hold; `from_dict` restores it, bit for bit.
 
-    An algebra is its signature (p, q, r), or a name such as ``"pga(3)"``.
+    Its fields are the algebra, the grades, whether the value is a rotor, the batch shape, the dtype, and the
+    components as nested lists. The algebra is a signature ``[p, q, r]``, or a name such as ``"pga(3)"``. A
+    fraction is text, ``"1/3"``, a complex number a pair ``[re, im]``. A TypeError for symbolic coefficients;
+    arrays of other libraries are restored as NumPy floats.
 
-    JSON can hold all of them; a fraction is text, ``"1/3"``, a complex number a pair ``[re, im]``.
-    `from_dict` restores the value, bit for bit. A TypeError for symbolic coefficients; arrays of other
-    libraries are restored as NumPy floats.
+    Examples
+    --------
+    >>> fields = ph.to_dict(2 * ph.e1)
+    >>> fields["grades"], fields["components"]
+    ([1], [2.0, 0.0, 0.0])
     """
     if not isinstance(value, _native.Multivector):
         raise TypeError(f"to_dict needs a multivector, got {type(value).__name__}")
@@ -62,7 +67,15 @@ def _plain(x: Any) -> Any:
 
 
 def from_dict(fields: Mapping[str, Any]) -> Multivector:
-    """Restore a value from the fields of `to_dict`; a ValueError for fields that are missing or wrong."""
+    """Restore a value from the fields of `to_dict`; a ValueError for fields that are missing or wrong.
+
+    Examples
+    --------
+    >>> import json
+    >>> text = json.dumps(ph.to_dict(ph.e1 + 2 * ph.e2))
+    >>> ph.from_dict(json.loads(text))
+    e1 + 2 e2
+    """
     missing = _KEYS - set(fields)
     if missing:
         raise ValueError(f"a value needs the fields {sorted(_KEYS)}; missing: {sorted(missing)}")

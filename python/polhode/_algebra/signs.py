@@ -24,6 +24,14 @@ def canonical(R: Rotor) -> Rotor:
     Of half turns, the one whose first nonzero component of ``(e2e3, e3e1, e1e2)`` is negative: the quaternion
     of the same rotation then has a positive one, as in SciPy. Expressions whose sign is not known count as
     positive.
+
+    Examples
+    --------
+    >>> R = ph.Rotor.from_axis_angle(ph.e3, 240, degrees=True)
+    >>> R
+    -0.5 - 0.8660254 e1∧e2
+    >>> R.canonical()
+    0.5 + 0.8660254 e1∧e2
     """
     data, kind = R._data, kind_of(R._data)
     if kind.exact:
@@ -41,6 +49,14 @@ def continuous(R: Rotor, axis: int = 0) -> Rotor:
     Each has the sign nearer to the one before it; the first is unchanged. Neighbours half a turn apart, to
     rounding, keep their signs relative to each other. A ValueError for a single rotor and an axis out of
     range.
+
+    Examples
+    --------
+    >>> R = ph.Rotor.from_axis_angle(ph.e3, [0, 100, 200, 300], degrees=True).canonical()
+    >>> R["1"].round(3)
+    array([1.   , 0.643, 0.174, 0.866])
+    >>> R.continuous()["1"].round(3)
+    array([ 1.   ,  0.643, -0.174, -0.866])
     """
     count = len(R.shape)
     place = operator.index(axis)

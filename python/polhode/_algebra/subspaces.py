@@ -20,12 +20,25 @@ def right_complement(value: Multivector) -> Multivector:
     """Return the rest of the space: linear, ``E ∧ rc(E) = I`` for basis elements E.
 
     Needs no metric, so it also exists where I has no inverse.
+
+    Examples
+    --------
+    >>> ph.e1.right_complement()
+    e2∧e3
+    >>> ph.e1 ^ ph.e1.right_complement()
+    I
     """
     return _complement(value, right=True)
 
 
 def left_complement(value: Multivector) -> Multivector:
-    """Return the inverse of `right_complement`: ``lc(E) ∧ E = I`` for basis elements E."""
+    """Return the inverse of `right_complement`: ``lc(E) ∧ E = I`` for basis elements E.
+
+    Examples
+    --------
+    >>> (ph.e1 ^ ph.e2).right_complement().left_complement()
+    e1∧e2
+    """
     return _complement(value, right=False)
 
 
@@ -43,6 +56,13 @@ def vee(left: Multivector, other: Any) -> Multivector:
     """Return ``A∨B``, the regressive product: the wedge of complements, ``rc(A∨B) = rc(A) ∧ rc(B)``.
 
     Of grade r + s − n: the intersection of two blades that span the whole space.
+
+    Examples
+    --------
+    Two planes meet in a line:
+
+    >>> (ph.e1 ^ ph.e2).vee(ph.e2 ^ ph.e3)
+    e2
     """
     right = coerced(other, left)
     if right is None:
@@ -67,6 +87,11 @@ def join(value: Multivector, other: Multivector) -> Multivector:
     Directions within 1e-10 (in single precision 3e-5) of a subspace count as lying in it. Components are
     compared as lengths, the basis vectors as orthonormal, in any metric. For the sign see `meet`. A
     ValueError for a value that is not a blade.
+
+    Examples
+    --------
+    >>> ph.e1.join(ph.e1 + 2 * ph.e2)
+    e1∧e2
     """
     return _join_or_meet(value, other, "join")
 
@@ -83,6 +108,11 @@ def meet(value: Multivector, other: Multivector) -> Multivector:
       ``J = I``, and M has the sign of ``A∨B``; in the first two cases it may not.
 
     Tolerance as for `join`.
+
+    Examples
+    --------
+    >>> (ph.e1 ^ ph.e2).meet(ph.e2 ^ ph.e3)
+    e2
     """
     return _join_or_meet(value, other, "meet")
 
@@ -111,7 +141,13 @@ def _join_or_meet(left: Multivector, right: Multivector, name: str) -> Multivect
 
 
 def project(value: Multivector, blade: Multivector) -> Multivector:
-    """Return the part in the subspace of `blade`: ``(A⌋B) B⁻¹``, over the grades of A (a∥ of eq. 1.7)."""
+    """Return the part in the subspace of `blade`: ``(A⌋B) B⁻¹``, over the grades of A (a∥ of eq. 1.7).
+
+    Examples
+    --------
+    >>> ph.vector([1, 2, 3]).project(ph.e1 ^ ph.e2)
+    e1 + 2 e2
+    """
     if not isinstance(blade, _native.Multivector) or blade._held().bit_count() > 1:
         raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
     unit = blade.normalized() if is_float(blade._data) else blade  # so that nothing overflows
@@ -119,7 +155,13 @@ def project(value: Multivector, blade: Multivector) -> Multivector:
 
 
 def reject(value: Multivector, blade: Multivector) -> Multivector:
-    """Return the part perpendicular to the subspace of `blade`: A minus its projection."""
+    """Return the part perpendicular to the subspace of `blade`: A minus its projection.
+
+    Examples
+    --------
+    >>> ph.vector([1, 2, 3]).reject(ph.e1 ^ ph.e2)
+    3 e3
+    """
     return value - value.project(blade)
 
 
@@ -128,6 +170,11 @@ def reflect(value: Multivector, n: Multivector) -> Multivector:
 
     ``n X̂ n⁻¹`` for any X, with X̂ its grade involution, so that reflections respect ``∧``: scalars stay, I
     changes sign. The plane of a bivector B has the normal ``B.dual()``.
+
+    Examples
+    --------
+    >>> ph.vector([1, 2, 3]).reflect(ph.e3)
+    e1 + 2 e2 - 3 e3
     """
     if not isinstance(n, _native.Multivector) or any(np.any(n.grade(k) != 0) for k in n.grades if k != 1):
         raise TypeError(f"a mirror is given by its normal, a vector; for a plane B use B.dual(); got {n!r}")

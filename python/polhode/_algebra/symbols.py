@@ -19,6 +19,13 @@ def diff(value: Multivector, *symbols: Any) -> Multivector:
     """Return the derivative of SymPy coefficients, with the arguments of ``sympy.diff``: ``A.diff(t, 2)``.
 
     That of a rotor is not a rotor. A TypeError for other coefficients: those of JAX have ``jax.jvp``.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> t = sympy.Symbol("t")
+    >>> ph.vector([t**2, 3 * t, 1]).diff(t)
+    2*t e1 + 3 e2
     """
     data = _mapped(value, "diff", lambda x: x.diff(*symbols))
     return _native.Multivector._of(data, value._mask, value.algebra)
@@ -29,6 +36,13 @@ def subs(value: V, *replaced: Any) -> V:
 
     ``A.subs(t, 2)``, ``A.subs({t: 2, m: 1})``. The coefficients stay SymPy's; ``.astype(float)`` converts
     numbers. A TypeError for coefficients without expressions.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> t = sympy.Symbol("t")
+    >>> ph.vector([t**2, 3 * t, 1]).subs(t, 2)
+    4 e1 + 6 e2 + e3
     """
     return value._like(_mapped(value, "subs", lambda x: x.subs(*replaced)))
 
@@ -37,6 +51,14 @@ def simplify(value: V, **options: Any) -> V:
     """Return the value with each coefficient simplified by ``sympy.simplify``, to which options are passed.
 
     A TypeError for coefficients without expressions.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> t = sympy.Symbol("t", real=True)
+    >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, t)
+    >>> R(ph.e1).simplify()
+    cos(t) e1 + sin(t) e2
     """
     return value._like(_mapped(value, "simplify", lambda x: x.simplify(**options)))
 

@@ -52,6 +52,19 @@ class RigidTransform:
     rotor, translation
         The attributes, whose batch shapes broadcast. The translation is a vector or an array (..., 3).
         By default there is none of either.
+
+    Examples
+    --------
+    Turn by a quarter about e3, then move by 10 along e1; twice this, and back:
+
+    >>> R = ph.Rotor.from_axis_angle(ph.e3, 90, degrees=True)
+    >>> T = ph.RigidTransform(R, [10, 0, 0])
+    >>> T.apply(ph.e1)
+    10 e1 + e2
+    >>> (T * T).apply(ph.e1)
+    9 e1 + 10 e2
+    >>> bool((T.inv() * T).is_close(ph.RigidTransform(), atol=1e-12))
+    True
     """
 
     __slots__ = ("rotor", "translation")
@@ -90,22 +103,48 @@ class RigidTransform:
 
     @staticmethod
     def identity(shape: int | Shape = ()) -> RigidTransform:
-        """Return transforms that move nothing."""
+        """Return transforms that move nothing.
+
+        Examples
+        --------
+        >>> ph.RigidTransform.identity(5).shape
+        (5,)
+        """
         return RigidTransform(Rotor.identity(shape))
 
     @staticmethod
     def from_rotation(rotation: Rotor | Rotation) -> RigidTransform:
-        """From a rotor, or a ``scipy.spatial.transform.Rotation``."""
+        """From a rotor, or a ``scipy.spatial.transform.Rotation``.
+
+        Examples
+        --------
+        >>> T = ph.RigidTransform.from_rotation(ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True))
+        >>> T.apply(ph.e1)
+        0.5 e1 + 0.8660254 e2
+        """
         return RigidTransform(_as_rotor(rotation))
 
     @staticmethod
     def from_translation(translation: Any) -> RigidTransform:
-        """From a vector, or an array (..., 3)."""
+        """From a vector, or an array (..., 3).
+
+        Examples
+        --------
+        >>> ph.RigidTransform.from_translation([1, 2, 3]).apply(ph.e1)
+        2 e1 + 2 e2 + 3 e3
+        """
         return RigidTransform(translation=translation)
 
     @staticmethod
     def from_components(translation: Any, rotation: Rotor | Rotation) -> RigidTransform:
-        """From a translation and a rotation, in SciPy's order."""
+        """From a translation and a rotation, in SciPy's order.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True)
+        >>> ph.RigidTransform.from_components([0, 0, 5], R).apply(ph.e1)
+        0.5 e1 + 0.8660254 e2 + 5 e3
+        """
         return RigidTransform(_as_rotor(rotation), translation)
 
     @staticmethod
@@ -114,6 +153,14 @@ class RigidTransform:
 
         The rotation is made exact as by `Rotor.from_matrix`, with its errors; with ``nearest=True`` it is the
         nearest one to any 3x3 part.
+
+        Examples
+        --------
+        >>> T = ph.RigidTransform.from_matrix([[0, -1, 0, 5], [1, 0, 0, 6], [0, 0, 1, 7], [0, 0, 0, 1]])
+        >>> T.translation
+        5 e1 + 6 e2 + 7 e3
+        >>> T.apply(ph.e1)
+        5 e1 + 7 e2 + 7 e3
         """
         given = as_coefficients(matrix, "transformation matrix")
         if tuple(given.shape[-2:]) != (4, 4):
@@ -135,6 +182,16 @@ class RigidTransform:
 
         The transform after unit time of a motion with this constant twist in space: a screw. It is the
         exponential of a bivector of Cl(3,0,1), see `to_motor`.
+
+        Examples
+        --------
+        A turn of 60° about e3 while moving by 2 along it:
+
+        >>> T = ph.RigidTransform.from_exp_coords([0, 0, np.pi / 3, 0, 0, 2])
+        >>> T.translation
+        2 e3
+        >>> T.apply(ph.e1)
+        0.5 e1 + 0.8660254 e2 + 2 e3
         """
         given = as_coefficients(exp_coords, "exponential coordinates")
         if not given.shape or given.shape[-1] != 6:
@@ -154,6 +211,12 @@ class RigidTransform:
 
         With `scalar_first`, each is ``(w, x, y, z)``. Both are divided by the norm of the real part; what of
         the dual part is not orthogonal to it is dropped. A ValueError for a real part 0.
+
+        Examples
+        --------
+        >>> T = ph.RigidTransform.from_dual_quat([1, 0, 0, 0, 0, 1, 2, 3], scalar_first=True)
+        >>> T.translation
+        2 e1 + 4 e2 + 6 e3
         """
         given = as_coefficients(dual_quat, "dual quaternion")
         if not given.shape or given.shape[-1] != 8:
@@ -167,7 +230,14 @@ class RigidTransform:
 
     @staticmethod
     def from_motor(M: Multivector) -> RigidTransform:
-        """From a motor, an even element of ``ph.algebra(3, 0, 1)``, divided by its norm: see `to_motor`."""
+        """From a motor, an even element of ``ph.algebra(3, 0, 1)``, divided by its norm: see `to_motor`.
+
+        Examples
+        --------
+        >>> M = ph.RigidTransform.from_translation([2, 0, 0]).to_motor()
+        >>> ph.RigidTransform.from_motor(M * M).translation
+        4 e1
+        """
         if not isinstance(M, Multivector) or places(M.algebra) is None:
             raise TypeError("a motor is an even element of ph.algebra(3, 0, 1)")
         if not is_motor(M):
@@ -185,14 +255,28 @@ class RigidTransform:
 
     @staticmethod
     def concatenate(transforms: Iterable[RigidTransform]) -> RigidTransform:
-        """Join transforms and batches of them along the first axis."""
+        """Join transforms and batches of them along the first axis.
+
+        Examples
+        --------
+        >>> T = ph.RigidTransform.from_translation([[1, 0, 0], [2, 0, 0]])
+        >>> ph.RigidTransform.concatenate([T, ph.RigidTransform()]).shape
+        (3,)
+        """
         parts = [part if part.shape else part._reshaped((1,)) for part in transforms]
         rotor, translation = ([getattr(part, name) for part in parts] for name in ("rotor", "translation"))
         return RigidTransform(concatenate(rotor), concatenate(translation))
 
     @staticmethod
     def stack(transforms: Iterable[RigidTransform]) -> RigidTransform:
-        """Join transforms of one batch shape along a new first axis."""
+        """Join transforms of one batch shape along a new first axis.
+
+        Examples
+        --------
+        >>> T = ph.RigidTransform.from_translation([[1, 0, 0], [2, 0, 0]])
+        >>> ph.RigidTransform.stack([T, T, T]).shape
+        (3, 2)
+        """
         parts = list(transforms)
         return RigidTransform(stack(part.rotor for part in parts), stack(part.translation for part in parts))
 
@@ -204,11 +288,28 @@ class RigidTransform:
         return self.rotor
 
     def as_components(self) -> tuple[Array, Rotor]:
-        """Return the translation, an array (..., 3), and the rotor, in SciPy's order."""
+        """Return the translation, an array (..., 3), and the rotor, in SciPy's order.
+
+        Examples
+        --------
+        >>> translation, R = ph.RigidTransform.from_translation([1, 2, 3]).as_components()
+        >>> translation, R
+        (array([1., 2., 3.]), 1)
+        """
         return self.translation.components, self.rotor
 
     def as_matrix(self) -> Any:
-        """Return matrices (..., 4, 4) that act on columns (x, y, z, 1)."""
+        """Return matrices (..., 4, 4) that act on columns (x, y, z, 1).
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_quaternion([1, 1, 1, 1], order="wxyz")
+        >>> ph.RigidTransform(R, [5, 6, 7]).as_matrix()
+        array([[0., 0., 1., 5.],
+               [1., 0., 0., 6.],
+               [0., 1., 0., 7.],
+               [0., 0., 0., 1.]])
+        """
         turn, moved = common(self.rotor.to_matrix(), self.translation._data)
         xp, kind = namespace(turn), kind_of(turn)
         upper = xp.concat([turn, moved[..., None]], axis=-1)
@@ -217,13 +318,25 @@ class RigidTransform:
         return xp.concat([upper, one], axis=-2)
 
     def as_exp_coords(self) -> Any:
-        """Return exponential coordinates (..., 6): rotation vector of at most π, then the velocity."""
+        """Return exponential coordinates (..., 6): rotation vector of at most π, then the velocity.
+
+        Examples
+        --------
+        >>> ph.RigidTransform.from_exp_coords([0.1, 0.2, 0.3, 4, 5, 6]).as_exp_coords()
+        array([0.1, 0.2, 0.3, 4. , 5. , 6. ])
+        """
         screw = self._nearer().to_motor().log()
         _, a, b, c, x, y, z, _ = columns(screw)
         return kind_of(screw._data).stack([-2 * a, -2 * b, -2 * c, 2 * x, 2 * y, 2 * z])
 
     def as_dual_quat(self, *, scalar_first: bool = False) -> Any:
-        """Return unit dual quaternions (..., 8): see `from_dual_quat`; R and −R give opposite ones."""
+        """Return unit dual quaternions (..., 8): see `from_dual_quat`; R and −R give opposite ones.
+
+        Examples
+        --------
+        >>> ph.RigidTransform.from_translation([2, 4, 6]).as_dual_quat(scalar_first=True).round(6) + 0
+        array([1., 0., 0., 0., 0., 1., 2., 3.])
+        """
         w, yz, zx, xy, x4, y4, z4, xyz4 = columns(self.to_motor())
         real, dual = [w, -yz, -zx, -xy], [xyz4, x4, y4, z4]
         if not scalar_first:
@@ -237,6 +350,11 @@ class RigidTransform:
         ``M = exp(−½ B + ½ v∧e4)`` is a screw: a rotation vector dual to B, and the velocity v of the origin.
         `algebra` may be another one of three generators of square 1 and one of square 0, in any order, which
         then takes the part of e4.
+
+        Examples
+        --------
+        >>> ph.RigidTransform.from_translation([2, 0, 0]).to_motor()
+        1 + e1∧e4
         """
         if places(algebra) is None:
             raise ValueError(f"a motor needs an algebra of the signature (3, 0, 1), got {algebra}")
@@ -267,6 +385,17 @@ class RigidTransform:
         """Move points: vectors to vectors, arrays (..., 3) to arrays; batch shapes broadcast.
 
         With `inverse`, move them back, ``~R (y − x0) R``.
+
+        Examples
+        --------
+        >>> T = ph.RigidTransform.from_translation([1, 0, 0])
+        >>> T.apply(ph.e2)
+        e1 + e2
+        >>> T.apply([[0, 0, 0], [0, 0, 5]])
+        array([[1., 0., 0.],
+               [1., 0., 5.]])
+        >>> T.apply(ph.e2, inverse=True)
+        -e1 + e2
         """
         given = isinstance(points, Multivector)
         x = _as_vector(points, "points")
@@ -282,7 +411,13 @@ class RigidTransform:
         return RigidTransform(self.rotor * other.rotor, self.apply(other.translation))
 
     def inv(self) -> RigidTransform:
-        """Return the transform that moves back."""
+        """Return the transform that moves back.
+
+        Examples
+        --------
+        >>> ph.RigidTransform.from_translation([1, 2, 3]).inv().translation
+        -e1 - 2 e2 - 3 e3
+        """
         back = ~self.rotor
         return RigidTransform(back, -back(self.translation))
 
@@ -302,7 +437,14 @@ class RigidTransform:
         return RigidTransform.from_exp_coords(coords * powers[..., None])
 
     def interpolate(self, other: RigidTransform, t: Any) -> RigidTransform:
-        """Return the transforms on the screw from this one (t = 0) to another (t = 1), the short way."""
+        """Return the transforms on the screw from this one (t = 0) to another (t = 1), the short way.
+
+        Examples
+        --------
+        >>> start, end = ph.RigidTransform(), ph.RigidTransform.from_translation([4, 0, 0])
+        >>> start.interpolate(end, 0.25).translation
+        e1
+        """
         step: RigidTransform = (self.inv() * other) ** t
         return self * step
 
@@ -310,6 +452,12 @@ class RigidTransform:
         """Return the mean over batch axes, by default all: of rotations as by `ph.mean`, and of translations.
 
         `weights` are numbers >= 0 that broadcast to the batch shape. A ValueError as of `ph.mean`.
+
+        Examples
+        --------
+        >>> T = ph.RigidTransform.from_translation([[1, 0, 0], [2, 0, 0]])
+        >>> T.mean().translation
+        1.5 e1
         """
         turn = mean(self.rotor, weights, axis)
         if weights is None:
@@ -353,7 +501,14 @@ class RigidTransform:
     __hash__ = None  # type: ignore[assignment]  # equality is by element
 
     def is_close(self, other: RigidTransform, rtol: float = 1e-9, atol: float = 0.0) -> Any:
-        """Return whether two transforms are close: angle in rad below `rtol`, translations as vectors are."""
+        """Return whether two transforms are close: angle in rad below `rtol`, translations as vectors are.
+
+        Examples
+        --------
+        >>> T = ph.RigidTransform(ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True), [1, 2, 3])
+        >>> bool((T * T.inv()).is_close(ph.RigidTransform(), atol=1e-12))
+        True
+        """
         near = self.rotor.distance(other.rotor) <= rtol
         return near & self.translation.is_close(other.translation, rtol, atol)
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterable
+from itertools import repeat
 from typing import Any, overload
 
 import numpy as np
@@ -15,7 +17,8 @@ from polhode._algebra.constructors import as_point, as_vectors, bivector, pure, 
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._support.arrays import Array, as_components, as_float, as_floats
+from polhode._mechanics.parameters import common
+from polhode._support.arrays import Array, Shape, as_components, as_float, as_floats
 
 _G3 = algebra_of(3)
 
@@ -34,6 +37,20 @@ class Inertia(LinearMap):
 
     Create one with `from_principal_moments`, `from_matrix`, `from_function` or `from_points`. Moments that no
     body has (``i1 + i2 < i3``, or negative) raise a ValueError.
+
+    Examples
+    --------
+    The angular velocity and the momentum are parallel along a principal axis only:
+
+    >>> inertia = ph.Inertia.from_principal_moments(1, 2, 3)
+    >>> inertia(ph.e1 ^ ph.e2)
+    3 e1∧e2
+    >>> inertia((ph.e1 ^ ph.e2) + (ph.e2 ^ ph.e3))
+    e2∧e3 + 3 e1∧e2
+    >>> inertia.matrix
+    array([[1., 0., 0.],
+           [0., 2., 0.],
+           [0., 0., 3.]])
     """
 
     __slots__ = ("_core",)
@@ -44,22 +61,65 @@ class Inertia(LinearMap):
         self._core = core[0]
 
     @staticmethod
-    def from_principal_moments(i1: float, i2: float, i3: float) -> Inertia:
-        """Return the inertia with moments (kg m²) about e1, e2, e3, i.e. in the planes e2e3, e3e1, e1e2."""
-        moments = as_components([i1, i2, i3], 3, "moments")
-        return Inertia(_native.Inertia.from_principal_moments(moments))
+    def from_principal_moments(i1: Any, i2: Any, i3: Any) -> Inertia:
+        """Return the inertia with moments (kg m²) about e1, e2, e3, i.e. in the planes e2e3, e3e1, e1e2.
+
+        Arrays of moments (...), which broadcast, give an array (...) of inertias, for a batch of bodies::
+
+            bodies = ph.Inertia.from_principal_moments(1, 2, np.linspace(2.2, 2.9, 8))
+
+        Examples
+        --------
+        >>> ph.Inertia.from_principal_moments(1, 2, 3)
+        Inertia(principal moments 1, 2, 3 kg m²)
+        """
+        parts = [as_floats(x, f"moment i{k}") for k, x in enumerate((i1, i2, i3), 1)]
+        if not any(part.ndim for part in parts):
+            return Inertia(_native.Inertia.from_principal_moments(np.array(parts)))
+        common({f"i{k}": part.shape for k, part in enumerate(parts, 1)}, "the moments")
+        moments = np.stack(np.broadcast_arrays(*parts), axis=-1)
+        # Typed as one inertia, which numbers give.
+        many: Inertia = _many(_native.Inertia.all_from_principal_moments(moments), moments.shape[:-1])
+        return many
 
     @staticmethod
     def from_matrix(J: Any) -> Inertia:  # type: ignore[override]  # an inertia has one grade
-        """Return the inertia with a symmetric 3x3 matrix (kg m²) in body axes; principal moments ascend."""
-        matrix = as_floats(J, "inertia matrix")
-        if matrix.shape != (3, 3):
-            raise ValueError(f"inertia matrix must have shape (3, 3), got {matrix.shape}")
-        return Inertia(_native.Inertia.from_matrix(np.ascontiguousarray(matrix).reshape(9)))
+        """Return the inertia with a symmetric 3x3 matrix (kg m²) in body axes; principal moments ascend.
+
+        Matrices (..., 3, 3) give an array (...) of inertias, for a batch of bodies.
+
+        Examples
+        --------
+        A product of inertia turns the principal axes, here by 45° in the plane e1e2:
+
+        >>> inertia = ph.Inertia.from_matrix([[2, -1, 0], [-1, 2, 0], [0, 0, 3]])
+        >>> inertia.principal_moments.round(12)
+        array([1., 3., 3.])
+        >>> inertia.principal_frame(ph.e1).components.round(3)
+        array([0.707, 0.707, 0.   ])
+        """
+        matrix = np.ascontiguousarray(as_floats(J, "inertia matrix"))
+        if matrix.shape[-2:] != (3, 3):
+            raise ValueError(f"inertia matrix must have shape (3, 3) or (..., 3, 3), got {matrix.shape}")
+        batch = matrix.shape[:-2]
+        rows = matrix.reshape(*batch, 9)
+        if not batch:
+            return Inertia(_native.Inertia.from_matrix(rows))
+        # Typed as one inertia, which one matrix gives.
+        many: Inertia = _many(_native.Inertia.all_from_matrices(rows), batch)
+        return many
 
     @staticmethod
     def from_function(f: Callable[[Multivector], Multivector]) -> Inertia:  # type: ignore[override]
-        """Return the inertia of a function, as ``I(B) = i1 B + (i3 − i1) (B∧e3) e3`` (handout eq. 4.25)."""
+        """Return the inertia of a function, as ``I(B) = i1 B + (i3 − i1) (B∧e3) e3`` (handout eq. 4.25).
+
+        Examples
+        --------
+        >>> i1, i3 = 2, 1
+        >>> top = ph.Inertia.from_function(lambda B: i1 * B + (i3 - i1) * (B ^ ph.e3) * ph.e3)
+        >>> top.principal_moments
+        array([...])
+        """
         return Inertia.from_matrix(LinearMap.from_function(f, grade=2).matrix)
 
     @staticmethod
@@ -72,7 +132,15 @@ class Inertia(LinearMap):
 
     @staticmethod
     def from_points(masses: Any, positions: Any) -> Inertia:
-        """Return the inertia of masses (n,) in kg at positions (n, 3) in m, about their centre of mass."""
+        """Return the inertia of masses (n,) in kg at positions (n, 3) in m, about their centre of mass.
+
+        Examples
+        --------
+        Masses of 3 kg and 1 kg, 4 m apart, have the moment ``μ d²`` with the reduced mass 3/4 kg:
+
+        >>> ph.Inertia.from_points([3, 1], [[0, 0, 0], [0, 0, 4]])
+        Inertia(principal moments 0, 12, 12 kg m²)
+        """
         return Inertia(_native.Inertia.from_points(*_points(masses, positions)))
 
     def __call__(self, B: Any) -> Multivector:
@@ -87,6 +155,12 @@ class Inertia(LinearMap):
         """Return the angular velocity with angular momentum L; a ValueError if a principal moment is 0.
 
         Without L, return the map from momenta to velocities.
+
+        Examples
+        --------
+        >>> inertia = ph.Inertia.from_principal_moments(1, 2, 3)
+        >>> inertia.inverse(ph.bivector([1, 2, 3]))
+        e2∧e3 + e3∧e1 + e1∧e2
         """
         if L is None:
             return LinearMap.from_function(self.inverse, grade=2)
@@ -138,6 +212,13 @@ class Inertia(LinearMap):
         return _restored, (core.matrix().ravel(), core.principal_moments(), core.principal_frame())
 
 
+def _many(cores: list[_native.Inertia], shape: Shape) -> Any:
+    """Return an object array (...) of inertias; loops in C, because there may be millions."""
+    inertias = list(map(object.__new__, repeat(Inertia, len(cores))))
+    deque(map(Inertia.__dict__["_core"].__set__, inertias, cores), maxlen=0)
+    return np.fromiter(inertias, object, len(inertias)).reshape(shape)
+
+
 def _restored(matrix: Array, moments: Array, frame: Array) -> Inertia:
     return Inertia(_native.Inertia.restored(matrix, moments, frame))
 
@@ -148,6 +229,22 @@ class Body:
     ``a + b`` joins two bodies rigidly in the same body axes; place them with `moved` first. Solids are
     uniform and centred on the origin, with their axis along e3 (a cone has its base in the plane e1e2); give
     `mass` in kg or `density` in kg/m³.
+
+    Examples
+    --------
+    A box has the moments ``m (b² + c²)/12``:
+
+    >>> box = ph.Body.box([1, 2, 3], mass=12)
+    >>> box.inertia.principal_moments
+    array([13., 10.,  5.])
+
+    Two of them, side by side along e1, joined rigidly:
+
+    >>> both = box + box.moved(position=[1, 0, 0])
+    >>> both.mass, both.center_of_mass
+    (24.0, 0.5 e1)
+    >>> both.inertia == ph.Body.box([2, 2, 3], mass=24).inertia
+    True
     """
 
     __slots__ = ("_core",)
@@ -175,18 +272,38 @@ class Body:
 
     @staticmethod
     def box(lengths: Any, *, mass: float | None = None, density: float | None = None) -> Body:
-        """Return a box with sides `lengths` (3,) along e1, e2, e3."""
+        """Return a box with sides `lengths` (3,) along e1, e2, e3.
+
+        Examples
+        --------
+        >>> ph.Body.box([1, 2, 3], mass=12).inertia.principal_moments  # m (b² + c²)/12, …
+        array([13., 10.,  5.])
+        >>> round(ph.Body.box([0.1, 0.2, 0.3], density=1000).mass, 12)
+        6.0
+        """
         return Body._solid("box", as_components(lengths, 3, "the lengths of a box"), mass, density)
 
     @staticmethod
     def ellipsoid(semi_axes: Any, *, mass: float | None = None, density: float | None = None) -> Body:
-        """Return an ellipsoid with `semi_axes` (3,) along e1, e2, e3."""
+        """Return an ellipsoid with `semi_axes` (3,) along e1, e2, e3.
+
+        Examples
+        --------
+        >>> ph.Body.ellipsoid([1, 2, 3], mass=5).inertia.principal_moments  # m (b² + c²)/5, …
+        array([13., 10.,  5.])
+        """
         sizes = as_components(semi_axes, 3, "the semi-axes of an ellipsoid")
         return Body._solid("ellipsoid", sizes, mass, density)
 
     @staticmethod
     def sphere(radius: float, *, mass: float | None = None, density: float | None = None) -> Body:
-        """Return a solid sphere."""
+        """Return a solid sphere.
+
+        Examples
+        --------
+        >>> ph.Body.sphere(1, mass=5).inertia.principal_moments  # 2/5 m r²
+        array([2., 2., 2.])
+        """
         return Body._solid("sphere", [radius], mass, density)
 
     @staticmethod
@@ -197,50 +314,104 @@ class Body:
         mass: float | None = None,
         density: float | None = None,
     ) -> Body:
-        """Return a spherical shell; equal radii give a thin shell, which requires `mass`."""
+        """Return a spherical shell; equal radii give a thin shell, which requires `mass`.
+
+        Examples
+        --------
+        >>> ph.Body.hollow_sphere(1, 1, mass=3).inertia.principal_moments.round(12)  # thin: 2/3 m r²
+        array([2., 2., 2.])
+        """
         return Body._solid("hollow_sphere", [outer_radius, inner_radius], mass, density)
 
     @staticmethod
     def cylinder(
         radius: float, height: float, *, mass: float | None = None, density: float | None = None
     ) -> Body:
-        """Return a cylinder about e3."""
+        """Return a cylinder about e3.
+
+        Examples
+        --------
+        >>> ph.Body.cylinder(1, 3, mass=4).inertia.principal_moments  # m (3r² + h²)/12, m r²/2
+        array([4., 4., 2.])
+        """
         return Body._solid("cylinder", [radius, height], mass, density)
 
     @staticmethod
     def cone(
         radius: float, height: float, *, mass: float | None = None, density: float | None = None
     ) -> Body:
-        """Return a cone about e3, its base on the plane e1e2 and its apex at `height`."""
+        """Return a cone about e3, its base on the plane e1e2 and its apex at `height`.
+
+        Examples
+        --------
+        >>> cone = ph.Body.cone(1, 4, mass=10)
+        >>> cone.center_of_mass  # a quarter of the height
+        e3
+        >>> float(cone.inertia.principal_moments[2])  # 3/10 m r²
+        3.0
+        """
         return Body._solid("cone", [radius, height], mass, density)
 
     @staticmethod
     def rod(length: float, *, mass: float) -> Body:
-        """Return a thin rod along e3; it has no moment about e3."""
+        """Return a thin rod along e3; it has no moment about e3.
+
+        Examples
+        --------
+        >>> ph.Body.rod(2, mass=3).inertia.principal_moments  # m l²/12
+        array([1., 1., 0.])
+        >>> ph.Body.rod(2, mass=3).inertia_about([0, 0, 1]).principal_moments  # about an end: m l²/3
+        array([0., 4., 4.])
+        """
         return Body._solid("rod", [length], mass, None)
 
     @staticmethod
     def disc(radius: float, *, mass: float) -> Body:
-        """Return a thin disc in the plane e1e2."""
+        """Return a thin disc in the plane e1e2.
+
+        Examples
+        --------
+        >>> ph.Body.disc(1, mass=4).inertia.principal_moments  # m r²/4, m r²/2
+        array([1., 1., 2.])
+        """
         return Body._solid("disc", [radius], mass, None)
 
     @staticmethod
     def torus(
         major_radius: float, minor_radius: float, *, mass: float | None = None, density: float | None = None
     ) -> Body:
-        """Return a torus about e3: a tube of `minor_radius` whose centre line has `major_radius`."""
+        """Return a torus about e3: a tube of `minor_radius` whose centre line has `major_radius`.
+
+        Examples
+        --------
+        >>> float(ph.Body.torus(2, 1, mass=4).inertia.principal_moments[2])  # m (R² + 3/4 r²)
+        19.0
+        """
         return Body._solid("torus", [major_radius, minor_radius], mass, density)
 
     @staticmethod
     def capsule(
         radius: float, height: float, *, mass: float | None = None, density: float | None = None
     ) -> Body:
-        """Return a cylinder of `height` about e3 with a hemisphere on each end."""
+        """Return a cylinder of `height` about e3 with a hemisphere on each end.
+
+        Examples
+        --------
+        >>> round(ph.Body.capsule(1, 2, density=1).mass / np.pi, 12)  # r² h + 4/3 r³
+        3.333333333333
+        """
         return Body._solid("capsule", [radius, height], mass, density)
 
     @staticmethod
     def from_points(masses: Any, positions: Any) -> Body:
-        """Return the body of point masses (n,) in kg at positions (n, 3) in m."""
+        """Return the body of point masses (n,) in kg at positions (n, 3) in m.
+
+        Examples
+        --------
+        >>> dumbbell = ph.Body.from_points([1, 1], [[0, 0, -1], [0, 0, 1]])
+        >>> dumbbell.mass, dumbbell.inertia
+        (2.0, Inertia(principal moments 0, 2, 2 kg m²))
+        """
         return Body._of(_native.Body.from_points(*_points(masses, positions)))
 
     @staticmethod
@@ -260,6 +431,23 @@ class Body:
         ValueError
             For a corrupt file, or a mesh that is open, inconsistently wound, inside-out or degenerate; the
             message gives the place.
+
+        Examples
+        --------
+        >>> surface = '''v 0 0 0
+        ... v 1 0 0
+        ... v 0 1 0
+        ... v 0 0 1
+        ... f 1 3 2
+        ... f 1 2 4
+        ... f 1 4 3
+        ... f 2 3 4
+        ... '''
+        >>> with open("tetrahedron.obj", "w") as file:
+        ...     _ = file.write(surface)
+        >>> body = ph.Body.from_mesh("tetrahedron.obj", density=6)  # the volume is 1/6 m³
+        >>> round(body.mass, 12), body.center_of_mass
+        (1.0, 0.25 e1 + 0.25 e2 + 0.25 e3)
         """
         if not os.path.lexists(path):
             raise FileNotFoundError(f"{os.fspath(path)}: no such file")
@@ -285,11 +473,31 @@ class Body:
         return Inertia(self._core.inertia())
 
     def inertia_about(self, point: Any) -> Inertia:
-        """Return the inertia about a point fixed in the body (a vector or (3,), in m)."""
+        """Return the inertia about a point fixed in the body (a vector or (3,), in m).
+
+        Examples
+        --------
+        A rod about its end has the moment m l²/3, four times that about its centre:
+
+        >>> ph.Body.rod(2, mass=3).inertia_about([0, 0, 1])
+        Inertia(principal moments 0, 4, 4 kg m²)
+        """
         return Inertia(self._core.inertia_about(as_point(point, "the point")))
 
     def moved(self, rotor: Rotor | None = None, position: Any = 0) -> Body:
-        """Return the body moved rigidly: its points x go to ``R x ~R + position``."""
+        """Return the body moved rigidly: its points x go to ``R x ~R + position``.
+
+        Examples
+        --------
+        >>> rod = ph.Body.rod(2, mass=3)
+        >>> lying = rod.moved(ph.Rotor.from_plane_angle(ph.e3 ^ ph.e1, np.pi / 2), position=[1, 0, 0])
+        >>> lying.center_of_mass
+        e1
+        >>> lying.inertia.matrix.round(12) + 0.0
+        array([[0., 0., 0.],
+               [0., 1., 0.],
+               [0., 0., 1.]])
+        """
         turn = Rotor.identity() if rotor is None else rotor
         if not isinstance(turn, Rotor) or turn.shape:
             raise TypeError(
@@ -360,15 +568,20 @@ def objects_of(values: Any, kinds: tuple[type, ...], what: str, remedy: str = ""
         array[()] = values
     elif not isinstance(values, np.ndarray) and values and {*map(type, values)} <= {*kinds}:
         # np.array would look for sequences in each.
-        array = np.fromiter(values, object, len(values))
+        return np.fromiter(values, object, len(values))
     else:
         array = np.array(values, dtype=object)
-    if not {*map(type, array.flat)} <= {*kinds}:
+    if not types_of(array) <= {*kinds}:
         for index, one in np.ndenumerate(array):
             if not isinstance(one, kinds):
                 where, rest = (f"at index {index}: ", "") if index else ("", remedy)
                 raise TypeError(f"{where}{what}, got {type(one).__name__}{rest}")
     return array
+
+
+def types_of(array: Any) -> set[type]:
+    """Return the types of the objects of an array."""
+    return {*map(type, array.ravel().tolist())}
 
 
 def inertia_of(body: Any, held: bool) -> Any:

@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,7 @@ StepLimits = tuple[float | None, float | None, list[float]]
 
 _VECTOR, _BIVECTOR = 0b0010, 0b0100
 _NOWHERE: Any = (None, None)
+_CORE = attrgetter("_core")
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,16 +95,17 @@ class Results:
         names, codes = summary["methods"]
         failed = np.zeros(len(codes), bool)
         failed[summary["failed"]] = True
+        some_failed = bool(summary["failed"])
 
         def column(numbers: Array) -> Array:
             return frozen(numbers.reshape(self.shape))
 
         def finished(numbers: Array) -> Array:
-            return column(np.where(failed, np.nan, numbers))
+            return column(np.where(failed, np.nan, numbers) if some_failed else numbers)
 
         # A body that failed before a method was chosen has the given one.
         names = np.array([name or self.method for name in names])
-        used = np.unique(codes if failed.all() else codes[~failed])
+        used = np.flatnonzero(np.bincount(codes[~failed] if some_failed and not failed.all() else codes))
         return Certificate(
             str(names[used[0]]) if len(used) == 1 else column(names[codes]),
             column(summary["step"]),
@@ -184,7 +187,7 @@ class Ensemble(Results):
         centers = np.concatenate(np.broadcast_arrays(self.positions, self.velocities), axis=-1)
         arrays, summary = _native.simulate_many(
             self.shape,
-            ([inertia._core for inertia in self.inertias.flat], self.inertias.shape),
+            ([*map(_CORE, self.inertias.ravel().tolist())], self.inertias.shape),
             np.ascontiguousarray(self.start_times),
             self.rotors,
             self.omegas,

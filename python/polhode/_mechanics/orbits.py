@@ -31,6 +31,16 @@ class KeplerOrbit:
         The mean anomaly at time 0, in rad.
     mu
         The gravitational parameter of the planet in m³/s², by default that of the Earth.
+
+    Examples
+    --------
+    The International Space Station goes round in about 93 minutes:
+
+    >>> orbit = ph.torque.KeplerOrbit(6.793e6)
+    >>> round(orbit.period / 60, 1)
+    92.9
+    >>> orbit.position(0).components / 1e6
+    array([6.793, 0.   , 0.   ])
     """
 
     semi_major_axis: float
@@ -86,6 +96,14 @@ def dipole_field(moment: Any) -> DipoleField:
 
     ``B(x) = μ0/4π (3 (M·u) u − M)/r³`` at ``x = r u``, in T. M is a vector or (3,) in space in A m²; that of
     the Earth is about 7.7e22 A m² and points to the south.
+
+    Examples
+    --------
+    The field of the Earth points north at the equator, and is twice as strong at the north pole:
+
+    >>> field = ph.torque.dipole_field([0, 0, -7.7e22])
+    >>> field(0, [[6.371e6, 0, 0], [0, 0, 6.371e6]])["e3"] * 1e6  # in µT
+    array([ 29.77..., -59.55...])
     """
     given = vectors(moment, "moment")
     if not isinstance(given, tuple):

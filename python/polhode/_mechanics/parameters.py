@@ -147,8 +147,11 @@ def _of_values(values: Multivector) -> Batch:
 
 def common(shapes: Mapping[str, Shape], what: str) -> Shape:
     """Return the shape to which batches broadcast, or raise a ValueError with their shapes."""
+    first, *others = shapes.values() or [()]
+    if all(shape == first for shape in others):
+        return first
     try:
-        return np.broadcast_shapes(*shapes.values())
+        return np.broadcast_shapes(first, *others)
     except ValueError:
         listed = ", ".join(f"{shape} of {name}" for name, shape in shapes.items() if shape)
         raise ValueError(f"the batch shapes of {what} do not broadcast together: {listed}") from None

@@ -41,6 +41,20 @@ class Certificate:
         Largest ``abs(|R| − 1)``.
     warnings
         Warnings, such as a law that changes too fast for a fixed step.
+
+    Examples
+    --------
+    >>> book = ph.Inertia.from_principal_moments(1, 2, 3)
+    >>> start = ph.State(ph.Rotor.identity(), [0.1, 1, 0])
+    >>> found = ph.simulate(book, start, [10.0], method="rk4", step=0.1).certificate
+    >>> found.method, found.steps
+    ('rk4', 100)
+    >>> sorted(found.conserved)
+    ['angular_momentum', 'energy']
+    >>> found.conserved["energy"]  # ½ (1·0.1² + 2·1²) J
+    1.005
+    >>> found.worst < 1e-4
+    True
     """
 
     method: Any
@@ -96,6 +110,18 @@ class Failure:
         Time up to which it was computed, in s.
     message
         The error.
+
+    Examples
+    --------
+    Of three bodies, the last turns too fast for the step:
+
+    >>> book = ph.Inertia.from_principal_moments(1, 2, 3)
+    >>> starts = ph.State(ph.Rotor.identity(), [[0, 0, 1], [0, 1, 0.1], [0, 0.1, 1e4]])
+    >>> motions = ph.simulate(book, starts, [1.0], method="rk4", step=0.1)
+    >>> motions.ok
+    array([ True,  True, False])
+    >>> motions.failures[0].index
+    (2,)
     """
 
     index: tuple[int, ...]
@@ -121,6 +147,20 @@ class Crossings:
         Whether the quantity passed zero from below, in the direction of integration, (m,).
     rotor, omega_body, position, velocity
         The states at these times, as in `Trajectory`, batch (m,).
+
+    Examples
+    --------
+    A ball that is thrown up at 9.81 m/s reaches 2 m and comes back through it:
+
+    >>> ball = ph.Body.sphere(0.05, mass=0.5)
+    >>> thrown = ph.State(ph.Rotor.identity(), [0, 0, 1], velocity=[0, 0, 9.81])
+    >>> level = ph.event.position(ph.e3, 2)
+    >>> fall = ph.simulate(ball, thrown, [2.0], force=[0, 0, -0.5 * 9.81], events=level)
+    >>> passed = fall.events[0]
+    >>> passed.rising
+    array([ True, False])
+    >>> round(float(passed.time.mean()), 9)  # half way, the ball is at its highest point
+    1.0
     """
 
     name: str

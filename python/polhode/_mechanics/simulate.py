@@ -13,7 +13,7 @@ from polhode import force as forces
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import as_point, vector
 from polhode._algebra.multivector import Multivector
-from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of, mapped_objects
+from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of, mapped_objects, types_of
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, warn_of
 from polhode._mechanics.parameters import common
 from polhode._mechanics.problem import Problem
@@ -115,9 +115,33 @@ def simulate(
         invalid for all bodies.
     MemoryError
         If the results of a batch would not fit into memory; raised before anything is computed.
+
+    Examples
+    --------
+    A T-handle, spun about its middle axis, turns over again and again:
+
+    >>> handle = ph.Inertia.from_principal_moments(1.755e-4, 2.354e-4, 3.930e-4)
+    >>> start = ph.State(ph.Rotor.identity(), [0.3, 10 * np.pi, 0.3])  # 5 rev/s about e2
+    >>> flips = ph.event.spin(ph.e3 ^ ph.e1)
+    >>> motion = ph.simulate(handle, start, np.linspace(0, 3, 301), events=flips)
+    >>> np.diff(motion.events[0].time).round(3)
+    array([0.9, 0.9])
+
+    A fast top, a disc on a pivot 5 cm below it, precesses at about ``m g l/L3``:
+
+    >>> top = ph.Body.disc(0.1, mass=1).moved(position=[0, 0, 0.05])
+    >>> tilted = ph.State(ph.Rotor.from_plane_angle(ph.e2 ^ ph.e3, 0.5), [0, 0, 500])
+    >>> motion = ph.simulate(top, tilted, np.linspace(0, 1, 101), ph.torque.gravity(top))
+    >>> motion.certificate.method
+    'exact'
+    >>> x, y, _ = motion.rotor(ph.e3).components.T
+    >>> turn = np.unwrap(np.arctan2(y, x))
+    >>> print(f"{turn[-1] - turn[0]:.2f}, {9.81 * 0.05 / (0.005 * 500):.2f} rad/s")
+    0.20, 0.20 rad/s
     """
     limits = _limits(max_step, max_steps, breaks)
-    ensemble = _ensemble(body, state, times, torque, force, method, rtol, atol, step, limits)
+    bodies, law = _settled(body, torque)
+    ensemble = _ensemble(bodies, state, times, law, force, method, rtol, atol, step, limits)
     check_progress(progress)
     wanted = _events(events)
     count = checked_threads(threads)
@@ -146,7 +170,6 @@ def simulate(
         [event.law for event in wanted],
         progress,
     )
-    bodies, law = settled(bodies_of(body), as_torque(torque))
     problem = Problem(
         bodies[()],
         state,
@@ -185,11 +208,10 @@ def simulate_blocks(
     """Yield the motions of a batch in blocks, so that they need not fit into memory together.
 
     Each block is a slice of the first batch axis and the `Trajectory` of these bodies, with the same bits as
-    ``simulate(…)[slice]``. Reduce each block in the loop, for example to `Moments`::
+    ``simulate(…)[slice]``. Reduce each block in the loop, for example to `Moments`.
 
-        spins = ph.Moments()
-        for rows, motion in ph.simulate_blocks(body, state, times, torque):
-            spins.add(motion.omega_body.norm())
+    The other parameters and the errors are those of `simulate`. Invalid arguments are reported by the call,
+    other errors with the first block.
 
     Parameters
     ----------
@@ -198,11 +220,23 @@ def simulate_blocks(
     progress
         Called repeatedly with 1 and the fraction of all blocks done. Ctrl-C stops the run.
 
-    The other parameters and the errors are those of `simulate`. Invalid arguments are reported by the call,
-    other errors with the first block.
+    Examples
+    --------
+    The mean rate of 1000 damped balls, which start at rates from 0 to 1.998 rad/s:
+
+    >>> spins = np.arange(1000)[:, np.newaxis] * [0, 0, 0.002]
+    >>> starts = ph.State(ph.Rotor.identity(), spins)
+    >>> rates = ph.Moments()
+    >>> ball = ph.Body.sphere(1, mass=1)
+    >>> law = ph.torque.damping(0.5)
+    >>> for rows, motion in ph.simulate_blocks(ball, starts, [0, 1], law, block=256):
+    ...     _ = rates.add(motion.omega_body.norm())
+    >>> rates.mean.round(3)  # 0.999 and 0.999 exp(-0.5)
+    array([0.999, 0.606])
     """
     limits = _limits(max_step, max_steps, breaks)
-    ensemble = _ensemble(body, state, times, torque, force, method, rtol, atol, step, limits)
+    bodies, law = _settled(body, torque)
+    ensemble = _ensemble(bodies, state, times, law, force, method, rtol, atol, step, limits)
     check_progress(progress)
     if not ensemble.shape:
         raise ValueError("simulate_blocks needs a batch of bodies, got one body; use simulate")
@@ -222,11 +256,16 @@ def simulate_blocks(
     return ((rows, motion(rows)) for rows in blocks)
 
 
+def _settled(body: Any, torque: Any) -> tuple[Any, Torque | None]:
+    """Return the bodies in an object array, about the pivots of the torque, and the law that acts on them."""
+    return settled(bodies_of(body), as_torque(torque))
+
+
 def _ensemble(
-    body: Any,
+    bodies: Any,
     state: State,
     times: Any,
-    torque: Any,
+    torque: Torque | None,
     force: Any,
     method: str,
     rtol: float | None,
@@ -234,8 +273,7 @@ def _ensemble(
     step: float | None,
     limits: StepLimits,
 ) -> Ensemble:
-    """Return the checked arguments, with one entry per body where they are batches."""
-    bodies, torque = settled(bodies_of(body), as_torque(torque))
+    """Return the checked arguments, with one entry per body where they are batches; see `_settled`."""
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     check_state(state)
@@ -247,10 +285,14 @@ def _ensemble(
     if thrust is not None:
         torque = thrust if torque is None else torque + thrust
     shapes = {"the body": bodies.shape, **state._shapes(), "the torque": torque.shape if torque else ()}
-    masses = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
+    masses = np.array(math.nan)
+    if Body in types_of(bodies):
+        rows = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
+        masses = np.array(rows).reshape(bodies.shape)
+        bodies = mapped_objects(lambda one: inertia_of(one, held), bodies)
     return Ensemble(
         common(shapes, "body, state and torque"),
-        mapped_objects(lambda one: inertia_of(one, held), bodies),
+        bodies,
         np.array(state.time),
         state.position._data,
         state.velocity._data,
@@ -258,7 +300,7 @@ def _ensemble(
         method,
         as_coefficients(state.rotor._data, "the rotor", float),
         state.omega_body._data,
-        np.array(masses).reshape(bodies.shape),
+        masses,
         torque.laws if torque else (),
         tuple(pushes),
         None if step is None else as_float(step, "step"),
@@ -316,7 +358,7 @@ def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None
     """Return the forces, and the torque of thrusts that act away from the centre of mass."""
     if force is None:
         return [], None
-    if Inertia in {*map(type, bodies.flat)}:
+    if Inertia in types_of(bodies):
         raise TypeError("a force needs a Body, which has a mass, got an Inertia")
     law = as_force(force)
     thrusts = [law.arguments for law in law.laws if law.name == "thrust" and len(law.arguments) == 2]

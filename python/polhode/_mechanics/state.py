@@ -47,6 +47,22 @@ class State:
         The attributes. Position, velocity and time default to 0.
     omega_space
         Angular velocity in space axes, instead of `omega_body`.
+
+    Examples
+    --------
+    A body that has turned by 90° from e1 to e2 rotates in its own plane e2e3, which in space is e3e1:
+
+    >>> turned = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, np.pi / 2)
+    >>> state = ph.State(turned, omega_body=[1, 0, 0])
+    >>> state.omega_body
+    e2∧e3
+    >>> bool(state.omega_space.is_close(ph.e3 ^ ph.e1))
+    True
+
+    Many bodies that start at different rates are one state:
+
+    >>> ph.State(turned, [[1, 0, 0], [2, 0, 0], [3, 0, 0]]).shape
+    (3,)
     """
 
     rotor: Rotor

@@ -23,6 +23,21 @@ class Moments:
     ----------
     axis
         Axis of `values` to reduce.
+
+    Examples
+    --------
+    The arrays are not kept; NaN is only counted:
+
+    >>> found = ph.Moments()
+    >>> _ = found.add([1, 2, 3]).add([4, 5, np.nan])
+    >>> float(found.mean), float(found.variance), int(found.missing)
+    (3.0, 2.0, 1)
+
+    The mean over bodies at each time:
+
+    >>> rates = [[0, 1, 2], [0, 3, 6]]  # of two bodies at three times
+    >>> ph.Moments().add(rates).mean
+    array([0., 2., 4.])
     """
 
     __slots__ = ("_axis", "_found")

@@ -14,7 +14,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.ensemble import check_state
 from polhode._mechanics.parameters import check_finite
-from polhode._mechanics.simulate import _ensemble
+from polhode._mechanics.simulate import _ensemble, _settled
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_float, as_floats
 
@@ -64,6 +64,19 @@ class Stepper:
     ValueError
         For invalid input, for bodies with different times, and in `step` for a body that turns too far.
         Then no state has changed.
+
+    Examples
+    --------
+    A controller brakes a body that spins at 1 rad/s with a torque of −2 Ω:
+
+    >>> ball = ph.Inertia.from_principal_moments(4, 4, 4)
+    >>> satellite = ph.Stepper(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]))
+    >>> while satellite.time < 2:
+    ...     _ = satellite.step(0.125, torque=-2 * satellite.state.omega_body)
+    >>> satellite
+    Stepper(t = 2 s)
+    >>> satellite.state.omega_body.components.round(4)  # (1 − 0.125 · 2/4)^16
+    array([0.    , 0.    , 0.3561])
     """
 
     __slots__ = ("_core", "_still", "shape")
@@ -84,7 +97,8 @@ class Stepper:
         longest = math.inf if step is None else as_float(step, "step")
         if not longest > 0:
             raise ValueError(f"step must be positive, got {step}")
-        setup = _ensemble(body, state, [0.0], torque, force, method, None, None, step, (None, None, []))
+        bodies, law = _settled(body, torque)
+        setup = _ensemble(bodies, state, [0.0], law, force, method, None, None, step, (None, None, []))
         if not math.prod(setup.shape):
             raise ValueError(f"a stepper needs at least one body, got batch shape {setup.shape}")
         self.shape = setup.shape
@@ -139,6 +153,13 @@ class Stepper:
         wheel_torque
             Torques commanded from now on to the motors of `polhode.torque.reaction_wheels`, instead of those
             of the law: (..., k) in N m, for all bodies or for each. None lets the former command stand.
+
+        Examples
+        --------
+        >>> ball = ph.Inertia.from_principal_moments(4, 4, 4)
+        >>> satellite = ph.Stepper(ball, ph.State(ph.Rotor.identity(), [0, 0, 0]))
+        >>> satellite.step(0.5, torque=[0, 0, 2]).omega_body.components.round(12)  # N dt/i
+        array([0.  , 0.  , 0.25])
         """
         core, seconds, in_space = self._core, _seconds(dt), _in_space(frame)
         if wheel_torque is not None:

@@ -70,6 +70,22 @@ class Trajectory:
         always given.
     attributes
         Text and numbers saved with the data: title, scene, version.
+
+    Examples
+    --------
+    A spinning ball that is damped loses its energy as ``exp(−2 g t)``:
+
+    >>> ball = ph.Inertia.from_principal_moments(2, 2, 2)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+    >>> motion = ph.simulate(ball, start, [0, 1, 2], ph.torque.damping(0.5))
+    >>> motion
+    Trajectory(3 times, t = 0 … 2 s, exact)
+    >>> motion.energy.round(4)
+    array([1.    , 0.3679, 0.1353])
+    >>> motion.omega_body[1].components.round(4)  # exp(-0.5)
+    array([0.    , 0.    , 0.6065])
+    >>> motion.at(0.5).time  # between the output times
+    0.5
     """
 
     time: Array
@@ -113,20 +129,23 @@ class Trajectory:
         origin: Scene | Problem,
         wheels: tuple[_native.Law, ...] = (),
     ) -> Trajectory:
-        which, rising, points = motion.events()
-        happened = _Points.of(points)
-        ways = np.array(rising, bool)
-        chosen = (np.flatnonzero(np.array(which, int) == i) for i in range(len(names)))
-        events = (happened.crossings(name, k, ways[k]) for name, k in zip(names, chosen, strict=True))
         return Trajectory(
             *_Points.of(motion.states()),
             inertia,
             Certificate(**motion.certificate()),
-            tuple(events),
+            Trajectory._events(motion, names) if names else (),
             _motion=motion,
             _wheels=wheels,
             _origin=origin,
         )
+
+    @staticmethod
+    def _events(motion: _native.Motion, names: Sequence[str]) -> tuple[Crossings, ...]:
+        which, rising, points = motion.events()
+        happened = _Points.of(points)
+        ways = np.array(rising, bool)
+        chosen = (np.flatnonzero(np.array(which, int) == i) for i in range(len(names)))
+        return tuple(happened.crossings(name, k, ways[k]) for name, k in zip(names, chosen, strict=True))
 
     @property
     def shape(self) -> Shape:
@@ -237,6 +256,15 @@ class Trajectory:
         The motion extends over the output times, the start and the events. The state is computed in closed
         form if there is one, else by the same method and steps from the nearest output time before, so it is
         as accurate as the states at the output times. A ValueError outside, and for a batch of bodies.
+
+        Examples
+        --------
+        >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+        >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, np.pi]), [0, 1])
+        >>> bool(motion.at(0.5).rotor(ph.e1).is_close(ph.e2))  # a quarter turn from e1 to e2
+        True
+        >>> motion.at([0.1, 0.2, 0.3]).shape
+        (3,)
         """
         self._require_one("at", alone=True)
         if self._motion is None:
@@ -264,6 +292,17 @@ class Trajectory:
         """Return the change of each conserved quantity since the start, (n,), relative as in the certificate.
 
         A ValueError for a batch.
+
+        Examples
+        --------
+        >>> book = ph.Inertia.from_principal_moments(1, 2, 3)
+        >>> start = ph.State(ph.Rotor.identity(), [0.1, 1, 0])
+        >>> motion = ph.simulate(book, start, np.linspace(0, 10, 11), method="rk4", step=0.1)
+        >>> drift = motion.drifts()
+        >>> sorted(drift)
+        ['angular_momentum', 'energy']
+        >>> drift["energy"].shape, float(drift["energy"][0])
+        ((11,), 0.0)
         """
         self._require_one("drifts", alone=True)
         return dict(self._motion.drifts()) if self._motion is not None else {}

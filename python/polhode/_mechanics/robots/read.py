@@ -40,6 +40,12 @@ def read_urdf(path: str | os.PathLike[str]) -> dict[str, Body]:
         with file, line, and the probable slip; ``polhode check FILE`` prints them for each link.
     FileNotFoundError
         If there is no such file.
+
+    Examples
+    --------
+    >>> ph.io.write_urdf({"wheel": ph.Body.disc(1, mass=4)}, "wheel.urdf")
+    >>> ph.read_urdf("wheel.urdf")["wheel"].inertia
+    Inertia(principal moments 1, 1, 2 kg m²)
     """
     return bodies_of(path, "robot")
 
@@ -61,6 +67,16 @@ def read_mjcf(path: str | os.PathLike[str]) -> dict[str, Body]:
     coordinates. `balanceinertia` is ignored: an impossible inertia is an error.
 
     Returns and errors are those of `read_urdf`.
+
+    Examples
+    --------
+    The inertia of a body without the element `inertial` is that of its geoms, here ``2/5 m r²``:
+
+    >>> geom = '<geom type="sphere" size="0.5" mass="10"/>'
+    >>> with open("ball.xml", "w") as file:
+    ...     _ = file.write(f'<mujoco><worldbody><body name="ball">{geom}</body></worldbody></mujoco>')
+    >>> ph.read_mjcf("ball.xml")["ball"].inertia
+    Inertia(principal moments 1, 1, 1 kg m²)
     """
     return bodies_of(path, "mujoco")
 
@@ -75,6 +91,16 @@ def read_sdf(path: str | os.PathLike[str]) -> dict[str, Body]:
     ``relative_to`` of an inertial pose. Mass and moments have no defaults here.
 
     Returns and errors are those of `read_urdf`.
+
+    Examples
+    --------
+    >>> moments = "<ixx>1</ixx><iyy>2</iyy><izz>3</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz>"
+    >>> inertial = f"<inertial><mass>4</mass><inertia>{moments}</inertia></inertial>"
+    >>> link = f'<link name="arm">{inertial}</link>'
+    >>> with open("arm.sdf", "w") as file:
+    ...     _ = file.write(f'<sdf version="1.9"><model name="robot">{link}</model></sdf>')
+    >>> ph.read_sdf("arm.sdf")["arm"].inertia
+    Inertia(principal moments 1, 2, 3 kg m²)
     """
     return bodies_of(path, "sdf")
 

@@ -62,6 +62,8 @@ export default defineConfig({
     lib: { entry: "src/index.ts", formats: ["es"], fileName: () => "viewer.js" },
     // A library is left readable unless this is said.
     rolldownOptions: { output: { minify: true } },
+    // The notices that the licences of the libraries in the bundle ask for.
+    license: { fileName: "viewer.licenses.md" },
     chunkSizeWarningLimit: 2000,
   },
 });

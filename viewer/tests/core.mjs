@@ -46,6 +46,64 @@ const answers = {
     }),
   bodies: ({ time, count, ...scene }) =>
     withMotion(scene, (motion) => Array.from(motion.bodies(time, count))),
+  /** The bodies by a pool of workers, of which some fail. */
+  pooled: async ({ time, count, processors, failing = [], ...scene }) => {
+    const { Pool } = await vite.ssrLoadModule("/src/core/pool.ts");
+    const { Core, Motion } = await vite.ssrLoadModule("/src/core/wasm.ts");
+    const workers = [];
+    class FakeWorker extends EventTarget {
+      pieces = 0;
+      ended = false;
+      number = workers.push(this) - 1;
+      postMessage({ module, solution, piece }) {
+        if (module) this.motion = taken(module, solution);
+        else setTimeout(() => void this.compute(piece));
+      }
+      async compute({ from, to }) {
+        const slice = (await this.motion).slice(from, to);
+        if (this.ended) return;
+        this.pieces += 1;
+        const failed = { kind: "problem", message: `worker ${this.number} failed` };
+        // So long that each worker is worth starting.
+        const done = { kind: "slice", slice, took: 90 * (to - from) };
+        const data = failing.includes(this.number) ? failed : done;
+        this.dispatchEvent(new MessageEvent("message", { data }));
+      }
+      terminate() {
+        this.ended = true;
+      }
+    }
+    const taken = async (module, { memory, handle, about }) =>
+      new Motion(await Core.of(module, memory), handle, about);
+    const own = await Core.of(core.module);
+    const motion = own.open(scene.scene);
+    const { handle, about } = motion;
+    const job = { module: core.module, solution: { memory: own.memory(), handle, about }, count, processors };
+    const first = new FakeWorker();
+    first.motion = taken(job.module, job.solution);
+    const parts = [];
+    const failure = await new Promise((done) => {
+      const listener = {
+        progress: (part) => parts.push(part),
+        complete: (slices, why) => {
+          motion.join(slices, why);
+          done(why);
+        },
+      };
+      const pool = new Pool(first, job, () => new FakeWorker(), listener);
+      first.addEventListener("message", ({ data }) => {
+        if (data.kind === "slice") pool.take(first, data.slice, data.took);
+        else pool.lose(first, data.message);
+      });
+    });
+    return {
+      bodies: Array.from(motion.bodies(time, count)),
+      problem: motion.bodiesProblem,
+      failure,
+      parts,
+      workers: workers.map(({ pieces, ended }) => ({ pieces, ended })),
+    };
+  },
   recorded: ({ about, rows, times }) => {
     const motion = core.recorded(about, Float64Array.from(rows));
     try {

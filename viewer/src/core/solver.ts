@@ -1,7 +1,8 @@
-import { type Files, Problem } from "./core.ts";
+import { BODIES, type Files, Problem } from "./core.ts";
+import { Pool } from "./pool.ts";
 import SolverWorker from "./solver.worker.ts?worker&inline";
 import { Core, Motion } from "./wasm.ts";
-import type { Order, Report } from "./work.ts";
+import type { Order, Report, Solution } from "./work.ts";
 
 /** Time limits for solving a scene, in s: in the worker, and in the page if it has none, which is then blocked. */
 const BUDGET = 20;
@@ -16,6 +17,8 @@ export interface Task {
   files: Files;
   /** Whether to give up older scenes at once. By default one that is nearly solved is shown on the way. */
   only?: boolean;
+  /** Gets the fraction of the bodies of an ensemble that are computed. */
+  progress?: (part: number) => void;
   /** Gets the motion of an ensemble again, with its bodies. */
   complete?: (motion: Motion) => void;
 }
@@ -29,11 +32,12 @@ interface Request extends Task {
 }
 
 /**
- * Solves scenes one at a time in a worker; only the newest waits. If the page may not have workers, it solves them
- * itself.
+ * Solves scenes one at a time in a worker, which others help with the bodies of an ensemble; only the newest waits. If
+ * the page may not have workers, it solves them itself.
  */
 export class Solver {
   private worker: Worker | null = null;
+  private pool: Pool | null = null;
   private available = typeof Worker !== "undefined";
   /** Whether a worker has ever answered. */
   private proved = false;
@@ -70,8 +74,10 @@ export class Solver {
     this.next();
   }
 
-  /** Ends the worker in the middle of its work. */
+  /** Ends the workers in the middle of their work. */
   private stop(): void {
+    this.pool?.stop();
+    this.pool = null;
     this.worker?.terminate();
     this.worker = null;
     this.finished()?.resolve(null);
@@ -129,6 +135,14 @@ export class Solver {
     this.proved = true;
     const request = this.running;
     if (!request || report.kind === "ready") return;
+    if (report.kind === "slice") {
+      this.pool?.take(this.worker!, report.slice, report.took);
+      return;
+    }
+    if (report.kind === "problem" && this.pool) {
+      this.pool.lose(this.worker!, report.message);
+      return;
+    }
     if (report.kind === "problem") {
       this.finished();
       request.reject(new Problem(report.message));
@@ -142,8 +156,27 @@ export class Solver {
       request.solved = true;
       if (!awaitsBodies) this.finished();
       else if (this.waiting) this.stop();
+      else if (!about.exact) this.compute(request, motion, { memory, handle, about });
     }
     if (!this.running) this.next();
+  }
+
+  /** Has the bodies of an ensemble computed. */
+  private compute(request: Request, motion: Motion, solution: Solution): void {
+    const { module } = this.core;
+    const count = Math.min(BODIES, solution.about.ensemble ?? 0);
+    const processors = navigator.hardwareConcurrency || 1;
+    const job = { module, solution, count, processors };
+    this.pool = new Pool(this.worker!, job, () => new SolverWorker(), {
+      progress: (part) => request.progress?.(part),
+      complete: (slices, failure) => {
+        this.pool = null;
+        motion.join(slices, failure);
+        this.finished();
+        request.complete?.(motion.again());
+        this.next();
+      },
+    });
   }
 
   /** The worker failed. If none has ever answered, the page may not have workers. */

@@ -28,6 +28,9 @@ interface Exports {
   surface(handle: number): number;
   extents(handle: number): number;
   bodies(handle: number, time: number, count: number, budget: number): number;
+  bodies_problem(handle: number): number;
+  slice(handle: number, from: number, to: number, budget: number): number;
+  join(handle: number): number;
   merge(): number;
   evaluate(): number;
   solid(): number;
@@ -191,13 +194,22 @@ export class Core {
     return new Float64Array(this.bytes());
   }
 
-  private text(): string {
-    return new TextDecoder().decode(this.bytes());
+  text(from = 0): string {
+    return new TextDecoder().decode(new Uint8Array(this.bytes(), from));
   }
 
   json<T>(): T {
     return JSON.parse(this.text()) as T;
   }
+}
+
+/** Bodies of an ensemble, computed apart from the others. */
+export interface Slice {
+  from: number;
+  to: number;
+  rotors: Uint8Array;
+  /** Why the first body that is not known is not; empty if all are. */
+  problem: string;
 }
 
 /** The motion of a scene, or a recorded one. */
@@ -249,12 +261,35 @@ export class Motion {
   }
 
   /**
-   * The first bodies of an ensemble: rotors (n × 4) at a time, body axes to space axes; n at most `count`. The first
-   * call computes them.
+   * The first bodies of an ensemble: rotors (n × 4) at a time, body axes to space axes, NaN for those that are not known;
+   * n at most `count`. The first call computes them, unless they were joined.
    */
   bodies(time: number, count = BODIES): Float64Array {
     this.core.call(() => this.core.exports.bodies(this.handle, time, count, BUDGET));
     return this.core.floats();
+  }
+
+  /** Why the first of these bodies that are not known is not; empty if all are. */
+  get bodiesProblem(): string {
+    this.core.call(() => this.core.exports.bodies_problem(this.handle));
+    return this.core.text();
+  }
+
+  /** Computes the bodies of an ensemble without a closed form from number `from` up to `to`, for `join`. */
+  slice(from: number, to: number, budget = BUDGET): Slice {
+    const size = this.core.call(() => this.core.exports.slice(this.handle, from, to, budget));
+    return { from, to, rotors: new Uint8Array(this.core.bytes(), 0, size), problem: this.core.text(size) };
+  }
+
+  /** Takes consecutive slices, from the first body on; other cores may have computed them, or failed. */
+  join(slices: readonly Slice[], failure = ""): void {
+    const problem = slices.find((slice) => slice.problem)?.problem ?? failure;
+    this.core.call(() => this.core.exports.join(this.handle), problem, ...slices.map(({ rotors }) => rotors));
+  }
+
+  /** The same motion as another object. */
+  again(): Motion {
+    return new Motion(this.core, this.handle, this.about);
   }
 
   close(): void {

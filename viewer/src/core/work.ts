@@ -1,5 +1,6 @@
-/** The messages between the page and the worker that solves its scenes. */
+/** The messages between the page and the workers that solve its scenes. */
 import type { About, Files } from "./core.ts";
+import type { Slice } from "./wasm.ts";
 
 /** A scene to solve, in at most `budget` seconds. */
 export interface Work {
@@ -9,11 +10,29 @@ export interface Work {
   budget: number;
 }
 
-/** To the worker: the compiled core first, then one scene after the other. */
-export type Order = { module: WebAssembly.Module } | { work: Work };
+/** The memory of a core and a motion in it, which another core takes over. */
+export interface Solution {
+  memory: ArrayBuffer;
+  handle: number;
+  about: About;
+}
 
-/** From the worker. A solution is the memory of a core and a motion in it; that of an ensemble comes twice. */
+/** Bodies of the motion that the worker holds, from number `from` up to `to`, until a time of the clock, ms. */
+export interface Piece {
+  from: number;
+  to: number;
+  until: number;
+}
+
+/**
+ * To a worker: the compiled core first, then one scene after the other. A worker that helps another one gets the solution
+ * of that. Bodies of an ensemble are asked for in pieces.
+ */
+export type Order = { module: WebAssembly.Module; solution?: Solution } | { work: Work } | { piece: Piece };
+
+/** From a worker. The solution of an ensemble in closed form comes twice; `took` is in ms. */
 export type Report =
   | { kind: "ready" }
-  | { kind: "solution"; memory: ArrayBuffer; handle: number; about: About; awaitsBodies: boolean }
+  | ({ kind: "solution"; awaitsBodies: boolean } & Solution)
+  | { kind: "slice"; slice: Slice; took: number }
   | { kind: "problem"; message: string };

@@ -20,10 +20,14 @@ export function Legend({ model }: { model: Model }) {
   const place = useRef<HTMLDivElement>(null);
   const open = useSignal<boolean | null>(null);
   const hidden = useSignal<ReadonlySet<keyof Shown>>(new Set());
+  const point = (layer: keyof Shown | null): void => {
+    if (layer !== null) model.pointed.value = { layer };
+    else if (model.pointed.peek()?.layer !== undefined) model.pointed.value = null;
+  };
   useEffect(() => {
     const width = place.current!.parentElement!.clientWidth;
     open.value ??= width >= ROOM.width && place.current!.closest(".seen")!.clientHeight >= ROOM.height;
-    return () => (model.pointed.value = null);
+    return () => point(null);
   }, []);
   const entries = useComputed(() => {
     const motion = model.motion.value;
@@ -36,7 +40,6 @@ export function Legend({ model }: { model: Model }) {
   const present = entries.value.filter(
     ({ layer }) => (shown[layer] && (layer !== "energy" || hasEnergyView(about))) || hidden.value.has(layer),
   );
-  const point = (layer: keyof Shown | null) => (model.pointed.value = layer);
   const press = (layer: keyof Shown): void => {
     const set = new Set(hidden.value);
     if (shown[layer]) set.add(layer);

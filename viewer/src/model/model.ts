@@ -38,6 +38,9 @@ export const SHOWN: Shown = {
 /** What has a name where the pointer is over it. */
 export type CurveName = "polhode" | "herpolhode" | "trace" | "separatrix" | "neighbours" | "cloud";
 
+/** What the pointer is on: a layer in the legend, which is emphasized, or a curve in a picture, which is marked in all. */
+export type Pointed = { layer: keyof Shown; curve?: never } | { curve: CurveName; layer?: never };
+
 /** The name of a scene, and the files that it refers to. */
 interface Opened {
   name: string;
@@ -66,6 +69,8 @@ export class Model {
   readonly problem = signal<string | null>(null);
   /** Whether a newer motion is being computed: what is shown is old. */
   readonly solving = signal(false);
+  /** The fraction of the bodies of an ensemble that are computed. */
+  readonly bodiesKnown = signal(0);
   readonly time = signal(0);
   readonly playing = signal(false);
   /** Seconds of motion per second. */
@@ -82,12 +87,9 @@ export class Model {
   readonly opened = signal<About | null>(null);
   /** Whether the tip of Ω is marked, in the picture in space and on the energy ellipsoid. */
   readonly marked = signal(false);
-  /** The layer that the legend points at. */
-  readonly pointed = signal<keyof Shown | null>(null);
+  readonly pointed = signal<Pointed | null>(null);
   /** The name of the built-in scene that is open; null for others. */
   readonly preset = signal<string | null>(null);
-  /** The curve under the pointer, which is marked in all pictures. */
-  readonly hovered = signal<CurveName | null>(null);
   /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
   /** The lesson that the page shows. */
@@ -324,13 +326,15 @@ export class Model {
     const number = ++this.asked;
     if (opens) this.opening = number;
     this.solving.value = true;
+    this.bodiesKnown.value = 0;
     let shown: Motion | null = null;
     const complete = (motion: Motion): void => {
       if (this.motion.peek() !== shown) return;
       this.motion.value = motion;
     };
     try {
-      shown = await this.solver.solve({ scene, name, files, only: opens, complete });
+      const progress = (part: number): void => void (this.bodiesKnown.value = part);
+      shown = await this.solver.solve({ scene, name, files, only: opens, progress, complete });
       return shown ?? GIVEN_UP;
     } catch (error) {
       // What is wrong with an older scene does not matter.

@@ -33,6 +33,7 @@ export function Facts({ model, wide }: { model: Model; wide: boolean }) {
     ],
     ["Mass", body.mass !== null && `${significant(body.mass, 5)} kg`],
     ["Bodies", cloudOf(model.scene.value, about) ?? about.ensemble?.toLocaleString("en"), "cloud"],
+    ["Not drawn", model.motion.value?.bodiesProblem],
     ["Method", methodOf(about)],
   ];
   return (

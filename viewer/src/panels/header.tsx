@@ -1,6 +1,6 @@
 import type { ComponentChildren } from "preact";
 import { useRef } from "preact/hooks";
-import { Icon } from "../inputs/button.tsx";
+import { Dialog } from "../inputs/dialog.tsx";
 import type { Lesson } from "../lessons/lesson.ts";
 import type { Model } from "../model/model.ts";
 import { KEYS } from "./keys.ts";
@@ -71,37 +71,25 @@ function Help() {
       >
         ?
       </button>
-      <dialog
-        ref={dialog}
-        aria-labelledby="help-title"
-        onClick={(event) => {
-          if (event.target === event.currentTarget) event.currentTarget.close();
-        }}
-      >
-        <div class="dialog">
-          <h2 id="help-title">Keys</h2>
-          <dl class="keys">
-            {KEYS.map(([keys, action]) => (
-              <div key={keys}>
-                <dt>{keys.split(" ").map((key) => (key === "–" ? " – " : <kbd key={key}>{key}</kbd>))}</dt>
-                <dd>{action}</dd>
-              </div>
-            ))}
-          </dl>
-          <p class="note">
-            Drag to rotate the picture; pinch or scroll to zoom. Drop a scene (.toml) anywhere to open it,
-            together with the mesh that it names.
-          </p>
-          <p class="note">
-            Drag the dot of Ω on the energy ellipsoid, push the body, or aim Ω, L and the attitude by their
-            handles. What you change at a time becomes the new start, at that time; what was before is
-            replaced, and Undo brings it back.
-          </p>
-          <button id="help-close" onClick={() => dialog.current?.close()}>
-            <Icon name="close" /> Close
-          </button>
-        </div>
-      </dialog>
+      <Dialog frame={dialog} name="shortcuts" title="Keys">
+        <dl class="keys">
+          {KEYS.map(([keys, action]) => (
+            <div key={keys}>
+              <dt>{keys.split(" ").map((key) => (key === "–" ? " – " : <kbd key={key}>{key}</kbd>))}</dt>
+              <dd>{action}</dd>
+            </div>
+          ))}
+        </dl>
+        <p class="note">
+          Drag to rotate the picture; pinch or scroll to zoom. Drop a scene (.toml) anywhere to open it,
+          together with the mesh that it names.
+        </p>
+        <p class="note">
+          Drag the dot of Ω on the energy ellipsoid, push the body, or aim Ω, L and the attitude by their
+          handles. What you change at a time becomes the new start, at that time; what was before is replaced,
+          and Undo brings it back.
+        </p>
+      </Dialog>
     </>
   );
 }

@@ -1,5 +1,6 @@
 import { useRef } from "preact/hooks";
 import { Icon, IconButton } from "../inputs/button.tsx";
+import { Dialog } from "../inputs/dialog.tsx";
 import type { Model } from "../model/model.ts";
 import { titleOf } from "../presets/files.ts";
 import { GROUPS, openPreset, type Preset } from "../presets/index.ts";
@@ -41,39 +42,20 @@ export function Scenes({ model }: { model: Model }) {
           if (files.length > 0) void openFiles(model, files);
         }}
       />
-      <dialog
-        ref={dialog}
-        class="gallery"
-        aria-labelledby="scenes-title"
-        onClick={(event) => {
-          if (event.target === event.currentTarget) event.currentTarget.close();
-        }}
-      >
-        <div class="dialog">
-          <div class="course">
-            <h2 id="scenes-title">Scenes</h2>
-            <IconButton
-              id="scenes-close"
-              class="quiet"
-              label="Close"
-              icon="close"
-              onClick={() => dialog.current?.close()}
-            />
-          </div>
-          {GROUPS.map(([title, presets]) => (
-            <section key={title} aria-label={title}>
-              <h3>{title}</h3>
-              <ul class="lessons">
-                {presets.map((preset) => (
-                  <li key={preset.name}>
-                    <Entry preset={preset} open={model.preset.value === preset.name} choose={choose} />
-                  </li>
-                ))}
-              </ul>
-            </section>
-          ))}
-        </div>
-      </dialog>
+      <Dialog frame={dialog} name="gallery" title="Scenes">
+        {GROUPS.map(([title, presets]) => (
+          <section key={title} aria-label={title}>
+            <h3>{title}</h3>
+            <ul class="lessons">
+              {presets.map((preset) => (
+                <li key={preset.name}>
+                  <Entry preset={preset} open={model.preset.value === preset.name} choose={choose} />
+                </li>
+              ))}
+            </ul>
+          </section>
+        ))}
+      </Dialog>
     </div>
   );
 }

@@ -1,6 +1,7 @@
 import { type ReadonlySignal, useSignal } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import { Icon, IconButton } from "../inputs/button.tsx";
+import { Dialog } from "../inputs/dialog.tsx";
 import type { Lessons } from "../lessons/lessons.ts";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
@@ -93,58 +94,46 @@ export function Share({ model, palette, lessons, sharing }: Props) {
           dialog.current?.showModal();
         }}
       />
-      <dialog
-        ref={dialog}
-        aria-labelledby="share-title"
-        onClick={(event) => {
-          if (event.target === event.currentTarget) event.currentTarget.close();
-        }}
-      >
-        <div class="dialog share">
-          <h2 id="share-title">Share</h2>
-          <ul>
-            {address && (
-              <li>
-                <button id="copy-address" onClick={() => void act(copy)}>
-                  <Icon name="link" /> Copy the address
-                </button>
-                <span class="note">
-                  It holds the scene with its changes, the time, the camera and what is shown.
-                </span>
-              </li>
-            )}
+      <Dialog frame={dialog} name="sharing" title="Share">
+        <ul>
+          {address && (
             <li>
-              <button id="save-picture" onClick={() => void act(savePicture)}>
-                <Icon name="picture" /> Save a picture
+              <button id="copy-address" autofocus onClick={() => void act(copy)}>
+                <Icon name="link" /> Copy the address
               </button>
-              <span class="note">A PNG of twice the size, with the title and the caption.</span>
+              <span class="note">
+                It holds the scene with its changes, the time, the camera and what is shown.
+              </span>
             </li>
-            <li>
-              <button id="save-page" onClick={() => void act(savePage)}>
-                <Icon name="page" /> Save the page
-              </button>
-              <span class="note">One HTML file to send, which others can change as well.</span>
-            </li>
-          </ul>
-          <p class={said.value?.failed ? "said failed" : "said"} aria-live="polite">
-            {said.value?.text}
-          </p>
-          {shown.value !== null && (
-            <input
-              ref={field}
-              id="address"
-              type="text"
-              readOnly
-              aria-label="Address"
-              value={shown.value}
-              onFocus={(event) => event.currentTarget.select()}
-            />
           )}
-          <button id="share-close" onClick={() => dialog.current?.close()}>
-            <Icon name="close" /> Close
-          </button>
-        </div>
-      </dialog>
+          <li>
+            <button id="save-picture" autofocus={!address} onClick={() => void act(savePicture)}>
+              <Icon name="picture" /> Save a picture
+            </button>
+            <span class="note">A PNG of twice the size, with the title and the caption.</span>
+          </li>
+          <li>
+            <button id="save-page" onClick={() => void act(savePage)}>
+              <Icon name="page" /> Save the page
+            </button>
+            <span class="note">One HTML file to send, which others can change as well.</span>
+          </li>
+        </ul>
+        <p class={said.value?.failed ? "said failed" : "said"} aria-live="polite">
+          {said.value?.text}
+        </p>
+        {shown.value !== null && (
+          <input
+            ref={field}
+            id="address"
+            type="text"
+            readOnly
+            aria-label="Address"
+            value={shown.value}
+            onFocus={(event) => event.currentTarget.select()}
+          />
+        )}
+      </Dialog>
     </>
   );
 }

@@ -13,17 +13,20 @@ const OLD = 0.4;
  * The bodies of an ensemble: small boxes on the sphere around the nominal body, each with its own attitude and in the
  * direction of its own axis. They start together and spread over the sphere.
  */
-export function crowd({ figure, palette, curves, cloud, say }: Setting): Part | null {
+export function crowd(setting: Setting): Part | null {
+  const { figure, palette, curves, cloud, bodiesKnown, say } = setting;
   const { about, motion, traced } = figure;
   if (about.ensemble === null) {
     cloud.matrices = null;
     return null;
   }
   const old = motion.awaitsBodies ? cloud.matrices : null;
-  if (motion.awaitsBodies && !old) {
-    say("The other bodies are being computed…");
-    return null;
-  }
+  let said = "";
+  // Screen readers read each message.
+  const sayOnce = (message: string): void => {
+    if (message !== said) say((said = message));
+  };
+  if (motion.awaitsBodies && !old) return { update: () => sayOnce(progress(bodiesKnown())) };
   const sides = new Box3().setFromArray(figure.surface.vertices).getSize(new Vector3());
   const box = new BoxGeometry(...sides.multiplyScalar(SIZE / Math.max(...sides)));
   const material = new MeshLambertMaterial({
@@ -33,7 +36,8 @@ export function crowd({ figure, palette, curves, cloud, say }: Setting): Part | 
     // Paler while it is that of the motion before: a cloud that vanished while a slider moves would flicker.
     ...(old && { transparent: true, opacity: OLD }),
   });
-  const bodies = new InstancedMesh(box, material, old ? old.length / 16 : Math.min(BODIES, about.ensemble));
+  const count = Math.min(BODIES, about.ensemble);
+  const bodies = new InstancedMesh(box, material, old ? old.length / 16 : count);
   bodies.frustumCulled = false;
   if (old) {
     bodies.instanceMatrix.array.set(old);
@@ -54,11 +58,13 @@ export function crowd({ figure, palette, curves, cloud, say }: Setting): Part | 
   const draw = (rotors: Float64Array): void => {
     const [turn, place, whole] = [new Quaternion(), new Vector3(), new Vector3(1, 1, 1)];
     const matrix = new Matrix4();
-    bodies.count = rotors.length / 4;
-    for (let k = 0; k < bodies.count; k++) {
+    const all = rotors.length / 4;
+    bodies.count = 0;
+    for (let k = 0; k < all; k++) {
+      if (Number.isNaN(rotors[4 * k])) continue;
       quaternion(rotors, 4 * k, turn);
       place.copy(traced).applyQuaternion(turn).multiplyScalar(REACH);
-      bodies.setMatrixAt(k, matrix.compose(place, turn, whole));
+      bodies.setMatrixAt(bodies.count++, matrix.compose(place, turn, whole));
     }
     bodies.instanceMatrix.needsUpdate = true;
     cloud.matrices = bodies.instanceMatrix.array.subarray(0, 16 * bodies.count);
@@ -70,6 +76,9 @@ export function crowd({ figure, palette, curves, cloud, say }: Setting): Part | 
       drawn = time;
       try {
         draw(motion.bodies(Math.max(time, about.start.time)));
+        sayOnce(
+          bodies.count < count ? missing(count - bodies.count, count, motion.bodiesProblem !== "") : "",
+        );
       } catch (error) {
         if (!(error instanceof Problem)) throw error;
         bodies.visible = false;
@@ -77,4 +86,14 @@ export function crowd({ figure, palette, curves, cloud, say }: Setting): Part | 
       }
     },
   };
+}
+
+function progress(known: number): string {
+  const tenths = Math.floor(10 * known);
+  return `The other bodies are being computed${tenths > 0 ? `: ${10 * tenths} %` : "…"}`;
+}
+
+function missing(some: number, all: number, known: boolean): string {
+  const why = known ? "; “Details” says why" : "";
+  return `${some.toLocaleString("en")} of ${all.toLocaleString("en")} bodies are not drawn${why}.`;
 }

@@ -52,8 +52,8 @@ export class EnergyView extends Viewport {
     this.leave = tool?.attach(host) ?? (() => {});
     this.watch(() => {
       void tool?.held.value;
-      const { motion, row, marked, hovered, shown } = model;
-      for (const watched of [motion, row, marked, hovered, shown, palette]) void watched.value;
+      const { motion, row, marked, pointed, shown } = model;
+      for (const watched of [motion, row, marked, pointed, shown, palette]) void watched.value;
     });
     const view = { camera: this.viewpoint.camera, size: this.screen.value };
     this.hover = new Hover(host, this.curves, view, model);
@@ -72,7 +72,7 @@ export class EnergyView extends Viewport {
 
   protected override show(): void {
     this.build();
-    this.curves.mark(this.model.hovered.peek());
+    this.curves.mark(this.model.pointed.peek()?.curve ?? null);
     const row = this.model.row.peek();
     if (row && this.dot) {
       const omega = this.tool?.held.peek() ?? vector(row, State.omegaBody);

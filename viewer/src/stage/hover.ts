@@ -56,7 +56,9 @@ export class Hover {
       this.name = name;
       this.tip.hidden = name === null;
       if (name !== null) this.tip.textContent = named(name, this.model);
-      this.model.hovered.value = name;
+      const { pointed } = this.model;
+      if (name !== null) pointed.value = { curve: name };
+      else if (pointed.peek()?.curve !== undefined) pointed.value = null;
     }
     if (name === null) return;
     const { clientWidth: width, clientHeight: height } = this.host;

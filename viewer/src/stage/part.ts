@@ -19,7 +19,9 @@ export interface Setting {
   calm: { readonly matches: boolean };
   /** The places of the cloud that was drawn last, for as long as those of a new motion are being computed. */
   cloud: { matrices: ArrayLike<number> | null };
-  /** Shows a message over the picture. */
+  /** The fraction of the bodies of an ensemble that are computed. */
+  bodiesKnown: () => number;
+  /** Shows a message over the picture; an empty one hides it. */
   say: (message: string) => void;
 }
 

@@ -88,8 +88,19 @@ export class Stage extends Viewport {
       if (turn && turn !== turned) this.viewpoint.turn(turn);
       turned = turn;
       void tools?.changed.value;
-      const { motion, row, shown, marked, pointed, hovered, camera, pose, playing } = model;
-      for (const watched of [motion, row, shown, marked, pointed, hovered, camera, pose, playing, palette])
+      const { motion, row, shown, marked, pointed, bodiesKnown, camera, pose, playing } = model;
+      for (const watched of [
+        motion,
+        row,
+        shown,
+        marked,
+        pointed,
+        bodiesKnown,
+        camera,
+        pose,
+        playing,
+        palette,
+      ])
         void watched.value;
     });
     const view = { camera: this.viewpoint.camera, size: this.screen.value };
@@ -156,9 +167,10 @@ export class Stage extends Viewport {
 
   protected override show(): void {
     const { model } = this;
-    const shown = revealed(model.shown.peek(), model.hovered.peek());
+    const { layer = null, curve = null } = model.pointed.peek() ?? {};
+    const shown = revealed(model.shown.peek(), curve);
     this.build();
-    this.curves.mark(model.hovered.peek());
+    this.curves.mark(curve);
     const row = model.row.peek();
     this.space.visible = row !== null;
     if (row) {
@@ -167,9 +179,8 @@ export class Stage extends Viewport {
       const instant = this.instant(row);
       this.turning.quaternion.copy(instant.attitude);
       for (const part of this.parts) part.update(instant, shown);
-      const pointed = model.pointed.peek();
-      if (pointed !== null || this.emphasized !== null) emphasize(this.space, pointed);
-      this.emphasized = pointed;
+      if (layer !== null || this.emphasized !== null) emphasize(this.space, layer);
+      this.emphasized = layer;
       const description = this.description(shown);
       if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
@@ -201,6 +212,7 @@ export class Stage extends Viewport {
       curves: this.curves,
       cloud: this.cloud,
       calm: this.calm,
+      bodiesKnown: () => this.model.bodiesKnown.peek(),
       say: (message) => this.say(message),
     };
     this.paths = new Paths(setting);

@@ -229,7 +229,7 @@ export abstract class Viewport {
       this.resize();
     });
     message.setAttribute("role", "status");
-    message.style.cssText = "position: absolute; inset: auto 1rem 1rem; margin: 0; text-align: center";
+    message.style.cssText = "position: absolute; inset: auto 1rem 2.4rem; margin: 0; text-align: center";
     if (getComputedStyle(host).position === "static") host.style.position = "relative";
     host.append(canvas, this.labels.element, message);
     this.say(null);

@@ -1,0 +1,89 @@
+"""One HTML page of headings, tables and plots, complete in itself."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Iterable, Sequence
+from html import escape
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STYLE = """
+:root { color-scheme: light dark; }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; display: block; overflow-x: auto; }
+th, td { padding: 0.15rem 0.7rem; text-align: right; border-bottom: 1px solid #8884; white-space: nowrap; }
+th:first-child, td:first-child { text-align: left; }
+td.words, th.words { white-space: normal; text-align: left; min-width: 12rem; overflow-wrap: anywhere; }
+.bad { color: #c62828; font-weight: 600; }
+figure { margin: 1rem 0; background: white; border-radius: 0.3rem; padding: 0.5rem; }
+figure svg, figure img { max-width: 100%; height: auto; }
+figcaption { color: #555; font-size: 0.9rem; }
+pre { overflow-x: auto; font-size: 0.85rem; }
+"""
+
+
+def _cells(tag: str, cells: Sequence[str], wordy: Sequence[bool]) -> str:
+    kinds = (' class="words"' if words else "" for words in wordy)
+    return "".join(f"<{tag}{kind}>{escape(cell)}</{tag}>" for kind, cell in zip(kinds, cells, strict=True))
+
+
+class Page:
+    """Collects the parts of the page."""
+
+    def __init__(self, title: str) -> None:
+        self.title, self.parts = title, [f"<h1>{escape(title)}</h1>"]
+
+    def heading(self, text: str) -> None:
+        """Begin a section."""
+        self.parts.append(f"<h2>{escape(text)}</h2>")
+
+    def text(self, *paragraphs: str) -> None:
+        """Add paragraphs."""
+        self.parts += [f"<p>{escape(text)}</p>" for text in paragraphs]
+
+    def facts(self, pairs: Iterable[tuple[str, str]]) -> None:
+        """Add names and values, a line each."""
+        lines = (f"<li>{escape(name)}: {escape(value)}</li>" for name, value in pairs)
+        self.parts.append(f"<ul>{''.join(lines)}</ul>")
+
+    def table(self, header: Sequence[str], rows: Iterable[Sequence[str]], bad: Sequence[bool] = ()) -> None:
+        """Add a table; bad rows stand out. Columns with long cells are set as words, others as numbers."""
+        lines = [list(row) for row in rows]
+        wordy = [any(len(line[k]) > 20 for line in lines) for k in range(len(header))]
+        self.parts.append(f"<table><tr>{_cells('th', header, wordy)}</tr>")
+        for k, line in enumerate(lines):
+            kind = ' class="bad"' if k < len(bad) and bad[k] else ""
+            self.parts.append(f"<tr{kind}>{_cells('td', line, wordy)}</tr>")
+        self.parts.append("</table>")
+
+    def plot(self, drawing: Figure, caption: str) -> None:
+        """Add a figure of matplotlib as SVG."""
+        text = StringIO()
+        drawing.savefig(text, format="svg", bbox_inches="tight")
+        svg = text.getvalue()
+        self._figure(svg[svg.index("<svg") :], caption)
+
+    def image(self, path: Path, caption: str) -> None:
+        """Add an image file."""
+        data = b64encode(path.read_bytes()).decode()
+        self._figure(f'<img alt="{escape(caption)}" src="data:image/png;base64,{data}">', caption)
+
+    def _figure(self, drawing: str, caption: str) -> None:
+        self.parts.append(f"<figure>{drawing}<figcaption>{escape(caption)}</figcaption></figure>")
+
+    def listing(self, text: str) -> None:
+        """Add preformatted text."""
+        self.parts.append(f"<pre>{escape(text)}</pre>")
+
+    def html(self) -> bytes:
+        """The page."""
+        return (
+            f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(self.title)}</title>'
+            f'<meta name="viewport" content="width=device-width"><style>{STYLE}</style>'
+            f"<body>{''.join(self.parts)}</body></html>\n"
+        ).encode()

@@ -2,6 +2,8 @@
 
 import json
 import os
+import re
+import sys
 from pathlib import Path
 
 from docutils import nodes
@@ -10,17 +12,24 @@ from sphinx.util.docutils import SphinxDirective
 from polhode._viewer import document
 from polhode._viewer.html import bundle_path
 
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "docs/extensions"))
+
 project = "Polhode"
 copyright = "the authors of Polhode"
-extensions = ["myst_parser"]
+extensions = ["myst_parser", "handout_pages", "derivations", "api_pages"]
+repository = "https://github.com/polhode/polhode"
 exclude_patterns = ["_build"]
 myst_heading_anchors = 3
+default_role = "py:obj"  # docstrings put names in single backticks
+autodoc_member_order = "bysource"
+napoleon_use_ivar = True
 html_theme = "furo"
 html_title = "Polhode"
 html_show_sourcelink = False
 html_copy_source = False
-
-ROOT = Path(__file__).parents[1]
+html_static_path = ["static"]
+html_css_files = ["handout.css", "derivation.css"]
 
 
 class Viewer(SphinxDirective):
@@ -54,7 +63,7 @@ def viewer_exists():
 
 def resolve_conventions_link(app, docname, source):
     """Make links to CONVENTIONS.md point to its page."""
-    source[0] = source[0].replace("(../CONVENTIONS.md)", "(conventions.md)")
+    source[0] = re.sub(r"\(((?:\.\./)*)\.\./CONVENTIONS\.md\)", r"(\1conventions.md)", source[0])
 
 
 def write_viewer(app, exception):

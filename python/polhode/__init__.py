@@ -24,7 +24,6 @@ from polhode._algebra.constructors import (
 from polhode._algebra.grades import concatenate, stack
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._native import SceneError
 from polhode._native import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -57,6 +56,7 @@ if TYPE_CHECKING:
     from polhode._mechanics.statistics import Moments
     from polhode._mechanics.stepper import Stepper
     from polhode._mechanics.trajectory import Trajectory
+    from polhode._native import SceneError
     from polhode._report.ensemble.reduced_ensemble import ReducedEnsemble
     from polhode._scene.scene import Scene
     from polhode._viewer.notebook import view
@@ -106,6 +106,7 @@ _LATER = {
         "_mechanics.statistics": "Moments",
         "_mechanics.stepper": "Stepper",
         "_report.ensemble.reduced_ensemble": "ReducedEnsemble",
+        "_scene.scene": "SceneError",
         "_outputs": "DampedTop FreeMotion LagrangeTop LarmorSphere Scene SymmetricTop Trajectory"
         " simulate simulate_blocks view",
     }.items()

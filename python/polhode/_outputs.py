@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._mechanics.closed_forms import ClosedForm, DampedTop, LagrangeTop, LarmorSphere
+from polhode._mechanics.closed_form import ClosedForm
+from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere
 from polhode._mechanics.free_motion import FreeMotion, SymmetricTop
 from polhode._mechanics.simulate import simulate as simulate
 from polhode._mechanics.simulate import simulate_blocks as simulate_blocks
@@ -32,6 +33,14 @@ def to_xarray(self: Trajectory) -> xarray.Dataset:
     """Return an `xarray.Dataset` with labelled dimensions, units and conventions.
 
     For a batch, the dimension `body` counts the bodies in C order; the attribute `batch_shape` is the shape.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(2, 2, 2)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 1, 2])
+    >>> data = motion.to_xarray()
+    >>> data.energy.values, data.energy.units
+    (array([1., 1., 1.]), 'J')
     """
     from polhode._report.netcdf import to_xarray
 
@@ -57,6 +66,17 @@ def to_dataframe(self: Trajectory) -> pandas.DataFrame:
     ------
     ImportError
         Without pandas: ``pip install 'polhode[pandas]'``.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(2, 2, 2)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 1, 2])
+    >>> motion.to_dataframe()["omega_body_z"]
+    time
+    0.0    1.0
+    1.0    1.0
+    2.0    1.0
+    Name: omega_body_z, dtype: float64
     """
     from polhode._report.table import to_dataframe
 
@@ -81,6 +101,15 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
         If the file holds a batch (use xarray), or was not written by Polhode.
     OSError
         If the file cannot be read.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(2, 2, 2)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 1])
+    >>> motion.save("ball.nc")
+    >>> again = ph.Trajectory.read("ball.nc")
+    >>> bool((again.rotor == motion.rotor).all())
+    True
     """
     from polhode._report.netcdf import read
 
@@ -106,6 +135,15 @@ def save(self: Trajectory, path: str | os.PathLike[str]) -> None:
         for ``.parquet``.
     OSError
         If the file cannot be written.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(2, 2, 2)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 1])
+    >>> motion.save("ball.csv")
+    >>> with open("ball.csv") as file:
+    ...     print(file.readline().split(",")[:5])
+    ['time', 'attitude_w', 'attitude_x', 'attitude_y', 'attitude_z']
     """
     from polhode._report.output import encoded
     from polhode._support.files import form_of, write_atomically
@@ -299,7 +337,7 @@ def run_into(
 for _method in (to_xarray, to_dataframe, save, plot, film, _repr_html_):
     setattr(Trajectory, _method.__name__, _method)
 setattr(Trajectory, "read", staticmethod(read))  # noqa: B010, declared for type checkers only
-for _kind in (Trajectory, Scene, FreeMotion, ClosedForm):
+for _kind in (Trajectory, Scene, ClosedForm):
     setattr(_kind, "view", view_of)  # noqa: B010
 setattr(Scene, "reduce", reduce)  # noqa: B010
 setattr(Scene, "_run_into", run_into)  # noqa: B010

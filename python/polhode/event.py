@@ -30,6 +30,19 @@ class Event:
     """An event, returned by the functions of this module.
 
     Events are immutable values: equal if their arguments are equal, hashable, and picklable.
+
+    Examples
+    --------
+    The motion of a ball at 1 rad/s ends after a quarter turn, where e1 crosses the plane e2e3:
+
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> side = ph.event.plane(ph.e1, ph.e1, terminal=True)
+    >>> side
+    plane([1, 0, 0], [1, 0, 0], terminal=True)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+    >>> motion = ph.simulate(ball, start, np.arange(5.0), events=side)
+    >>> motion.time, motion.events[0].time.round(6)
+    (array([0., 1.]), array([1.570796]))
     """
 
     law: _native.Event
@@ -65,6 +78,16 @@ def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: 
         motion computed backwards from its start, in the direction of the computation.
     terminal
         Whether the motion ends there: later output times are omitted.
+
+    Examples
+    --------
+    An axis that turns at 1 rad/s is 60° from its start after π/3 s, and again before it returns:
+
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+    >>> far = ph.event.angle(ph.e1, ph.e1, np.pi / 3)
+    >>> ph.simulate(ball, start, [6.0], events=far).events[0].time.round(4)  # π/3, 2π − π/3
+    array([1.0472, 5.236 ])
     """
     value = number(angle, "angle")
     if not 0 <= value <= np.pi:
@@ -77,6 +100,16 @@ def plane(body: Any, normal: Any, *, direction: int = 0, terminal: bool = False)
 
     The plane passes through the origin; `body` and `normal` are vectors or (3,). `direction` is 1 for
     crossings to the side of the normal; the rest as for `angle`.
+
+    Examples
+    --------
+    An axis that turns at π rad/s crosses the plane e2e3 each second:
+
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, np.pi])
+    >>> motion = ph.simulate(ball, start, [4.0], events=ph.event.plane(ph.e1, ph.e1))
+    >>> motion.events[0].time.round(9), motion.events[0].rising
+    (array([0.5, 1.5, 2.5, 3.5]), array([False,  True, False,  True]))
     """
     return _event("plane", direction, terminal, _direction(body, "body"), _direction(normal, "normal"))
 
@@ -86,6 +119,16 @@ def spin(plane: Any, rate: float = 0.0, *, direction: int = 0, terminal: bool = 
 
     The spin is the component of ω along the axis of the plane: ``spin(e3*e1)`` finds the flips of a T-handle
     about e2.
+
+    Examples
+    --------
+    The flips of a T-handle, which is spun about its middle axis, follow at equal times:
+
+    >>> handle = ph.Inertia.from_principal_moments(1.755e-4, 2.354e-4, 3.930e-4)
+    >>> start = ph.State(ph.Rotor.identity(), [0.3, 10 * np.pi, 0.3])
+    >>> flips = ph.simulate(handle, start, [4.0], events=ph.event.spin(ph.e3 ^ ph.e1)).events[0]
+    >>> np.diff(flips.time).round(3)
+    array([0.9, 0.9, 0.9])
     """
     components = as_bivectors(plane, "the plane")
     if components.shape != (3,):
@@ -95,7 +138,18 @@ def spin(plane: Any, rate: float = 0.0, *, direction: int = 0, terminal: bool = 
 
 
 def position(normal: Any, distance: float = 0.0, *, direction: int = 0, terminal: bool = False) -> Event:
-    """Return the event that the centre of mass crosses ``x·n = distance`` (m), with n the unit normal."""
+    """Return the event that the centre of mass crosses ``x·n = distance`` (m), with n the unit normal.
+
+    Examples
+    --------
+    A ball that falls 5 m at 10 m/s² reaches the ground after 1 s:
+
+    >>> ball = ph.Body.sphere(0.1, mass=1)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 0], position=[0, 0, 5])
+    >>> ground = ph.event.position(ph.e3, terminal=True)
+    >>> ph.simulate(ball, start, [2.0], force=[0, 0, -10], events=ground).events[0].time.round(9)
+    array([1.])
+    """
     along, level = _direction(normal, "normal"), number(distance, "distance")
     return _event("position", direction, terminal, along, level)
 
@@ -107,6 +161,16 @@ def formula(text: str, /, *, direction: int = 0, terminal: bool = False, **value
     `polhode.force.formula`: ``R``, ``t``, ``x``, ``v``, ``Ω_B``, ``Ω_S``, ``m`` and others; `values` are
     single multivectors, rotors, linear maps and numbers for other names. `direction` is 1 for rising values;
     the rest as for `angle`. A FormulaError gives the place of what is not a formula or not a scalar.
+
+    Examples
+    --------
+    A ball that falls at 10 m/s² reaches 3 m/s after 0.3 s:
+
+    >>> ball = ph.Body.sphere(0.1, mass=1)
+    >>> still = ph.State(ph.Rotor.identity(), [0, 0, 0])
+    >>> fast = ph.event.formula("norm(v) - limit", limit=3)
+    >>> ph.simulate(ball, still, [1.0], force=[0, 0, -10], events=fast).events[0].time.round(9)
+    array([0.3])
     """
     return law_of_formula(lambda given: _event("formula", direction, terminal, text, given), text, values)
 
@@ -122,6 +186,17 @@ def function(
     Its arguments are the time in s, the rotor from body axes to space, the angular velocity in body axes, a
     bivector, and the position and the velocity of the centre of mass, vectors in space; it returns a number.
     Its exceptions pass through `simulate`. The rest as for `angle`.
+
+    Examples
+    --------
+    >>> def halved(t, rotor, omega_body, position, velocity):
+    ...     return omega_body.norm() - 0.5
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+    >>> event = ph.event.function(halved)
+    >>> motion = ph.simulate(ball, start, [2.0], ph.torque.damping(1), events=event)
+    >>> motion.events[0].time.round(4)  # ln 2
+    array([0.6931])
     """
     given = function_of(f, "t, rotor, omega_body, position and velocity")
     return _event("function", direction, terminal, given)

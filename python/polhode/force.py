@@ -34,6 +34,13 @@ class Force(Sum):
     """A sum of forces, returned by the functions of this module.
 
     Forces are immutable values: equal if their arguments are equal, hashable, and picklable.
+
+    Examples
+    --------
+    Forces add up:
+
+    >>> ph.force.constant([0, 0, -9.81]) + ph.force.drag(0.1)
+    constant([0.0, 0.0, -9.81]) + drag(0.1)
     """
 
     laws: tuple[_native.Force, ...]
@@ -47,7 +54,18 @@ def __dir__() -> list[str]:
 
 
 def constant(F: Any) -> Force:
-    """Return a force constant in space, a vector or (3,) in N."""
+    """Return a force constant in space, a vector or (3,) in N.
+
+    Examples
+    --------
+    A ball that falls for 2 s at 10 m/s²:
+
+    >>> ball = ph.Body.sphere(0.1, mass=0.5)
+    >>> still = ph.State(ph.Rotor.identity(), [0, 0, 0])
+    >>> fall = ph.simulate(ball, still, [2.0], force=ph.force.constant([0, 0, -5]))
+    >>> round(float(fall.position[-1]["e3"]), 9)  # −½ g t²
+    -20.0
+    """
     return _force("constant", F)
 
 
@@ -56,27 +74,79 @@ def thrust(force: Any, at: Any = None) -> Force:
 
     It acts at the point `at` of the body (in body axes, m) and so exerts the torque ``(at − c)∧F`` about the
     centre of mass c; by default it acts at the centre of mass.
+
+    Examples
+    --------
+    A thruster of 2 N, 1 m off the centre of mass, spins the body, with the torque 2 N m:
+
+    >>> ball = ph.Body(4, ph.Inertia.from_principal_moments(4, 4, 4))
+    >>> still = ph.State(ph.Rotor.identity(), [0, 0, 0])
+    >>> motion = ph.simulate(ball, still, [1.0], force=ph.force.thrust([0, 2, 0], at=[1, 0, 0]))
+    >>> round(float(motion.omega_body[-1]["e12"]), 9)
+    0.5
     """
     return _force("thrust", force) if at is None else _force("thrust", force, at)
 
 
 def drag(k: float) -> Force:
-    """Return ``−k v``, k in N s/m."""
+    """Return ``−k v``, k in N s/m.
+
+    Examples
+    --------
+    >>> ball = ph.Body.sphere(0.1, mass=2)
+    >>> thrown = ph.State(ph.Rotor.identity(), [0, 0, 0], velocity=[1, 0, 0])
+    >>> motion = ph.simulate(ball, thrown, [0, 1, 2], force=ph.force.drag(1))
+    >>> motion.velocity["e1"].round(4)  # exp(-k t/m)
+    array([1.    , 0.6065, 0.3679])
+    """
     return _force("drag", k)
 
 
 def quadratic_drag(k: float) -> Force:
-    """Return ``−k |v| v``, k in N s²/m²."""
+    """Return ``−k |v| v``, k in N s²/m².
+
+    Examples
+    --------
+    A ball that falls in air reaches the speed ``√(m g/k)``, here 7 m/s:
+
+    >>> ball = ph.Body.sphere(0.1, mass=0.5)
+    >>> dropped = ph.State(ph.Rotor.identity(), [0, 0, 0])
+    >>> forces = ph.force.constant([0, 0, -4.9]) + ph.force.quadratic_drag(0.1)
+    >>> ph.simulate(ball, dropped, [0, 10, 20], force=forces).velocity["e3"].round(4)
+    array([ 0., -7., -7.])
+    """
     return _force("quadratic_drag", k)
 
 
 def spring(stiffness: float, anchor: Any = 0) -> Force:
-    """Return ``−k (x − anchor)``, the stiffness k in N/m, the anchor a point in space in m."""
+    """Return ``−k (x − anchor)``, the stiffness k in N/m, the anchor a point in space in m.
+
+    Examples
+    --------
+    A mass on a spring is on the other side after half a period, ``π √(m/k)``:
+
+    >>> ball = ph.Body.sphere(0.1, mass=4)
+    >>> pulled = ph.State(ph.Rotor.identity(), [0, 0, 0], position=[1, 0, 0])
+    >>> swing = ph.simulate(ball, pulled, [2 * np.pi], force=ph.force.spring(1))
+    >>> round(float(swing.position[-1]["e1"]), 9)
+    -1.0
+    """
     return _force("spring", stiffness, anchor)
 
 
 def central(mu: float) -> Force:
-    """Return ``−μ m x/|x|³``: attraction by a centre at the origin of space, μ = G M in m³/s²."""
+    """Return ``−μ m x/|x|³``: attraction by a centre at the origin of space, μ = G M in m³/s².
+
+    Examples
+    --------
+    A circular orbit of radius 1 around ``μ = 1`` has the period 2π:
+
+    >>> moon = ph.Body.sphere(0.1, mass=1)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 0], position=[1, 0, 0], velocity=[0, 1, 0])
+    >>> orbit = ph.simulate(moon, start, [np.pi, 2 * np.pi], force=ph.force.central(1))
+    >>> orbit.position["e1"].round(9)
+    array([-1.,  1.])
+    """
     return _force("central", mu)
 
 
@@ -104,6 +174,16 @@ def formula(text: str, /, **values: Any) -> Force:
     FormulaError
         If the text is not a formula or its value is not a vector, with the place. If the formula has no
         value at some point of a motion, `simulate` raises and names the part of the formula.
+
+    Examples
+    --------
+    Weight and drag in one formula; the speed approaches ``m g/k``, here 5 m/s:
+
+    >>> ball = ph.Body.sphere(0.1, mass=0.5)
+    >>> dropped = ph.State(ph.Rotor.identity(), [0, 0, 0])
+    >>> law = ph.force.formula("-m g e3 - k v", g=10, k=1)
+    >>> ph.simulate(ball, dropped, [0, 10, 20], force=law).velocity["e3"].round(4)
+    array([ 0., -5., -5.])
     """
     return law_of_formula(lambda given: _native_force("formula", text, given), text, values)
 
@@ -114,6 +194,14 @@ def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Forc
     Its arguments are the time in s, the position and the velocity of the centre of mass, vectors in space,
     and the rotor from body axes to space; it returns the force in space in N, a vector or (3,). Its
     exceptions pass through `simulate`. It is slower than a `formula`; the force can be pickled if f can.
+
+    Examples
+    --------
+    >>> ball = ph.Body.sphere(0.1, mass=2)
+    >>> thrown = ph.State(ph.Rotor.identity(), [0, 0, 0], velocity=[1, 0, 0])
+    >>> law = ph.force.function(lambda t, position, velocity, rotor: -1.0 * velocity)
+    >>> ph.simulate(ball, thrown, [0, 1, 2], force=law).velocity["e1"].round(4)  # exp(-t/2)
+    array([1.    , 0.6065, 0.3679])
     """
     return _native_force("function", function_of(f, "t, position, velocity and rotor"))
 

@@ -82,6 +82,18 @@ class Torque(Sum):
     """A sum of torque laws, returned by the functions of this module.
 
     Laws are immutable values: equal if their arguments are equal, hashable, and picklable.
+
+    Examples
+    --------
+    Laws add up; each has the value of its arguments:
+
+    >>> law = ph.torque.heavy([0, 0, 2]) + ph.torque.damping(0.5)
+    >>> law
+    heavy([0.0, 0.0, 2.0]) + damping(0.5)
+    >>> law.holds  # a point of the body is fixed
+    True
+    >>> law == ph.torque.heavy([0, 0, 2]) + ph.torque.damping(0.5)
+    True
     """
 
     laws: tuple[_native.Law, ...]
@@ -107,6 +119,15 @@ class Torque(Sum):
         without their moments about their axes. The inertia is about the centre of mass, or about the fixed
         point if a law holds the body; from a `Body` the right one is taken. The time t is in s, by default
         that of the state.
+
+        Examples
+        --------
+        Damping at the rate 0.5/s is ``−0.5 I(Ω_B)``:
+
+        >>> inertia = ph.Inertia.from_principal_moments(1, 2, 3)
+        >>> state = ph.State(ph.Rotor.identity(), [0, 0, 4])
+        >>> ph.torque.damping(0.5).at(inertia, state)
+        -6 e1∧e2
         """
         if self.shape:
             raise ValueError(f"the torque must be that of a single body, got batch shape {self.shape}")
@@ -129,7 +150,7 @@ def __dir__() -> list[str]:
 
 
 def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
-    """Uniform gravity along −e3 on a body held at a pivot.
+    """Return the torque of uniform gravity along −e3 on a body held at a pivot.
 
     ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes, ``c = m g (centre of mass − pivot)``.
     `simulate` then uses the inertia about the pivot, and the position of a state is that of the pivot: the
@@ -148,6 +169,26 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
     ------
     TypeError
         For an `Inertia`, which has no mass; see `heavy`.
+
+    Examples
+    --------
+    The weight of a level bar that is held by one end exerts the torque ``m g l/2``:
+
+    >>> bar = ph.Body.box([2, 0.1, 0.1], mass=3)
+    >>> law = ph.torque.gravity(bar, g=10, pivot=[-1, 0, 0])
+    >>> law.at(bar, ph.State(ph.Rotor.identity(), [0, 0, 0]))
+    30 e3∧e1
+
+    A pendulum that is let go at 90° takes 1.18034 times as long for a swing as at small angles:
+
+    >>> bob = ph.Body.sphere(0.01, mass=1).moved(position=[0, 0, -1])
+    >>> level, low = (ph.Rotor.from_plane_angle(ph.e2 ^ ph.e3, angle) for angle in (np.pi / 2, 1e-4))
+    >>> starts = [ph.State(rotor, [0, 0, 0]) for rotor in (level, low)]
+    >>> down, weight = ph.event.plane(ph.e3, ph.e2), ph.torque.gravity(bob)
+    >>> swings = [ph.simulate(bob, start, [5.0], weight, events=down) for start in starts]
+    >>> slow, fast = (np.diff(swing.events[0].time)[0] for swing in swings)
+    >>> print(f"{slow / fast:.5f}")
+    1.18034
     """
     bodies = bodies_of(body)
     if Inertia in {*map(type, bodies.flat)}:
@@ -164,18 +205,30 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
 
 
 def heavy(c: Any) -> Torque:
-    """Uniform gravity along −e3 on a body held at a fixed point, the origin of its axes.
+    """Return the torque of uniform gravity along −e3 on a body held at the origin of its axes.
 
     ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes; ``c = m g (centre of mass)`` in body
     axes, a vector, (3,) or (..., 3) in N m. The motion follows from the inertia about the fixed point: an
     `Inertia` is used as it is, that of a `Body` is taken about the origin of its axes, and `simulate` raises
     if its centre of mass does not lie along c. `gravity` finds both from a body.
+
+    Examples
+    --------
+    The axis of a fast gyroscope goes round the vertical at about ``c/L3``, here 3/200 rad/s:
+
+    >>> inertia = ph.Inertia.from_principal_moments(2, 2, 1)
+    >>> tilted = ph.State(ph.Rotor.from_plane_angle(ph.e2 ^ ph.e3, 1.0), [0, 0, 200])
+    >>> motion = ph.simulate(inertia, tilted, np.linspace(0, 10, 101), ph.torque.heavy([0, 0, 3]))
+    >>> x, y, _ = motion.rotor(ph.e3).components.T
+    >>> turn = np.unwrap(np.arctan2(y, x))
+    >>> print(f"{(turn[-1] - turn[0]) / 10:.3f}")
+    0.015
     """
     return _law("heavy", c)
 
 
 def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -> Torque:
-    """Return the gradient of a planet's field on a Kepler orbit in the plane e1e2 of space.
+    """Return the torque of a planet's gravity gradient on a Kepler orbit in the plane e1e2 of space.
 
     With u the direction from planet to body, ``u = cos f e1 + sin f e2``, the axial vector of the torque is
     ``3n² (a/r)³ u x I(u)``, ``a/r = (1 + e cos f)/(1 − e²)``. The true anomaly f follows from the mean
@@ -190,6 +243,17 @@ def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0
         e, at least 0 and below 1.
     mean_anomaly
         M0 in rad, that at time 0; the periapsis lies on e1.
+
+    Examples
+    --------
+    A thin rod that points to the planet swings √3 times an orbit; half a swing takes ``π/(√3 n)``:
+
+    >>> rod = ph.Inertia.from_principal_moments(1e-6, 1, 1)
+    >>> start = ph.State(ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, 1e-4), [0, 0, 1])
+    >>> down = ph.event.formula("(~R (cos(t) e1 + sin(t) e2) R)·e2")
+    >>> swing = ph.simulate(rod, start, [10.0], ph.torque.gravity_gradient(1.0), events=down)
+    >>> np.diff(swing.events[0].time).round(2)  # π/√3 = 1.81
+    array([1.81, 1.81, 1.81, 1.81, 1.81])
     """
     if isinstance(rate, KeplerOrbit):
         rate, eccentricity, mean_anomaly = rate.rate, rate.eccentricity, rate.mean_anomaly
@@ -211,6 +275,15 @@ def magnetic(dipole: Any, field: Any, orbit: KeplerOrbit | None = None) -> Torqu
     orbit
         The `KeplerOrbit` along which the field is met. The energy of a motion is then without V, which
         depends on time.
+
+    Examples
+    --------
+    A dipole along e1 is turned towards the field along e3, that is in the plane ``e1∧e3 = −e3∧e1``:
+
+    >>> inertia = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> state = ph.State(ph.Rotor.identity(), [0, 0, 0])
+    >>> ph.torque.magnetic([0.2, 0, 0], [0, 0, 50e-6]).at(inertia, state)
+    -1e-05 e3∧e1
     """
     if orbit is None:
         if callable(field) and not isinstance(field, Multivector):
@@ -228,9 +301,19 @@ def magnetic(dipole: Any, field: Any, orbit: KeplerOrbit | None = None) -> Torqu
 
 
 def larmor(b: Any) -> Torque:
-    """Return the torque whose axial vector in space is ``L x b``, b a vector or (3,) in space in rad/s.
+    """Return the torque with the axial vector ``L x b`` in space; b is a vector, (3,) or (..., 3), in rad/s.
 
     L is the angular momentum in space, that of a `gyrostat` included; it turns about b at the rate ``−|b|``.
+
+    Examples
+    --------
+    The angular momentum turns backwards about b, at 1 rad/s where ``|b|`` is 1 rad/s:
+
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> start = ph.State(ph.Rotor.identity(), [1, 0, 0])
+    >>> motion = ph.simulate(ball, start, [1.0], ph.torque.larmor([0, 0, 1]))
+    >>> motion.momentum_space[-1].components[:2].round(4)  # cos 1, −sin 1
+    array([ 0.5403, -0.8415])
     """
     return _law("larmor", b)
 
@@ -256,6 +339,15 @@ def radiation_pressure(
         The radiation pressure coefficient C, (...): 1 if all light is absorbed.
     pressure
         The pressure P of sunlight in N/m², (...); by default that at 1 au.
+
+    Examples
+    --------
+    Light from e1 on 20 m², whose centre is 0.5 m from the centre of mass along e3, turns e3 away:
+
+    >>> law = ph.torque.radiation_pressure(20, offset=[0, 0, 0.5], sun=[1, 0, 0])
+    >>> inertia = ph.Inertia.from_principal_moments(10, 10, 10)
+    >>> law.at(inertia, ph.State(ph.Rotor.identity(), [0, 0, 0]))
+    -4.56e-05 e3∧e1
     """
     return _law("radiation_pressure", area, offset, sun, coefficient, pressure)
 
@@ -264,7 +356,16 @@ def radiation_pressure(
 
 
 def damping(g: Any) -> Torque:
-    """Return the torque ``−g I(Ω_B)``, g in 1/s, (...): alone, it lets the spin decay as ``exp(−g t)``."""
+    """Return the torque ``−g I(Ω_B)``, g in 1/s, (...): alone, it lets the spin decay as ``exp(−g t)``.
+
+    Examples
+    --------
+    >>> inertia = ph.Inertia.from_principal_moments(1, 2, 3)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+    >>> motion = ph.simulate(inertia, start, [0, 1, 2], ph.torque.damping(0.5))
+    >>> motion.omega_body["e12"].round(4)  # exp(-0.5 t)
+    array([1.    , 0.6065, 0.3679])
+    """
     return _law("damping", g)
 
 
@@ -272,12 +373,33 @@ def viscous_damping(d: Any) -> Torque:
     """Return the torque ``−d Ω_B``, d >= 0 in N m s: a number, or three along the body axes.
 
     A batch is (..., 3), or (..., 1) of one number for each body.
+
+    Examples
+    --------
+    The rate about an axis decays as ``exp(−d t/i)``:
+
+    >>> ball = ph.Inertia.from_principal_moments(2, 2, 2)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+    >>> motion = ph.simulate(ball, start, [0, 1, 2], ph.torque.viscous_damping(1))
+    >>> motion.omega_body["e12"].round(4)  # exp(-t/2)
+    array([1.    , 0.6065, 0.3679])
     """
     return _law("viscous_damping", d)
 
 
 def quadratic_damping(k: Any) -> Torque:
-    """Return the torque ``−k |Ω_B| Ω_B``, as for fast rotation in air; k >= 0 in N m s²."""
+    """Return the torque ``−k |Ω_B| Ω_B``, as for fast rotation in air; k >= 0 in N m s².
+
+    Examples
+    --------
+    The rate decays as ``1/(1 + k t/i)`` from 1 rad/s on:
+
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+    >>> motion = ph.simulate(ball, start, [0, 1, 3], ph.torque.quadratic_damping(1))
+    >>> motion.omega_body["e12"].round(6)
+    array([1.  , 0.5 , 0.25])
+    """
     return _law("quadratic_damping", k)
 
 
@@ -293,6 +415,16 @@ def torsion_spring(stiffness: Any, rest: Rotor | None = None) -> Torque:
         k in N m per rad.
     rest
         The attitude without torque, a rotor from body axes to space, or a batch; None for the identity.
+
+    Examples
+    --------
+    A ball on a spring swings with the period ``2π √(i/k)``; after half of it, it is on the other side:
+
+    >>> ball = ph.Inertia.from_principal_moments(4, 4, 4)
+    >>> start = ph.State(ph.Rotor.from_rotation_vector([0, 0, 0.3]), [0, 0, 0])
+    >>> swing = ph.simulate(ball, start, [2 * np.pi], ph.torque.torsion_spring(1))
+    >>> round(float(swing.rotor[-1].to_rotation_vector()[2]), 6)
+    -0.3
     """
     return _law("torsion_spring", stiffness, rest)
 
@@ -308,6 +440,16 @@ def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
         Gains >= 0 in N m per rad and in N m s: numbers, or three along the body axes.
     target
         The attitude to reach, a rotor from body axes to space, or a batch; None for the identity.
+
+    Examples
+    --------
+    With ``kd = 2 √(kp i)`` the angle decays as ``(1 + ω t) exp(−ω t)``, without a swing:
+
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> start = ph.State(ph.Rotor.from_rotation_vector([0, 0, 1]), [0, 0, 0])
+    >>> motion = ph.simulate(ball, start, [0, 1, 5], ph.torque.pd_control(kp=1, kd=2))
+    >>> motion.rotor.to_rotation_vector()[:, 2].round(4)
+    array([1.    , 0.7358, 0.0404])
     """
     return _law("pd_control", kp, kd, target)
 
@@ -315,9 +457,21 @@ def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
 def gyrostat(h: Any) -> Torque:
     """Return a wheel in the body that spins at a constant rate.
 
-    Its momentum h relative to the body is a bivector or (3,) in body axes in kg m²/s; the inertia of the
-    body includes the wheel. The total momentum is ``L = R (I(Ω_B) + h) ~R``. No external torque acts, but
-    the wheel resists being turned.
+    Its momentum h relative to the body is a bivector, (3,) or (..., 3), in body axes in kg m²/s; the inertia
+    of the body includes the wheel. The total momentum is ``L = R (I(Ω_B) + h) ~R``. No external torque acts,
+    but the wheel resists being turned.
+
+    Examples
+    --------
+    Rotation about the middle axis is unstable, and a wheel along this axis stabilises it:
+
+    >>> book = ph.Inertia.from_principal_moments(1, 2, 3)
+    >>> start = ph.State(ph.Rotor.identity(), [1e-3, 1, 1e-3])
+    >>> for wheel in ([0, 0, 0], [0, 5, 0]):
+    ...     motion = ph.simulate(book, start, np.linspace(0, 50, 501), ph.torque.gyrostat(wheel))
+    ...     print(f"{motion.omega_body['e31'].min():.2f} rad/s")
+    -1.00 rad/s
+    1.00 rad/s
     """
     return _law("gyrostat", h)
 
@@ -371,6 +525,18 @@ def reaction_wheels(
     ValueError
         For invalid numbers, and in `simulate` for wheels with larger moments than the body, and together with
         `damping`, `larmor` and formulas of L or ``I(…)``.
+
+    Examples
+    --------
+    A motor that drives its wheel with 0.1 N m for 10 s turns the body the other way:
+
+    >>> wheel = ph.torque.reaction_wheels([[0, 0, 1]], inertias=0.01, torques=0.1)
+    >>> satellite = ph.Inertia.from_principal_moments(2, 2, 2)
+    >>> motion = ph.simulate(satellite, ph.State(ph.Rotor.identity(), [0, 0, 0]), [10.0], wheel)
+    >>> round(float(motion.omega_body[-1]["e12"]), 4)  # −1 N m s over 1.99 kg m²
+    -0.5025
+    >>> motion.wheel_momentum[-1].round(9)
+    array([1.])
     """
     given = wheel_arguments(axes, inertias, torques, times, speeds, omega_body, max_torque, max_speed)
     return _native_law("reaction_wheels", *given)
@@ -380,12 +546,34 @@ def reaction_wheels(
 
 
 def constant_body(N: Any) -> Torque:
-    """Return a torque bivector N constant in body axes; a bivector or (3,) in N m."""
+    """Return a torque N that is constant in body axes, a bivector, (3,) or (..., 3) in N m.
+
+    Examples
+    --------
+    A torque of 2 N m spins a moment of 4 kg m² up at 0.5 rad/s²:
+
+    >>> ball = ph.Inertia.from_principal_moments(4, 4, 4)
+    >>> still = ph.State(ph.Rotor.identity(), [0, 0, 0])
+    >>> motion = ph.simulate(ball, still, [0, 1, 2], ph.torque.constant_body([0, 0, 2]))
+    >>> motion.omega_body["e12"].round(9)
+    array([0. , 0.5, 1. ])
+    """
     return _law("constant_body", N)
 
 
 def constant_space(N: Any) -> Torque:
-    """Return a torque bivector N constant in space; a bivector or (3,) in N m."""
+    """Return a torque N that is constant in space axes, a bivector, (3,) or (..., 3) in N m.
+
+    Examples
+    --------
+    The angular momentum in space grows by N t, however the body turns:
+
+    >>> book = ph.Inertia.from_principal_moments(1, 2, 3)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+    >>> motion = ph.simulate(book, start, [0, 1, 2], ph.torque.constant_space([0.5, 0, 0]))
+    >>> motion.momentum_space["e23"].round(9)
+    array([0. , 0.5, 1. ])
+    """
     return _law("constant_space", N)
 
 
@@ -406,6 +594,16 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
         which is a parabola for three rows; or ``"previous"``, held from each time to the next, as a computer
         that controls a satellite does. Then the torque jumps at the times, the steps of a run end there, and
         the last row only ends the table.
+
+    Examples
+    --------
+    A thruster that fires from 1 s to 2 s:
+
+    >>> law = ph.torque.tabulated([0, 1, 2, 3], [[0, 0, x] for x in (0, 4, 0, 0)], kind="previous")
+    >>> ball = ph.Inertia.from_principal_moments(4, 4, 4)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 0]), [0, 1, 1.5, 2, 3], law)
+    >>> motion.omega_body["e12"].round(9)
+    array([0. , 0. , 0.5, 1. , 1. ])
     """
     when, rows = as_floats(times, "times"), as_bivectors(torques, "torques")
     if when.ndim != 1 or rows.shape != (when.size, 3):
@@ -447,6 +645,17 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     FormulaError
         If the text is not a formula or its value is not a bivector, with the place. If the formula has no
         value at some point of a motion, `simulate` raises and names the part of the formula.
+
+    Examples
+    --------
+    The law `heavy` as a formula:
+
+    >>> c = ph.vector([0, 0, 3])
+    >>> weight = ph.torque.formula("-c ∧ (~R e3 R)", c=c)
+    >>> inertia = ph.Inertia.from_principal_moments(2, 2, 1)
+    >>> state = ph.State(ph.Rotor.from_plane_angle(ph.e2 ^ ph.e3, 1.0), [0, 0, 20])
+    >>> bool(weight.at(inertia, state).is_close(ph.torque.heavy(c).at(inertia, state)))
+    True
     """
     axes = _one_of(_FRAMES, frame, "frame")
 
@@ -462,6 +671,15 @@ def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
     Its arguments are the time in s, the rotor from body axes to space, and the angular velocity in body
     axes, a bivector; it returns the torque in body axes in N m, a bivector or (3,). Its exceptions pass
     through `simulate`. It is about ten times slower than a `formula`; the law can be pickled if f can.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+    >>> law = ph.torque.function(lambda t, rotor, omega_body: -0.5 * omega_body)
+    >>> motion = ph.simulate(ball, start, [0, 1, 2], law)
+    >>> motion.omega_body["e12"].round(4)  # exp(-0.5 t)
+    array([1.    , 0.6065, 0.3679])
     """
     return _native_law("function", function_of(f, "t, rotor and omega_body"))
 

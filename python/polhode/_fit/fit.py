@@ -95,6 +95,19 @@ def fit(
         torque, for names that the torque does not have, and if no start leads to a fit.
     ImportError
         Without SciPy: ``pip install 'polhode[scipy]'``.
+
+    Examples
+    --------
+    The ratios of the moments of a tumbling body from its rates, without noise:
+
+    >>> inertia = ph.Inertia.from_principal_moments(1, 2, 2.5)
+    >>> times = np.linspace(0, 5, 51)
+    >>> rates = ph.FreeMotion(inertia, ph.Rotor.identity(), [0.5, 2, 0.5]).at(times).omega_body
+    >>> found = ph.fit(rates=(times, rates), sigma_rates=1e-3)
+    >>> found.inertia.principal_moments.round(4)  # relative to the largest
+    array([0.4, 0.8, 1. ])
+    >>> found.undetermined[0]
+    'overall scale of the moments: free motion depends on their ratios only'
     """
     optional("scipy.optimize", "scipy", "a fit")
     attitudes = attitudes_of(attitude, sigma_attitude)

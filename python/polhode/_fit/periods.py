@@ -52,6 +52,16 @@ def omega_from_periods(
     ------
     ValueError
         If a period is not positive and finite, no body has the moments, or the mode is another.
+
+    Examples
+    --------
+    Toutatis turns about its long axis in 5.41 days, and this axis precesses in 7.35 days:
+
+    >>> day = 86400.0
+    >>> omega = ph.omega_from_periods([3.09, 3.22, 1], 5.41 * day, 7.35 * day, mode="long")
+    >>> facts = ph.describe_free(ph.Inertia.from_principal_moments(3.09, 3.22, 1), omega)
+    >>> round(facts["period"] / day, 3), round(facts["precession_period"] / day, 3)
+    (5.41, 7.35)
     """
     rows = as_components(moments, 3, "moments")
     periods = {"rotation_period": rotation_period, "precession_period": precession_period}

@@ -78,6 +78,21 @@ class Fit:
         motion the overall scale of the moments, and each direction among the parameters whose standard
         deviation exceeds half of their size (1 for ratios, 1 rad, the rms rate for rates; for a parameter of
         a law its value, or if larger what changes the motion by about 1 rad).
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(1)
+    >>> inertia = ph.Inertia.from_principal_moments(1, 2, 2.5)
+    >>> times = np.linspace(0, 5, 51)
+    >>> rates = ph.FreeMotion(inertia, ph.Rotor.identity(), [0.5, 2, 0.5]).at(times).omega_body
+    >>> measured = rates.components + 0.01 * rng.normal(size=(51, 3))
+    >>> found = ph.fit(rates=(times, measured), sigma_rates=0.01, bias=False)
+    >>> found.names
+    ('i1/i3', 'i2/i3', 'omega_1', 'omega_2', 'omega_3')
+    >>> bool((abs(found.values[:2] - [0.4, 0.8]) < 4 * found.stderr[:2]).all())
+    True
+    >>> found.dof  # 153 numbers, 5 parameters
+    148
     """
 
     inertia: Inertia

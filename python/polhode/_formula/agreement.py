@@ -37,6 +37,14 @@ class Agreement:
     rtol
         1e-9 for float64, as in `is_close`; 1e-4 for float32; 0 for exact numbers and symbols. `within`
         changes it.
+
+    Examples
+    --------
+    >>> a, b = ph.vector([0.1, 0.2, 0.3]), ph.vector([0.4, 0.5, 0.6])
+    >>> bool(ph.evaluate("a b = a·b + a∧b", a=a, b=b))
+    True
+    >>> ph.evaluate("a b = b a", a=ph.e1, b=ph.e1 + 2 * ph.e2)
+    Agreement(does not hold, residual 4 of terms of size 2.24, rtol 1e-09)
     """
 
     __slots__ = ("residual", "rtol", "size")
@@ -46,13 +54,27 @@ class Agreement:
 
     @property
     def holds(self) -> Any:
-        """Whether the sides agree: a bool, or an array of the batch shape."""
+        """Whether the sides agree: a bool, or an array of the batch shape.
+
+        Examples
+        --------
+        >>> a = ph.vector([[1, 0, 0], [0, 2, 0]])
+        >>> ph.evaluate("a a = 1", a=a).holds
+        array([ True, False])
+        """
         if self.rtol == 0 or self.size is None:
             return np.equal(self.residual, 0).astype(bool)[()]
         return (self.residual <= self.rtol * self.size) & (self.size < math.inf)
 
     def within(self, rtol: float) -> Agreement:
-        """Return the same with another relative tolerance."""
+        """Return the same with another relative tolerance.
+
+        Examples
+        --------
+        >>> rounded = ph.evaluate("x = y", x=1.0, y=1.001)
+        >>> bool(rounded), bool(rounded.within(0.01))
+        (False, True)
+        """
         if not 0 <= rtol < math.inf:
             raise ValueError(f"rtol must be finite and not negative, got {rtol!r}")
         if self.size is None:

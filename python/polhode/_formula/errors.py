@@ -14,6 +14,17 @@ class FormulaError(ValueError):
         What is wrong, and what to do.
     text, span
         The formula, and the place in it: the first character, and the one after the last.
+
+    Examples
+    --------
+    >>> try:
+    ...     ph.evaluate("2 (a∧b", a=ph.e1, b=ph.e2)
+    ... except ph.FormulaError as error:
+    ...     print(error)
+    `(` is never closed
+      |
+    1 | 2 (a∧b
+      |   ^
     """
 
     def __init__(self, message: str, text: str, span: tuple[int, int]) -> None:

@@ -39,6 +39,18 @@ class Formula:
     does not use are ignored. The value of an equation is an `Agreement`.
 
     Create it with `formula`. Formulas of the same text, algebra, definitions and arguments are equal.
+
+    Examples
+    --------
+    >>> f = ph.formula("(a∧b)·c")
+    >>> f(a=ph.e1, b=ph.e2, c=ph.vector([2, 3, 4]))
+    3 e1 - 2 e2
+    >>> f(a=ph.e1, b=ph.e2, c=ph.vector([[1, 0, 0], [0, 1, 0]]))
+    Multivector of shape (2,):
+    [-e2,
+     e1]
+    >>> f.grades(a=1, b=1, c=1)
+    (1,)
     """
 
     # A native function in this slot makes calls fast; JAX needs weak references.
@@ -54,12 +66,24 @@ class Formula:
 
     @property
     def text(self) -> str:
-        """The text as it was given."""
+        """The text as it was given.
+
+        Examples
+        --------
+        >>> ph.formula("R x ~R").text
+        'R x ~R'
+        """
         return self._core.text
 
     @property
     def arguments(self) -> tuple[str, ...]:
-        """The names of the values that a call takes by position; empty if it takes values by name only."""
+        """The names of the values that a call takes by position; empty if it takes values by name only.
+
+        Examples
+        --------
+        >>> ph.formula("R x ~R", arguments="R x").arguments
+        ('R', 'x')
+        """
         return tuple(self._core.arguments)
 
     def __str__(self) -> str:
@@ -68,12 +92,24 @@ class Formula:
 
     @property
     def ascii(self) -> str:
-        """The formula in ASCII spelling; names stay as they are."""
+        """The formula in ASCII spelling; names stay as they are.
+
+        Examples
+        --------
+        >>> ph.formula("½ a∧b").ascii
+        '1/2 a^b'
+        """
         return self.spelled("ascii")
 
     @property
     def latex(self) -> str:
-        """The formula in LaTeX, for math mode."""
+        r"""The formula in LaTeX, for math mode.
+
+        Examples
+        --------
+        >>> print(ph.formula("R x ~R").latex)
+        R x \tilde{R}
+        """
         return self.spelled("latex")
 
     def _repr_latex_(self) -> str:
@@ -85,6 +121,13 @@ class Formula:
         """Return the formula in canonical spelling, "unicode", "ascii" or "latex".
 
         `kinds`, as for `tree`, distinguish adjacent names from one long name. By default a word is one name.
+
+        Examples
+        --------
+        >>> ph.formula("ab").spelled("unicode")
+        'ab'
+        >>> ph.formula("ab").spelled("unicode", a=1, b=1)
+        'a b'
         """
         return self._core.spelled(style, *kinds_of(self._core.algebra, kinds))
 
@@ -94,12 +137,26 @@ class Formula:
         `kinds` are the kinds of the names: one or several grades, ``a=1, M=(0, 2)``; ``R="rotor"``;
         ``inertia="map of bivectors"``, ``"map of vectors"``; or a value. Without any, each word is one name
         of a value of any grades.
+
+        Examples
+        --------
+        >>> tree = ph.formula("a∧b").tree(a=1, b=1)
+        >>> tree["kind"], tree["grades"], [child["text"] for child in tree["children"]]
+        ('wedge', (2,), ['a', 'b'])
         """
         algebra, items = kinds_of(self._core.algebra, kinds)
         return self._core.tree(algebra, items)
 
     def grades(self, /, **kinds: Any) -> tuple[int, ...]:
-        """Return the grades of the value for names of these kinds, as for `tree`."""
+        """Return the grades of the value for names of these kinds, as for `tree`.
+
+        Examples
+        --------
+        >>> ph.formula("a b").grades(a=1, b=1)
+        (0, 2)
+        >>> ph.formula("R a ~R").grades(R="rotor", a=1)
+        (1,)
+        """
         program = self._program(kinds)
         masks = [step[3] for step in program.steps]
         mask = 0
@@ -109,7 +166,16 @@ class Formula:
         return tuple(k for k in range(mask.bit_length()) if mask >> k & 1)
 
     def steps(self, /, **kinds: Any) -> list[str]:
-        """Return the steps of the computation for names of these kinds, as for `tree`."""
+        """Return the steps of the computation for names of these kinds, as for `tree`.
+
+        Examples
+        --------
+        >>> for step in ph.formula("a·b + a∧b").steps(a=1, b=1):
+        ...     print(step)
+        #1 = dot(a, b): grade 0, for a·b
+        #2 = wedge(a, b): grade 2, for a∧b
+        #3 = add(#1, #2): grade 0, 2, for a·b + a∧b
+        """
         program = self._program(kinds)
         return described(self.text, steps_of(program), program.names)
 
@@ -142,6 +208,15 @@ class Formula:
             If the language is unknown or the name cannot be that of a function.
         FormulaError
             If grades do not fit; for an equation, and for a function without a formula in numbers.
+
+        Examples
+        --------
+        >>> source = ph.formula("a·b").code("c", "dot", a=1, b=1)
+        >>> print(source[source.index("double dot") :])
+        double dot(const double a[3], const double b[3]) {
+            const double t1 = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            return t1;
+        }
         """
         if language == "latex":
             return self.spelled("latex", **kinds)
@@ -164,6 +239,12 @@ class Formula:
         It takes values as the formula does. The gradient by a name has the grades of its value, and its
         components are the derivatives by components; several names give a tuple. NumPy arrays give float64
         NumPy arrays; JAX arrays, also traced ones, give JAX arrays. Each row of a batch has its own gradient.
+
+        Examples
+        --------
+        >>> energy = ph.formula("½ k x·x")
+        >>> energy.grad("x")(k=3, x=ph.vector([1, 2, 0]))
+        3 e1 + 6 e2
         """
         from polhode._formula.gradient import gradient
 
@@ -214,6 +295,19 @@ def formula(
         If the text is not a formula.
     TypeError
         If a name in `arguments` is not one, or occurs twice.
+
+    Examples
+    --------
+    >>> rotated = ph.formula("R x ~R", arguments="R x")
+    >>> R = ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True)
+    >>> rotated(R, ph.e1)
+    0.5 e1 + 0.8660254 e2
+
+    Values that stay the same can be part of the formula:
+
+    >>> energy = ph.formula("½ m v·v + V(x)", define={"V(x)": "9.81 x·e3"})
+    >>> print(energy(m=2, v=ph.vector([3, 0, 4]), x=ph.e3))
+    34.81
     """
     if not isinstance(text, str):
         raise TypeError(f"a formula must be a string, got {type(text).__name__}")
@@ -232,7 +326,18 @@ def formula(
 
 
 def evaluate(text: str, values: Mapping[str, Any] | None = None, /, **named: Any) -> Any:
-    """Return the value of a formula: ``ph.evaluate("-I a∧b", a=a, b=b)``. See `Formula`."""
+    """Return the value of a formula: ``ph.evaluate("-I a∧b", a=a, b=b)``. See `Formula`.
+
+    Examples
+    --------
+    >>> a, b = ph.vector([1, 0, 0]), ph.vector([1, 2, 0])
+    >>> ph.evaluate("a∧b", a=a, b=b)
+    2 e1∧e2
+    >>> ph.evaluate("-I a∧b", a=a, b=b)
+    2 e3
+    >>> bool(ph.evaluate("a b = a·b + a∧b", a=a, b=b))
+    True
+    """
     made = _compiled(text) if isinstance(text, str) else formula(text)
     return made(*(() if values is None else (values,)), **named)
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from polhode._generic import coefficients as coefficients
     from polhode._generic import functions as functions
     from polhode._generic import jacobians as jacobians
+    from polhode._generic import layout as layout
     from polhode._generic import motors as motors
     from polhode._generic import products as products
     from polhode._generic import rotors as rotors

@@ -25,6 +25,7 @@ from polhode._generic.products import Term, product
 _TAYLOR = [1 / math.factorial(k) for k in range(16)]
 # Halvings of an argument of unknown size: |M| up to 2¹¹.
 _TRACED_HALVINGS = 12
+_STEP_OF_HALVINGS = 4
 # A product with the inverse this far from 1: only three digits are left.
 _RESIDUAL = 2.0**-10
 
@@ -136,15 +137,10 @@ def exp(
     if not isinstance(d, Numeric):
         return by_rows(functools.partial(_exp_row, terms), data)
     with np.errstate(all="ignore"):
-        d.require_finite(components(data))
-        simple = _anticommute(terms, [i for i in held if i != 0])
-        if simple:
-            result = _complex_exp(d, terms, data) if d.is_complex else _closed_exp(d, terms, data)
-        else:
-            factors = null_factors(d, null, data, 1.0)
-            result = _series_exp(d, terms, data * factors) / factors
-        require_in_range(d, result)
-    return result
+        if _anticommute(terms, [i for i in held if i != 0]):
+            return _simple_exp(d, terms, data)
+        halvings = _halvings(d, _size(d, data, null))
+        return _series_exp(d, terms, data, null, halvings)
 
 
 def _anticommute(terms: Sequence[Term], held: list[int]) -> bool:
@@ -153,6 +149,13 @@ def _anticommute(terms: Sequence[Term], held: list[int]) -> bool:
 
 
 @compiled
+def _simple_exp(d: Numeric, terms: Sequence[Term], data: Array) -> Array:
+    d.require_finite(components(data))
+    result = _complex_exp(d, terms, data) if d.is_complex else _closed_exp(d, terms, data)
+    require_in_range(d, result)
+    return result
+
+
 def _closed_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
     """``e^s (cosh √w + V sinh √w / √w)`` for a number ``V² = w``: boost (w > 0), shift or turn (w < 0)."""
     s, *v = components(m)
@@ -193,21 +196,45 @@ def _complex_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
     return d.stack([c, *(q * component for component in v)])
 
 
-def _series_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
-    """Sum the series of M/2ᵏ and square it k times; k depends on the size of each value."""
-    size = d.xp.sum(d.xp.abs(d.constant(m)), axis=-1)[..., None]
-    halvings = _TRACED_HALVINGS
-    if d.is_concrete(size):
-        largest = float(d.xp.max(size)) if math.prod(size.shape) else 0.0
-        halvings = max(0, math.frexp(largest)[1] + 1)
-    halved = [size > 2.0 ** (k - 1) for k in range(halvings)]
+@compiled
+def _size(d: Numeric, data: Array, null: Sequence[int]) -> Array:
+    """Return ``Σ|m|`` with generators of square 0 scaled down, as constants."""
+    d.require_finite(components(data))
+    return _sum_of(d, data * null_factors(d, null, data, 1.0))
+
+
+def _sum_of(d: Numeric, m: Array) -> Array:
+    return d.xp.sum(d.xp.abs(d.constant(m)), axis=-1)[..., None]
+
+
+def _halvings(d: Numeric, size: Array) -> int:
+    """Return the number of halvings after which the largest value is at most 1/2."""
+    if not d.is_concrete(size):
+        return _TRACED_HALVINGS
+    largest = float(d.xp.max(size)) if math.prod(size.shape) else 0.0
+    needed = max(0, math.frexp(largest)[1] + 1)
+    # Fewer programs for JAX to compile: halvings that no value needs change none.
+    return -(-needed // _STEP_OF_HALVINGS) * _STEP_OF_HALVINGS if d.is_jax else needed
+
+
+@compiled
+def _series_exp(d: Numeric, terms: Sequence[Term], data: Array, null: Sequence[int], halvings: int) -> Array:
+    """Sum the series of M/2ᵏ and square it k times; k <= `halvings` depends on the size of each value."""
+    factors = null_factors(d, null, data, 1.0)
+    m = data * factors
+    size = _sum_of(d, m)
+    bounds = [2.0 ** (k - 1) for k in range(halvings)]
     x = m
-    for halve in halved:
-        x = d.where(halve, 0.5 * x, x)
-    result = _taylor(d, terms, x)
-    for halve in halved:
-        result = d.where(halve, product(d, terms, m.shape[-1], result, result), result)
-    return d.where(size <= 2.0 ** (halvings - 1), result, math.nan)
+    for bound in bounds:
+        x = d.where(size > bound, 0.5 * x, x)
+
+    def squared(result: Array, bound: Any) -> Array:
+        return d.where(size > bound, product(d, terms, m.shape[-1], result, result), result)
+
+    result = d.folded(squared, _taylor(d, terms, x), bounds)
+    result = d.where(size <= 2.0 ** (halvings - 1), result, math.nan) / factors
+    require_in_range(d, result)
+    return result
 
 
 def _taylor(d: Numeric, terms: Sequence[Term], x: Array) -> Array:

@@ -166,6 +166,7 @@ class Exact:
     """Arithmetic of NumPy arrays of Python objects."""
 
     exact = True
+    is_jax = False
     native = False
     divide = np.frompyfunc(divide, 2, 1)
     sqrt = np.frompyfunc(sqrt, 1, 1)
@@ -206,6 +207,8 @@ class Exact:
             return x
         return self._context.mpf(x.numerator) / x.denominator
 
+    factor = asarray
+
     def zeros(self, shape: tuple[int, ...]) -> Array:
         """Return exact zeros of this shape."""
         return np.zeros(shape, dtype=int).astype(object)
@@ -221,6 +224,10 @@ class Exact:
         for i, component in enumerate(components):
             stacked[..., i] = component
         return stacked
+
+    def concat(self, arrays: list[Array], axis: int) -> Array:
+        """Join arrays along an axis."""
+        return np.concatenate(arrays, axis=axis)
 
     def reshape(self, x: Array, shape: tuple[int, ...]) -> Array:
         """Return the elements in another shape."""

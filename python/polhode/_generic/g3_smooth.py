@@ -131,8 +131,8 @@ def cos_sinc(d: Numeric, b: Components) -> tuple[Any, Any]:
     small = square < 1
     near = d.where(small, -square, 0.0)
     size = scale * d.sqrt(d.where(small, 1.0, scaled))
-    cos = d.where(small, horner(COSH, near), d.cos(size))
-    return cos, d.where(small, horner(SINHC, near), d.sin(size) / size)
+    cos = d.once(d.where(small, horner(COSH, near), d.cos(size)))
+    return cos, d.where(small, horner(SINHC, near), d.sin(size)) / d.where(small, 1.0, size)
 
 
 # --- log

@@ -6,10 +6,12 @@ Grades are the bits of a mask. The complex numbers ``x + yI`` are the centre of 
 from __future__ import annotations
 
 import operator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from polhode._generic.coefficients import Coefficients
+from polhode._generic.compiled import compiled
 from polhode._generic.numeric import Array
 
 SCALAR, VECTOR, BIVECTOR, TRIVECTOR = 0b0001, 0b0010, 0b0100, 0b1000
@@ -49,6 +51,18 @@ def eight(d: Coefficients, data: Array, mask: int) -> list[Array]:
 def of_eight(d: Coefficients, components: list[Array], mask: int) -> Array:
     """Return the array of the components of these grades."""
     return d.stack([components[i] for i in indices(mask)])
+
+
+@compiled
+def rearranged(
+    d: Coefficients, data: Array, places: Sequence[int | None], signs: Sequence[float] | None = None
+) -> Array:
+    """Return the components at these places, zeros for None, those with a negative sign negated."""
+    zero = d.zeros_like(data[..., 0]) if None in places else None
+    parts: list[Any] = [zero if k is None else data[..., k] for k in places]
+    if signs is not None:
+        parts = [x if sign > 0 else -x for x, sign in zip(parts, signs, strict=True)]
+    return d.stack(parts)
 
 
 # --- the centre

@@ -10,6 +10,7 @@ every function f(x) of numbers continues to ``f(x + εy) = f(x) + ε y f'(x)`` (
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 from polhode._generic.coefficients import Coefficients
@@ -36,28 +37,102 @@ _SINGULAR = "not a motor: the components without null vector are zero"
 _NO_MOTOR = "not a motor: M ~M is not a number; divide it by its norm with normalized()"
 
 
+# --- layout
+
+# Where the eight components stand among the even elements of an algebra, each with its sign.
+Order = tuple[tuple[int, int], ...]
+_IN_ORDER: Order = tuple((k, 1) for k in range(8))
+
+
+@compiled
+def function(
+    d: Coefficients, name: str, data: Array, grades: tuple[int, ...], order: Order, kept: tuple[int, ...]
+) -> Array:
+    """Return `exp`, `log` or `sqrt` of the components of an algebra, of grades among 0, 2 and 4.
+
+    The result has the components of the grades kept, in the same order.
+    """
+    sizes = {0: 1, 2: 6, 4: 1}
+    blocks, at = {}, 0
+    for grade in grades:
+        blocks[grade] = data[..., at : at + sizes[grade]]
+        at += sizes[grade]
+    zero = d.zeros(tuple(data.shape[:-1]))
+    zeros = {grade: d.stack([zero] * size) for grade, size in sizes.items() if grade not in blocks}
+    even = d.concat([{**blocks, **zeros}[grade] for grade in sizes], axis=-1)
+    result = {"exp": exp, "log": log, "sqrt": sqrt}[name](d, even, order)
+    ends = {0: (0, 1), 2: (1, 7), 4: (7, 8)}
+    return d.concat([result[..., slice(*ends[grade])] for grade in kept], axis=-1)
+
+
+class _Even:
+    """An even element over floats: ``s``, its bivector (..., 6) and ``p``, the last with the sign of J.
+
+    Bivectors remain one array: XLA computes the factors of an array once for each row (see `Numeric.once`).
+    """
+
+    def __init__(self, d: Numeric, data: Array, order: Order) -> None:
+        self.d, self.order = d, order
+        self.s, self.bivector = data[..., 0], data[..., 1:7]
+        self.p = order[7][1] * data[..., 7]
+
+    def parts(self, bivector: Array) -> tuple[Parts, Parts]:
+        """Return b and m of a bivector ``I3 b + m n``."""
+        found = [sign * bivector[..., k - 1] for k, sign in self.order[1:7]]
+        return found[:3], found[3:]
+
+    def of_parts(self, b: Parts, m: Parts) -> Array:
+        """Return the bivector ``I3 b + m n``."""
+        at = {k: sign * x for (k, sign), x in zip(self.order[1:7], [*b, *m], strict=True)}
+        return self.d.stack([at[k] for k in range(1, 7)])
+
+    def moved(self, b: Parts) -> Array:
+        """Return ``b n = ε I3 b``."""
+        return self.of_parts([self.d.zeros_like(b[0])] * 3, b)
+
+    def joined(self, s: Array, bivector: Array, p: Array) -> Array:
+        """Return the array of an even element."""
+        return self.d.concat([s[..., None], bivector, self.order[7][1] * p[..., None]], axis=-1)
+
+
+def _by_rows(function: Callable[[Parts], Parts], data: Array, order: Order) -> Array:
+    """Apply a function of exact components ``s, b, m, p`` to each row."""
+
+    def ordered(row: Parts) -> Parts:
+        result = function([sign * row[k] for k, sign in order])
+        at = {k: sign * x for (k, sign), x in zip(order, result, strict=True)}
+        return [at[k] for k in range(8)]
+
+    return by_rows(ordered, data)
+
+
 # --- exp
 
 
 @compiled
-def exp(d: Coefficients, data: Array) -> Array:
+def exp(d: Coefficients, data: Array, order: Order = _IN_ORDER) -> Array:
     """``exp M`` of even elements: of the bivector ``I3 β + v n`` a motor, ``cos Θ + C sin Θ/Θ``.
 
     C is ``I3 (β + εv)`` and ``Θ² = −C² = β² + 2ε β·v``.
     """
     if not isinstance(d, Numeric):
-        return by_rows(_exact_exp, data)
-    parts = components(data)
-    d.require_finite(parts)
-    s, beta, v, p = _split(parts)
+        return _by_rows(_exact_exp, data, order)
+    d.require_finite(components(data))
+    even = _Even(d, data, order)
+    beta, v = even.parts(even.bivector)
     cosine, sine = cos_sinc(d, beta)
     scale = d.scale(beta)
     scaled = squares(d, [x / scale for x in beta])
     square = scaled * scale * scale
     small = square < 1
     near, far = d.where(small, square, 0.0), d.where(small, 1.0, square)
-    slope = d.where(small, horner(_SLOPE, -near), (cosine - sine) / far)
-    result = d.stack(_times_dual(d.exp(s), p, _exp_parts(cosine, sine, slope, beta, v)))
+    # (cos θ − sin θ/θ)/θ², see `_exp_parts`; then e^s (1 + pJ), see `_times_dual`.
+    slope = d.where(small, horner(_SLOPE, -near), cosine - sine) / far
+    along = _dot(beta, v)
+    across = along * slope - even.p * sine
+    turned = sine[..., None] * even.bivector + across[..., None] * even.moved(beta)
+    result = even.joined(cosine, turned, sine * along + even.p * cosine)
+    result = d.exp(even.s)[..., None] * result
     require_in_range(d, result)
     return result
 
@@ -92,7 +167,7 @@ def _exact_exp(row: Parts) -> Parts:
 
 
 @compiled
-def log(d: Coefficients, data: Array) -> Array:
+def log(d: Coefficients, data: Array, order: Order = _IN_ORDER) -> Array:
     """``ln|M|`` and the bivector B with ``exp B = M/|M|``, of positive multiples of motors.
 
     ``B = I3 (b + εm) Θ/sin Θ`` for ``cos Θ = s − εp``, with θ in [0, π]; at ``s < 0``, b = 0 in the plane
@@ -100,10 +175,15 @@ def log(d: Coefficients, data: Array) -> Array:
     number to half of the digits; a smaller difference is removed as in `normalized`.
     """
     if not isinstance(d, Numeric):
-        return by_rows(_exact_log, data)
-    parts = components(data)
-    d.require_finite(parts)
-    size, (s, b, m, p) = _unit(d, parts)
+        return _by_rows(_exact_log, data, order)
+    d.require_finite(components(data))
+    even = _Even(d, data, order)
+    size = _size(d, [even.s, *even.parts(even.bivector)[0]])
+    s, p, bivector = even.s / size, even.p / size, even.bivector / size[..., None]
+    b, m = even.parts(bivector)
+    excess = _excess(d, s, b, m, p)
+    p = p + excess * s
+    bivector = bivector - excess[..., None] * even.moved(b)
     sine_squared = squares(d, b)
     near = (sine_squared < _NEAR * s * s) & (s > 0)
     safe = d.where(near, s, 1.0)
@@ -113,15 +193,17 @@ def log(d: Coefficients, data: Array) -> Array:
     beyond = ~near & (length_of_b > 0)
     sine = d.where(beyond, length_of_b, 1.0)
     angle = d.atan2(sine, d.where(beyond, s, 1.0))
-    factor = d.where(near, horner(_ARTANC, -u) / safe, angle / sine)
+    factor = d.where(near, horner(_ARTANC, -u), angle) / d.where(near, safe, sine)
     # p times the rate, divided by sin θ once more below; with series by 1.
-    rate = p * d.where(near, horner(_REST, -u) / (safe * safe), (1 - s * factor) / sine)
+    rate = d.where(near, horner(_REST, -u), 1 - s * factor) / d.where(near, safe * safe, sine)
+    across = even.moved(even.parts(bivector / sine[..., None])[0])
     # M = −(1 − m n): half a turn of the spinor in a plane that commutes with the translation.
     turned = ~near & ~beyond
     plane = d.direction([d.where(turned, x, y) for x, y in zip(m, _E12, strict=True)], _E12)
-    beta = [d.where(turned, math.pi * n, factor * x) for n, x in zip(plane, b, strict=True)]
-    v = [d.where(turned, -y, factor * y + rate * (x / sine)) for x, y in zip(b, m, strict=True)]
-    result = d.stack([d.log(size), *beta, *v, d.zeros_like(s)])
+    half = even.of_parts([math.pi * n for n in plane], [d.zeros_like(s)] * 3)
+    found = factor[..., None] * bivector + (p * rate)[..., None] * across
+    found = d.where(turned[..., None], half - bivector, found)
+    result = even.joined(d.log(size), found, d.zeros_like(s))
     require_in_range(d, result)
     return result
 
@@ -147,12 +229,14 @@ def _exact_log(row: Parts) -> Parts:
 
 
 @compiled
-def sqrt(d: Coefficients, data: Array) -> Array:
+def sqrt(d: Coefficients, data: Array, order: Order = _IN_ORDER) -> Array:
     """``√|M| exp(B/2)`` for the logarithm ``ln|M| + B``."""
-    logarithm = log(d, data)
+    logarithm = log(d, data, order)
+    if not isinstance(d, Numeric):
+        return exp(d, d.divide(logarithm, 2), order)
     # XLA computes cheap operations again for each use, but divisions by what it does not know only once.
-    two = d.where(d.isfinite(data[..., 0]), 2.0, math.nan) if isinstance(d, Numeric) else 2
-    return exp(d, d.stack([d.divide(x, two) for x in components(logarithm)]))
+    two = d.where(d.isfinite(data[..., :1]), 2.0, math.nan)
+    return exp(d, logarithm / two, order)
 
 
 # --- screws
@@ -200,7 +284,7 @@ def adjoint(d: Coefficients, data: Array) -> Array:
     """
     parts = components(data)
     if isinstance(d, Numeric):
-        _, (s, b, m, p) = _unit(d, parts)
+        s, b, m, p = _unit(d, parts)
     else:
         s, b, m, p = _split(components(by_rows(_exact_unit, data)))
     moved = [2 * (s * y + p * x + z) for x, y, z in zip(b, m, _cross(m, b), strict=True)]
@@ -222,19 +306,29 @@ def _split(parts: Parts) -> tuple[Any, Parts, Parts, Any]:
     return parts[0], parts[1:4], parts[4:7], parts[7]
 
 
-def _unit(d: Numeric, parts: Parts) -> tuple[Any, tuple[Any, Parts, Parts, Any]]:
-    """Return ``√(s² + b²)`` and the motor divided by the dual number ``√(M ~M)``.
+def _unit(d: Numeric, parts: Parts) -> tuple[Any, Parts, Parts, Any]:
+    """Return the motor divided by the dual number ``√(M ~M)``.
 
     ``M ~M = s² + b² + 2ε δ`` with ``δ = b·m − sp``, which of a motor is 0.
     """
-    size = d.length(parts[:4])
+    size = _size(d, parts[:4])
+    s, b, m, p = _split([x / size for x in parts])
+    excess = _excess(d, s, b, m, p)
+    return s, b, [y - excess * x for x, y in zip(b, m, strict=True)], p + excess * s
+
+
+def _size(d: Numeric, rotor: Parts) -> Array:
+    """Return ``√(s² + b²)``, NaN where it is 0."""
+    size = d.length(rotor)
     d.require(size > 0, _SINGULAR)
-    safe = d.where(size > 0, size, math.nan)
-    s, b, m, p = _split([x / safe for x in parts])
-    excess = _dot(b, m) - s * p
-    moved = d.length([*m, p])
-    d.require(d.abs(excess) <= d.eps**0.5 * (1 + moved), _NO_MOTOR)
-    return safe, (s, b, [y - excess * x for x, y in zip(b, m, strict=True)], p + excess * s)
+    return d.once(d.where(size > 0, size, math.nan))
+
+
+def _excess(d: Numeric, s: Array, b: Parts, m: Parts, p: Array) -> Array:
+    """Return δ, which of a motor is rounding."""
+    excess = d.once(_dot(b, m) - s * p)
+    d.require(d.abs(excess) <= d.eps**0.5 * (1 + d.length([*m, p])), _NO_MOTOR)
+    return excess
 
 
 def _exact_unit(row: Parts) -> Parts:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ class Numeric:
     def __init__(self, xp: Any, dtype: Any = None, device: Any = None) -> None:
         self.xp = xp
         self.dtype = xp.asarray(1.0).dtype if dtype is None else dtype
+        self.is_jax = xp.__name__ == "jax.numpy"
         self.is_complex = xp is np and np.dtype(self.dtype).kind == "c"
         self.real_dtype = np.finfo(self.dtype).dtype if self.is_complex else self.dtype
         self.placed = {} if device is None else {"device": device}
@@ -60,6 +62,12 @@ class Numeric:
             return self.xp.asarray(floats, dtype=self.dtype, **self.placed)
         return values if values.dtype == self.dtype else self.xp.astype(values, self.dtype)
 
+    def factor(self, values: Array) -> Array:
+        """Convert an array for a product; compiled programs of JAX take NumPy's as they are, sooner."""
+        if self.is_jax and isinstance(values, np.ndarray) and values.dtype.kind == "f":
+            return np.asarray(values, dtype=self.dtype)
+        return self.asarray(values)
+
     def zeros(self, shape: tuple[int, ...]) -> Array:
         """Return zeros of this shape."""
         return self.xp.zeros(shape, dtype=self.dtype, **self.placed)
@@ -78,10 +86,18 @@ class Numeric:
 
     def constant(self, x: Array) -> Array:
         """Return the same values as constants, with respect to which no derivative is taken."""
-        library = self.xp.__name__
-        if library == "jax.numpy":
+        if self.is_jax:
             return sys.modules["jax"].lax.stop_gradient(x)
         return x.detach() if hasattr(x, "detach") else x
+
+    def folded(self, step: Callable[[Array, Any], Array], x: Array, values: list[float]) -> Array:
+        """Apply a step to x for each of the values in turn; JAX compiles the step once."""
+        if self.is_jax:
+            inputs = self.xp.asarray(values, dtype=self.dtype)
+            return sys.modules["jax"].lax.scan(lambda x, value: (step(x, value), None), x, inputs)[0]
+        for value in values:
+            x = step(x, value)
+        return x
 
     # --- elementwise
 
@@ -111,6 +127,14 @@ class Numeric:
     def atan2(self, y: Array, x: Array) -> Array:
         """Return the angle of the point (x, y), in [−π, π]."""
         return self.xp.atan2(*self.xp.broadcast_arrays(y, x))
+
+    def once(self, x: Array) -> Array:
+        """Return x itself, which XLA computes once for each row, not for each component of a result.
+
+        In a program that it compiles, XLA repeats cheap operations for each use, and all operations for each
+        component that `stack` writes; but not a quotient that is broadcast along the last axis.
+        """
+        return x / self.where(x == x, 1.0, math.nan) if self.is_jax else x
 
     # --- sizes
 

@@ -60,7 +60,7 @@ def _gathered(d: Any, terms: Sequence[Term], count: int, a: Array, b: Array) -> 
 
 
 def _taken(d: Any, x: Array, where: np.ndarray[Any, np.dtype[np.int64]]) -> Array:
-    device = {} if not hasattr(x, "device") or d.xp.__name__ == "jax.numpy" else {"device": x.device}
+    device = {} if not hasattr(x, "device") or d.is_jax else {"device": x.device}
     indices = d.xp.asarray(where.reshape(-1), **device)
     taken = d.xp.take(x, indices, axis=-1)
     return d.xp.reshape(taken, (*x.shape[:-1], *where.shape))

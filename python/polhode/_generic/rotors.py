@@ -204,9 +204,29 @@ def to_quaternion(d: Coefficients, r: Array) -> Array:
 def to_matrix(d: Coefficients, r: Array) -> Array:
     """Return rotation matrices (..., 3, 3) acting on columns."""
     parts = components(r)
-    columns = [_turn(parts, [int(i == j) for i in range(3)]) for j in range(3)]
-    nine = d.stack([columns[j][i] for i in range(3) for j in range(3)])
+    if isinstance(d, Numeric):
+        nine = d.stack(_entries(*parts))
+    else:
+        # Expressions of cosines and sines simplify better in this form.
+        columns = [_turn(parts, [int(i == j) for i in range(3)]) for j in range(3)]
+        nine = d.stack([columns[j][i] for i in range(3) for j in range(3)])
     return d.reshape(nine, (*nine.shape[:-1], 3, 3))
+
+
+def _entries(s: Array, x: Array, y: Array, z: Array) -> list[Array]:
+    """Return the matrix row by row; quarter turns have exact zeros."""
+    ss, xx, yy, zz = s * s, x * x, y * y, z * z
+    return [
+        (ss + xx) - (yy + zz),
+        2 * (x * y + s * z),
+        2 * (x * z - s * y),
+        2 * (x * y - s * z),
+        (ss + yy) - (xx + zz),
+        2 * (y * z + s * x),
+        2 * (x * z + s * y),
+        2 * (y * z - s * x),
+        (ss + zz) - (xx + yy),
+    ]
 
 
 @compiled
@@ -246,8 +266,12 @@ def _exact_plane_angle(r: Parts) -> Parts:
     return [*plane, 2 * atan2(size, s)]
 
 
-def angle(r: Array) -> Any:
-    """Return the angles (...) in [0, π] of exact rotors (..., 4)."""
+@compiled
+def angle(d: Coefficients, r: Array) -> Any:
+    """Return the angles (...) in [0, π] of rotors (..., 4)."""
+    if isinstance(d, Numeric):
+        s, *b = components(r)
+        return 2.0 * d.atan2(d.length(b), d.abs(s))
     return by_rows(lambda row: [2 * atan2(abs(g3_exact.length(row[1:])), abs(row[0]))], r, range(1))[..., 0][
         ()
     ]
@@ -276,6 +300,14 @@ def _whole_power(d: Coefficients, r: Array, n: int) -> Array:
         result = multiply(d, result, result)
         result = multiply(d, result, base) if bit == "1" else result
     return result
+
+
+@compiled
+def slerp(d: Numeric, r: Array, s: Array, t: Array, half_turn: float) -> Array:
+    """``R (~R S)^t`` the shorter way, with the sign of S kept for steps of half a turn to rounding."""
+    step = from_components(d, multiply(d, to_quaternion(d, r), s))
+    step = from_components(d, d.where(step[..., :1] < -half_turn, -step, step))
+    return from_components(d, multiply(d, r, power(d, step, t)))
 
 
 # --- action

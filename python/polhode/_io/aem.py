@@ -110,6 +110,17 @@ def read_aem(
         With file, line and column: if the file is not an AEM, has another attitude type, or lacks a keyword.
     FileNotFoundError
         If there is no such file.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 60, 120])
+    >>> ph.io.write_aem(motion, "ball.aem", epoch="2026-01-01T00:00:00", reference_frame="EME2000")
+    >>> history = ph.io.read_aem("ball.aem")
+    >>> history.time, history.attributes["epoch"], history.attributes["reference_frame"]
+    (array([  0.,  60., 120.]), '2026-01-01T00:00:00', 'EME2000')
+    >>> history.omega_body["e12"].round(9)
+    array([1., 1., 1.])
     """
     name = os.fsdecode(path)
     if not os.path.lexists(path):

@@ -67,6 +67,20 @@ def write_aem(
         For a batch, and if the epoch or the reference frame is not known.
     OSError
         If the file cannot be written; an older file stays.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, np.pi / 180]), [0, 60])
+    >>> ph.io.write_aem(motion, "ball.aem", epoch="2026-01-01T00:00:00", reference_frame="EME2000")
+    >>> with open("ball.aem") as file:
+    ...     lines = file.read().splitlines()
+    >>> for line in lines:
+    ...     if line.startswith(("REF_FRAME", "STOP_TIME")):
+    ...         print(line)
+    REF_FRAME_A = EME2000
+    REF_FRAME_B = SC_BODY_1
+    STOP_TIME = 2026-01-01T00:01:00
     """
     text = aem(
         motion,

@@ -52,6 +52,14 @@ def read(path: str | os.PathLike[str], **options: Any) -> AttitudeHistory:
 
     The suffixes are ``.aem``, ``.bc`` (SPICE CK), ``.csv``, ``.nc``, ``.parquet`` and ``.zarr``. Options are
     those of `read_aem`, `read_ck`, `read_csv`, `read_netcdf`, `read_parquet` and `read_zarr`.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 1, 2])
+    >>> ph.io.write(motion, "ball.csv")
+    >>> ph.io.read("ball.csv")
+    AttitudeHistory(3 times, t = 0 … 2 s, rotor, omega_body, momentum_space, position, velocity, energy)
     """
     form = form_of(path, READ, "read")
     return _READERS[form](path, **_with_kernels(options) if form == "bc" else options)
@@ -63,6 +71,15 @@ def write(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[str], **
     The suffixes are ``.aem``, ``.bc`` (SPICE CK), ``.csv``, ``.glb``, ``.gltf``, ``.nc`` and ``.parquet``.
     Options are those of `write_aem`, `write_ck` and `write_gltf`; tables have none. A CSV file has no
     attributes.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 1, 2])
+    >>> ph.io.write(motion, "ball.csv")
+    >>> ph.io.write(motion, "ball.aem", epoch="2026-01-01T00:00:00", reference_frame="EME2000")
+    >>> bool((ph.io.read("ball.csv").rotor == motion.rotor).all())
+    True
     """
     form = form_of(path, WRITTEN, "written")
     if form == "aem":

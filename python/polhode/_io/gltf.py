@@ -68,6 +68,19 @@ def write_gltf(
     UserWarning
         If the body turns by more than half a turn between output times, so that the animation shows another
         motion.
+
+    Examples
+    --------
+    A tumbling cylinder, for Blender or a browser:
+
+    >>> body = ph.Body.cylinder(0.1, 0.5, mass=1)
+    >>> start = ph.State(ph.Rotor.identity(), [1, 0, 2])
+    >>> motion = ph.simulate(body, start, np.linspace(0, 5, 51))
+    >>> shape = ph.io.solid_surface("cylinder", 0.1, 0.5)
+    >>> ph.io.write_gltf(motion, "cylinder.glb", surface=shape)
+    >>> with open("cylinder.glb", "rb") as file:
+    ...     file.read(4)
+    b'glTF'
     """
     form = Path(path).suffix.lower()
     if form not in (".glb", ".gltf"):

@@ -17,7 +17,18 @@ from polhode._support.arrays import Array
 
 
 class FileError(ValueError):
-    """A mistake in a file, with its place."""
+    """A mistake in a file, with its place.
+
+    Examples
+    --------
+    >>> with open("note.csv", "w") as file:
+    ...     _ = file.write("time,attitude_w")
+    >>> try:
+    ...     ph.io.read_csv("note.csv")
+    ... except ph.io.FileError as error:
+    ...     print(str(error).splitlines()[0])  # the next ones show the place
+    note.csv:1:1: error: the file has no column 'attitude_x'; it needs time and attitude_w, _x, _y, _z
+    """
 
 
 class RowError(ValueError):
@@ -59,6 +70,14 @@ class AttitudeHistory:
     ------
     TypeError, ValueError
         For shapes that do not fit, numbers that are not finite, and times that do not increase.
+
+    Examples
+    --------
+    >>> times = np.linspace(0, 2, 5)
+    >>> rotors = ph.Rotor.from_rotation_vector(times[:, np.newaxis] * [0, 0, 0.5])
+    >>> history = ph.io.AttitudeHistory(times, rotors, attributes={"object_name": "CURLEW"})
+    >>> history
+    AttitudeHistory(5 times, t = 0 … 2 s, rotor)
     """
 
     time: Array

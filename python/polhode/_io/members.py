@@ -45,6 +45,16 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
     -----
     UserWarning
         If the body failed; its attitudes before that are read.
+
+    Examples
+    --------
+    One of three balls:
+
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> starts = ph.State(ph.Rotor.identity(), [[0, 0, 1], [0, 0, 2], [0, 0, 3]])
+    >>> ph.simulate(ball, starts, [0, 1, 2]).save("balls.nc")
+    >>> ph.io.read_netcdf("balls.nc", body=1).omega_body["e12"]
+    array([2., 2., 2.])
     """
     name = os.fsdecode(path)
     library = optional("h5py", "io", "a netCDF file")
@@ -79,6 +89,23 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
         If there is no such store.
     ImportError
         Without the libraries: ``pip install 'polhode[zarr]'``.
+
+    Examples
+    --------
+    >>> text = '''
+    ... body.moments = [1, 2, 3]
+    ... initial.spin = { vector = [0, 0, 1] }
+    ... ensemble = { number = 3, attitude = "uniform" }
+    ... run = { duration = 10, samples = 6 }
+    ... '''
+    >>> with open("turned.toml", "w") as file:
+    ...     _ = file.write(text)
+    >>> data = ph.Scene.read("turned.toml").run(store="turned.zarr")
+    >>> history = ph.io.read_zarr("turned.zarr", body=2)
+    >>> history.time
+    array([ 0.,  2.,  4.,  6.,  8., 10.])
+    >>> history.omega_body["e12"].round(9)
+    array([1., 1., 1., 1., 1., 1.])
     """
     name = os.fsdecode(path)
     if not os.path.lexists(path):

@@ -36,6 +36,23 @@ def read_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> tuple[Arra
     ------
     FileNotFoundError, ValueError
         As `polhode.Body.from_mesh`: the mesh must enclose a body.
+
+    Examples
+    --------
+    >>> text = '''v 0 0 0
+    ... v 30 0 0
+    ... v 0 20 0
+    ... v 0 0 10
+    ... f 1 3 2
+    ... f 1 2 4
+    ... f 1 4 3
+    ... f 2 3 4
+    ... '''
+    >>> with open("tetrahedron.obj", "w") as file:
+    ...     _ = file.write(text)
+    >>> vertices, triangles = ph.io.read_mesh("tetrahedron.obj", scale=0.001)  # mm
+    >>> vertices.max(axis=0), triangles.shape
+    (array([0.03, 0.02, 0.01]), (4, 3))
     """
     if not os.path.lexists(path):
         raise FileNotFoundError(f"{os.fspath(path)}: no such file")
@@ -65,6 +82,12 @@ def solid_surface(kind: str, *sizes: Any) -> tuple[Array, Array]:
     ------
     ValueError
         For another kind, another number of sizes, and sizes that no such solid has.
+
+    Examples
+    --------
+    >>> vertices, triangles = ph.io.solid_surface("box", [1, 2, 3])
+    >>> vertices.max(axis=0), len(triangles)
+    (array([0.5, 1. , 1.5]), 12)
     """
     lengths = np.concatenate([np.ravel(as_floats(x, f"the sizes of a {kind}")) for x in sizes or ([],)])
     vertices, triangles = _native.solid_surface(kind, lengths.tolist())
@@ -101,6 +124,29 @@ def write_stl(
         too small for floats of 32 bits.
     FileNotFoundError, OSError
         If there is no such mesh; if the file cannot be written, and an older file stays.
+
+    Examples
+    --------
+    The written tetrahedron has its centre of mass at the origin and principal axes for its axes:
+
+    >>> text = '''v 0 0 0
+    ... v 3 0 0
+    ... v 0 2 0
+    ... v 0 0 1
+    ... f 1 3 2
+    ... f 1 2 4
+    ... f 1 4 3
+    ... f 2 3 4
+    ... '''
+    >>> with open("tetrahedron.obj", "w") as file:
+    ...     _ = file.write(text)
+    >>> moved = ph.io.write_stl("tetrahedron.obj", "tetrahedron.stl")
+    >>> body = ph.Body.from_mesh("tetrahedron.stl", density=1)
+    >>> round(body.mass, 6), bool(body.center_of_mass.norm() < 1e-6)
+    (1.0, True)
+    >>> axes = body.inertia.matrix
+    >>> bool(np.allclose(axes, np.diag(body.inertia.principal_moments), atol=1e-6))
+    True
     """
     if Path(path).suffix.lower() != ".stl":
         raise ValueError(f"a mesh is saved as FILE.stl, not {os.fspath(path)!r}")

@@ -42,6 +42,13 @@ def write_urdf(
         If there is no body, or a name is empty, ``world``, or cannot be in XML.
     OSError
         If the file cannot be written; an older file stays.
+
+    Examples
+    --------
+    >>> wheel, axle = ph.Body.disc(0.5, mass=2), ph.Body.cylinder(0.05, 1, mass=3)
+    >>> ph.io.write_urdf({"wheel": wheel, "axle": axle}, "cart.urdf")
+    >>> ph.read_urdf("cart.urdf")["wheel"] == wheel
+    True
     """
     links = _named(bodies, name)
     if _ROOT in links:
@@ -91,6 +98,13 @@ def write_mjcf(
         1e-15, as that of a thin rod about its axis, which MuJoCo rejects.
     OSError
         If the file cannot be written; an older file stays.
+
+    Examples
+    --------
+    >>> wheel, axle = ph.Body.disc(0.5, mass=2), ph.Body.cylinder(0.05, 1, mass=3)
+    >>> ph.io.write_mjcf({"wheel": wheel, "axle": axle}, "cart.xml")
+    >>> sorted(ph.read_mjcf("cart.xml"))
+    ['axle', 'wheel']
     """
     links = _named(bodies, name)
     if _ROOT in links:

@@ -44,7 +44,7 @@ def write_ck(
     epoch: str | None = None,
     time_system: str | None = None,
 ) -> None:
-    """Write the attitudes of one body as a SPICE CK of type 3, atomically.
+    r"""Write the attitudes of one body as a SPICE CK of type 3, atomically.
 
     The file has one segment with one interpolation interval, and angular velocities if the motion has them.
     Times of a CK are ticks of the spacecraft clock in 64-bit floats, and SPICE counts seconds since J2000, so
@@ -69,6 +69,36 @@ def write_ck(
         For a batch; if epoch or frames are not known; with the message of SPICE, if kernels do not fit.
     ImportError
         Without spiceypy: ``pip install 'polhode[spice]'``.
+
+    Examples
+    --------
+    The leapseconds kernel is ``naif0012.tls`` of NAIF; here its last entry is enough:
+
+    >>> leapseconds = r'''KPL/LSK
+    ... \begindata
+    ... DELTET/DELTA_T_A = 32.184
+    ... DELTET/K         = 1.657D-3
+    ... DELTET/EB        = 1.671D-2
+    ... DELTET/M         = ( 6.239996 1.99096871D-7 )
+    ... DELTET/DELTA_AT  = ( 37, @2017-JAN-1 )
+    ... \begintext
+    ... '''
+    >>> with open("leapseconds.tls", "w") as file:
+    ...     _ = file.write(leapseconds)
+
+    Clock and frame of a simulated spacecraft, and its attitudes:
+
+    >>> ph.io.write_sclk("curlew.tsc", clock=-999, epoch="2026-01-01T00:00:00")
+    >>> own = ph.io.CkFrame("CURLEW_BODY", number=-999000, clock=-999, center=-999)
+    >>> ph.io.write_fk("curlew.tf", [own])
+    >>> kernels = ["leapseconds.tls", "curlew.tsc", "curlew.tf"]
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 0.1]), [0, 10, 20])
+    >>> names = {"body_frame": "CURLEW_BODY", "reference_frame": "J2000"}
+    >>> epoch = "2026-01-01T00:00:00"
+    >>> ph.io.write_ck(motion, "curlew.bc", kernels=kernels, epoch=epoch, **names)
+    >>> ph.io.read_ck("curlew.bc", kernels=kernels).attributes["body_frame"]
+    'CURLEW_BODY'
     """
     history = AttitudeHistory.of(motion)
     check_target(Path(path))
@@ -130,7 +160,7 @@ def read_ck(
     epoch: str | None = None,
     time_system: str | None = None,
 ) -> AttitudeHistory:
-    """Read the records of a segment of a SPICE CK of type 3.
+    r"""Read the records of a segment of a SPICE CK of type 3.
 
     Parameters
     ----------
@@ -152,6 +182,36 @@ def read_ck(
         If the file is not a CK of type 3, and with the message of SPICE if the kernels do not fit.
     FileNotFoundError, ImportError
         As for `write_ck`.
+
+    Examples
+    --------
+    A kernel as `write_ck` writes it, read back:
+
+    >>> leapseconds = r'''KPL/LSK
+    ... \begindata
+    ... DELTET/DELTA_T_A = 32.184
+    ... DELTET/K         = 1.657D-3
+    ... DELTET/EB        = 1.671D-2
+    ... DELTET/M         = ( 6.239996 1.99096871D-7 )
+    ... DELTET/DELTA_AT  = ( 37, @2017-JAN-1 )
+    ... \begintext
+    ... '''
+    >>> with open("leapseconds.tls", "w") as file:
+    ...     _ = file.write(leapseconds)
+    >>> ph.io.write_sclk("curlew.tsc", clock=-999, epoch="2026-01-01T00:00:00")
+    >>> own = ph.io.CkFrame("CURLEW_BODY", number=-999000, clock=-999, center=-999)
+    >>> ph.io.write_fk("curlew.tf", [own])
+    >>> kernels = ["leapseconds.tls", "curlew.tsc", "curlew.tf"]
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 0.1]), [0, 10, 20])
+    >>> names = {"body_frame": "CURLEW_BODY", "reference_frame": "J2000"}
+    >>> epoch = "2026-01-01T00:00:00"
+    >>> ph.io.write_ck(motion, "curlew.bc", kernels=kernels, epoch=epoch, **names)
+    >>> history = ph.io.read_ck("curlew.bc", kernels=kernels, epoch=epoch)
+    >>> history.time.round(6)
+    array([ 0., 10., 20.])
+    >>> history.omega_body["e12"].round(9)
+    array([0.1, 0.1, 0.1])
     """
     name = os.fsdecode(path)
     if not os.path.lexists(path):

@@ -44,6 +44,12 @@ class FrameVector:
         ``"X"``, ``"-X"``, ``"Y"``, ``"-Y"``, ``"Z"`` or ``"-Z"``.
     entries
         What the kernel says of the direction, by the ends of its keywords.
+
+    Examples
+    --------
+    >>> to_earth = ph.io.FrameVector.position("Z", -999, "EARTH")
+    >>> to_earth.axis, to_earth.entries[0]
+    ('Z', ('VECTOR_DEF', "'OBSERVER_TARGET_POSITION'"))
     """
 
     axis: str
@@ -118,6 +124,22 @@ class TwoVectorFrame:
         The frame of space in which SPICE evaluates it, such as ``"J2000"``.
     primary, secondary
         The directions, along different axes.
+
+    Examples
+    --------
+    Z points from the satellite to the Earth, X along its velocity as far as it can:
+
+    >>> nominal = ph.io.TwoVectorFrame(
+    ...     "CURLEW_NOMINAL",
+    ...     number=1400999,
+    ...     center=-999,
+    ...     relative_to="J2000",
+    ...     primary=ph.io.FrameVector.position("Z", -999, "EARTH"),
+    ...     secondary=ph.io.FrameVector.velocity("X", "EARTH", -999, frame="J2000"),
+    ... )
+    >>> ph.io.write_fk("curlew.tf", [nominal])
+    >>> nominal.primary.axis, nominal.secondary.axis
+    ('Z', 'X')
     """
 
     name: str
@@ -164,6 +186,13 @@ class CkFrame:
         Number of the spacecraft clock, negative, as of `write_sclk`.
     center
         Number of the spacecraft.
+
+    Examples
+    --------
+    >>> own = ph.io.CkFrame("CURLEW_BODY", number=-999000, clock=-999, center=-999)
+    >>> ph.io.write_fk("curlew.tf", [own])
+    >>> own.number // own.center  # by custom
+    1000
     """
 
     name: str
@@ -195,6 +224,14 @@ def write_fk(path: str | os.PathLike[str], frames: Sequence[TwoVectorFrame | CkF
         If there is no frame, or a name or a number occurs twice.
     OSError
         If the file cannot be written; an older file stays.
+
+    Examples
+    --------
+    >>> own = ph.io.CkFrame("CURLEW_BODY", number=-999000, clock=-999, center=-999)
+    >>> ph.io.write_fk("curlew.tf", [own])
+    >>> with open("curlew.tf") as file:
+    ...     print(*(line.strip() for line in file if "CLASS" in line), sep="; ")
+    FRAME_-999000_CLASS    = 3; FRAME_-999000_CLASS_ID = -999000
     """
     if not frames:
         raise ValueError("a frame kernel needs one frame or more")
@@ -233,6 +270,15 @@ def write_sclk(path: str | os.PathLike[str], *, clock: int, epoch: str, time_sys
         For a number that is not negative, an epoch that does not exist, and other time systems.
     OSError
         If the file cannot be written; an older file stays.
+
+    Examples
+    --------
+    The epoch is 9496.5 days and 69.184 s after J2000, as TT is 69.184 s ahead of UTC:
+
+    >>> ph.io.write_sclk("curlew.tsc", clock=-999, epoch="2026-01-01T00:00:00")
+    >>> with open("curlew.tsc") as file:
+    ...     print(*(line.strip() for line in file if "COEFFICIENTS" in line))
+    SCLK01_COEFFICIENTS_999  = ( 0.0 820497669.184 1.0 )
     """
     _check_clock(clock)
     if time_system not in _J2000:

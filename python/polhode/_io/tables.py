@@ -47,6 +47,20 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
         With file, line and column, for a file that is not such a table.
     FileNotFoundError
         If there is no such file.
+
+    Examples
+    --------
+    A table of attitudes with the columns that are needed:
+
+    >>> text = '''time,attitude_w,attitude_x,attitude_y,attitude_z
+    ... 0,1,0,0,0
+    ... 1,0,0,0,1
+    ... '''
+    >>> with open("turn.csv", "w") as file:
+    ...     _ = file.write(text)
+    >>> history = ph.io.read_csv("turn.csv")
+    >>> history.rotor[1](ph.e1)  # half a turn about e3
+    -e1
     """
     name = os.fsdecode(path)
     text = _content(path, name).decode("utf-8-sig", "replace")
@@ -90,6 +104,14 @@ def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> At
     ------
     ImportError
         Without the libraries: ``pip install 'polhode[parquet]'``.
+
+    Examples
+    --------
+    >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 1, 2])
+    >>> motion.save("ball.parquet")
+    >>> ph.io.read_parquet("ball.parquet").omega_body["e12"]
+    array([1., 1., 1.])
     """
     name = os.fsdecode(path)
     table.require_parquet()

@@ -38,7 +38,27 @@ _BLOCK, _BLOCKS, _FEW = 32 << 20, 64, 512
 _REDUCED = 1 << 17
 
 
-class SceneNotFoundError(_native.SceneError, FileNotFoundError):
+SceneError = _native.SceneError
+SceneError.__doc__ = """All errors in a scene file, with their lines, columns and source lines; a ValueError.
+
+Examples
+--------
+>>> text = '''
+... body.moments = [1, 2, 3]
+... initial.spin = { vector = [0, 1, "2 m/s"] }
+... run.duration = "10 s"
+... '''
+>>> with open("spin.toml", "w") as file:
+...     _ = file.write(text)
+>>> try:
+...     ph.Scene.read("spin.toml")
+... except ph.SceneError as error:
+...     print(str(error).splitlines()[0])  # the next ones show the place
+spin.toml:3:34: error: expected an angular rate such as `5 rev/s`, found a speed (`2 m/s`)
+"""
+
+
+class SceneNotFoundError(SceneError, FileNotFoundError):
     """A scene file that does not exist."""
 
 
@@ -77,6 +97,32 @@ class Scene:
         Largest relative drift of a conserved quantity that counts as success.
     ensemble
         The table `[ensemble]`; None without.
+
+    Examples
+    --------
+    A box that is thrown about its middle axis:
+
+    >>> text = '''
+    ... [body]
+    ... solid = "box"
+    ... lengths = ["20 cm", "12 cm", "4 cm"]
+    ... mass = "1 kg"
+    ...
+    ... [initial]
+    ... spin = { vector = ["0.01 rev/s", "2 rev/s", 0] }
+    ...
+    ... [run]
+    ... duration = "3 s"
+    ... samples = 301
+    ... '''
+    >>> with open("box.toml", "w") as file:
+    ...     _ = file.write(text)
+    >>> scene = ph.Scene.read("box.toml")
+    >>> scene.kind, len(scene.times)
+    ('free', 301)
+    >>> motion = scene.run()
+    >>> print(f"{motion.omega_body['e31'].min() / (2 * np.pi):.2f} rev/s")  # it turns over
+    -2.00 rev/s
     """
 
     path: Path
@@ -112,11 +158,26 @@ class Scene:
             A ValueError that reports every error in the file with its line, column and source line.
         FileNotFoundError
             If there is no such file; it is a SceneError too.
+
+        Examples
+        --------
+        >>> text = '''
+        ... body = { solid = "sphere", radius = "10 cm", mass = "5 kg" }
+        ... initial.spin = { plane = "e1e2", rate = "1 rev/s" }
+        ... run.duration = "10 s"
+        ... '''
+        >>> with open("ball.toml", "w") as file:
+        ...     _ = file.write(text)
+        >>> scene = ph.Scene.read("ball.toml")
+        >>> scene.body.inertia  # 2/5 m r²
+        Inertia(principal moments 0.02, 0.02, 0.02 kg m²)
+        >>> scene.state.omega_body / (2 * np.pi)
+        e1∧e2
         """
         table = TableReader()
         try:
             core = _native.Scene.read(os.fspath(path), table.read)
-        except _native.SceneError as error:
+        except SceneError as error:
             if os.path.lexists(path):
                 raise
             raise SceneNotFoundError(str(error)) from None
@@ -251,6 +312,20 @@ class Scene:
         ImportError
             Without the libraries of a store, ``pip install 'polhode[zarr]'``, or of a cluster,
             ``pip install 'polhode[cluster]'``.
+
+        Examples
+        --------
+        >>> text = '''
+        ... body = { solid = "sphere", radius = "10 cm", mass = "5 kg" }
+        ... initial.spin = { plane = "e1e2", rate = "1 rad/s" }
+        ... torque.damping = "0.5 /s"
+        ... run = { duration = "2 s", samples = 3 }
+        ... '''
+        >>> with open("ball.toml", "w") as file:
+        ...     _ = file.write(text)
+        >>> motion = ph.Scene.read("ball.toml").run()
+        >>> motion.omega_body["e12"].round(4)  # exp(-t/2)
+        array([1.    , 0.6065, 0.3679])
         """
         if store is not None:
             return self._run_into(store, resume, bodies, cluster, progress, threads)

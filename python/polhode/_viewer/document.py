@@ -18,13 +18,11 @@ from typing import Any
 
 import numpy as np
 
-from polhode._algebra.constructors import bivector
 from polhode._algebra.multivector import Multivector
-from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._mechanics.bodies import Body, Inertia, bodies_of
-from polhode._mechanics.closed_forms import ClosedForm, DampedTop, LagrangeTop, LarmorSphere
-from polhode._mechanics.free_motion import FreeMotion
+from polhode._mechanics.closed_form import ClosedForm
+from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere
 from polhode._mechanics.laws import finite
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.simulate import as_force, as_torque, simulate
@@ -71,7 +69,7 @@ def document(
         bodies, law = settled(bodies_of(x), law)
         return _of_problem(_problem(bodies[()], state, law, push, duration))
     _refuse(x, state=state, torque=torque, force=force)
-    if isinstance(x, (FreeMotion, ClosedForm)):
+    if isinstance(x, ClosedForm):
         return _of_problem(_solved(x, duration))
     _refuse(x, duration=duration)
     if isinstance(x, Scene):
@@ -259,16 +257,11 @@ def _refuse_batch(state: State, torque: Torque | None) -> None:
         raise ValueError("the viewer shows one body, this is a batch: pick one body")
 
 
-def _solved(motion: FreeMotion | ClosedForm, duration: float | None) -> Problem:
+def _solved(motion: ClosedForm, duration: float | None) -> Problem:
     """Return what a motion in closed form is the answer to."""
-    if isinstance(motion, FreeMotion):
-        if motion.shape:
-            raise ValueError(
-                f"the viewer shows one body, this is a batch of shape {motion.shape}: pick one body"
-            )
-        rotors, omegas = motion._core.starts()
-        state = State(Rotor._from_rows(rotors.reshape(4)), bivector(omegas.reshape(3)))
-        return _problem(motion._inertia, state, None, None, duration)
-    inertia, rotor, omega_body, argument = motion._given
+    if motion.shape:
+        raise ValueError(f"the viewer shows one body, this is a batch of shape {motion.shape}: pick one body")
+    inertia, rotor, omega_body, *arguments = motion._arguments()
     laws = {LagrangeTop: heavy, DampedTop: damping, LarmorSphere: larmor}
-    return _problem(inertia, State(rotor, omega_body), laws[type(motion)](argument), None, duration)
+    law = laws[type(motion)](*arguments) if arguments else None
+    return _problem(inertia, State(rotor, omega_body), law, None, duration)

@@ -43,6 +43,18 @@ def view(
         Without anywidget: ``pip install 'polhode[notebook]'``.
     TypeError, ValueError, SceneError, OSError
         For values that cannot be shown, and files that cannot be read.
+
+    Examples
+    --------
+    The last line of a cell shows the page. Time and scene can be read and set:
+
+    >>> inertia = ph.Inertia.from_principal_moments(1, 2, 3)
+    >>> page = ph.view(ph.FreeMotion(inertia, ph.Rotor.identity(), [0.01, 6, 0]), duration=10)
+    >>> [line for line in page.scene.splitlines() if line.startswith(("moments", "spin"))]
+    ['moments = [1.0, 2.0, 3.0]', 'spin = { bivector = [0.01, 6.0, 0.0] }']
+    >>> page.time = 2.5
+    >>> page.state.time
+    2.5
     """
     from polhode._viewer.document import document
     from polhode._viewer.widget import Viewer

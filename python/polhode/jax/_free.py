@@ -17,7 +17,7 @@ import numpy as np
 
 from polhode import _native
 from polhode.jax import _theta
-from polhode.jax._arguments import start
+from polhode.jax._arguments import Start, start
 from polhode.jax._components import compose, joined, reverse, split
 from polhode.jax._library import Array, jax, jnp
 
@@ -54,7 +54,17 @@ def free(
     if method is None:
         method = "native" if jax.default_backend() == "cpu" else "jax"
     given = start(inertia, rotor, omega_body)
-    batch, times = given.batch(), jnp.asarray(t, given.rotor.dtype)
+    given.batch()  # or an error
+    rotors: Array
+    omegas: Array
+    rotors, omegas = _states(given, jnp.asarray(t, given.rotor.dtype), method=method)
+    return rotors, omegas
+
+
+@partial(jax.jit, static_argnames="method")
+def _states(given: Start, times: Array, *, method: str) -> tuple[Array, Array]:
+    """Compiled, because JAX takes milliseconds to start a callback outside `jit`."""
+    batch = given.batch()
     bodies = [jnp.broadcast_to(x, (*batch, x.shape[-1])) for x in (given.moments, given.rotor, given.omega)]
     flow: Any = _flow if method == "native" else _theta.flow
     rotors, omegas = flow(*bodies, jnp.broadcast_to(times.ravel(), (*batch, times.size)))

@@ -18,7 +18,7 @@ from polhode.jax._components import joined, normalized, split
 from polhode.jax._formula_law import Formula
 from polhode.jax._laws import Function, Gyrostat, Torque
 from polhode.jax._library import Array, jax, jnp, lax
-from polhode.jax._simulate import compiled, prepared
+from polhode.jax._simulate import prepared, simulate_principal
 from polhode.jax._steppers import stepper, table_of
 from polhode.jax._table import Table
 
@@ -70,13 +70,16 @@ def advance(
     span = jnp.stack([jnp.asarray(t, given.rotor.dtype) for t in (start_time, time)])
     if kernel:
         return given.in_body_axes(*_advanced(method, steps, given, force, span))
-    return given.in_body_axes(*_scanned(method, steps, given, force, span))
+    return given.in_body_axes(*_compiled_scan(method, steps, given, force, span))
 
 
 def _scanned(method: str, steps: int, given: Start, torque: Torque, span: Array) -> tuple[Array, Array]:
     counts = np.array([steps])
-    found = compiled(given, torque, span[1:], counts, span[0], method=method, most=steps, even=True)
+    found = simulate_principal(given, torque, span[1:], counts, span[0], method=method, most=steps, even=True)
     return found[0][..., 1, :], found[1][..., 1, :]
+
+
+_compiled_scan = jax.jit(_scanned, static_argnums=(0, 1))
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(0, 1))
@@ -101,7 +104,7 @@ def _advanced(method: str, steps: int, given: Start, torque: Torque, span: Array
 
 @_advanced.defjvp
 def _advanced_jvp(method: str, steps: int, primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> Any:
-    _, change = jax.jvp(partial(_scanned, method, steps), primals, tangents)
+    _, change = jax.jvp(partial(_compiled_scan, method, steps), primals, tangents)
     return _advanced(method, steps, *primals), change
 
 

@@ -71,17 +71,13 @@ def simulate(
     given, force = prepared(inertia, rotor, omega_body, torque, method)
     begin, both = ways(times, step, steps, force, start_time)
     # A function may close over tracers, which must not enter the compilation cache.
-    run = (
-        simulate_principal
-        if any(isinstance(law, Function) and law.partial is None for law in force.laws)
-        else compiled
-    )
-    parts = []
-    for way, backwards in both:
-        found = run(given, force, way.targets, way.counts, begin, method=method, most=way.most, even=way.even)
-        places = list(way.places[::-1] if backwards else way.places)
-        parts.append([x[..., places, :] for x in found])
-    return given.in_body_axes(*(jnp.concatenate(x, axis=-2) for x in zip(*parts, strict=True)))
+    closed = any(isinstance(law, Function) and law.partial is None for law in force.laws)
+    targets = [(way.targets, way.counts) for way, _ in both]
+    places = [np.array(way.places[::-1] if backwards else way.places, np.int32) for way, backwards in both]
+    kinds = tuple((way.most, way.even) for way, _ in both)
+    run = _both_ways if closed else _compiled_ways
+    rotors, omegas = run(given, force, targets, places, begin, method=method, kinds=kinds)
+    return rotors, omegas
 
 
 def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str) -> tuple[Start, Torque]:
@@ -102,6 +98,27 @@ def _check_weights(body: Body, torque: Torque) -> None:
     for (c,) in torque.arguments_of(weight):
         if not any(isinstance(x, jax.core.Tracer) for x in c):
             native.settled(bodies_of(body), native.heavy(np.stack(c, axis=-1)))
+
+
+def _both_ways(
+    given: Start,
+    torque: Torque,
+    targets: list[tuple[Array, Array]],
+    places: list[Array],
+    begin: Array,
+    *,
+    method: str,
+    kinds: tuple[tuple[int, bool], ...],
+) -> tuple[Array, Array]:
+    """Return the states at the output times in body axes: back from the start, then forth."""
+    parts = []
+    for (to, counts), where, (most, even) in zip(targets, places, kinds, strict=True):
+        found = simulate_principal(given, torque, to, counts, begin, method=method, most=most, even=even)
+        parts.append([x[..., where, :] for x in found])
+    return given.in_body_axes(*(jnp.concatenate(x, axis=-2) for x in zip(*parts, strict=True)))
+
+
+_compiled_ways = jax.jit(_both_ways, static_argnames=("method", "kinds"))
 
 
 def simulate_principal(
@@ -147,9 +164,6 @@ def simulate_principal(
     all_rows = jax.tree.map(lambda x, y: jnp.concatenate([x[None], y]), first, rows)
     rotors, omegas = (jnp.moveaxis(joined(x), 0, -2) for x in all_rows)
     return rotors, omegas
-
-
-compiled = jax.jit(simulate_principal, static_argnames=("method", "most", "even"))
 
 
 def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]:

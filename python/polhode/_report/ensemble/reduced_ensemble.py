@@ -41,6 +41,22 @@ class ReducedEnsemble(Mapping[str, Array]):
         The bodies whose motion could not be computed to the end.
     attributes
         Title, text of the scene, seed and conventions, as in files.
+
+    Examples
+    --------
+    >>> text = '''
+    ... body.moments = [1, 2, 3]
+    ... initial.spin = { vector = [0, 0, 1] }
+    ... ensemble = { number = 100, spin = { normal = 0.3 } }
+    ... run = { duration = 10, samples = 11 }
+    ... '''
+    >>> with open("spins.toml", "w") as file:
+    ...     _ = file.write(text)
+    >>> found = ph.Scene.read("spins.toml").reduce(["last", "extrema"])
+    >>> found["last_attitude"].shape  # a quaternion for each body
+    (100, 4)
+    >>> bool((found["rate_min"] <= found["rate_max"]).all())
+    True
     """
 
     time: Array

@@ -15,7 +15,7 @@ def epsilon(i, j, k):
     return (i - j) * (j - k) * (k - i) // 2
 
 
-def test_basis_of_eight_elements_graded_1_3_3_1():
+def test_eq_1_4_basis_of_eight_elements_graded_1_3_3_1():
     elements = [ph.scalar(1.0), e1, e2, e3, e23, e31, e12, e1 * e2 * e3]
     table = np.array(
         [sum((m.grade(k) for k in range(4)), ph.multivector([0.0] * 8)).components for m in elements]

@@ -92,6 +92,15 @@ def test_from_matrix_of_exact_half_turns(diagonal):
     assert np.array_equal(R.to_matrix(), np.diag(diagonal))
 
 
+@pytest.mark.parametrize("axis", range(3))
+def test_matrices_of_quarter_turns_have_exact_zeros(axis):
+    """On the diagonal, equal squares of the rotor's components are subtracted."""
+    components = np.zeros(4)
+    components[[0, axis + 1]] = np.sqrt(0.5)
+    matrix = ph.Rotor.from_components(components).to_matrix()
+    assert np.array_equal(np.round(matrix) == 0, matrix == 0)
+
+
 def test_from_matrix_takes_the_nearest_rotation():
     R, noise = random_rotors((20,), 12), np.random.default_rng(13).uniform(-1, 1, (20, 3, 3))
     m = R.to_matrix() + 1e-5 * noise

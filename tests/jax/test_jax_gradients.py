@@ -120,3 +120,20 @@ def test_times_have_derivatives():
     exact = ph.FreeMotion(inertia, ph.Rotor.from_components(ROTOR), OMEGA).derivatives(TIME)
     # The method's own slope differs by its error, of order 4 in steps of 0.04.
     assert np.abs(slope - np.concatenate([exact.d_rotor_dt, exact.d_omega_dt])).max() < 1e-6
+
+
+def test_a_motion_outside_jit_is_one_program():
+    moments, law = np.array([1.0, 2.0, 3.0]), laws.heavy([0.1, 0.0, 1.0])
+
+    def back_and_forth(omega):
+        return ph.jax.simulate(moments, ROTOR, omega, [-0.5, 0.0, 0.3, 0.3, 0.8], law, "strang", step=0.1)
+
+    motions = (
+        lambda omega: ph.jax.free(moments, ROTOR, omega, [0.0, 0.3]),
+        back_and_forth,
+        lambda omega: ph.jax.advance(moments, ROTOR, omega, TIME, law, "rk4", steps=4),
+    )
+    for motion in motions:
+        started = [equation.primitive.name for equation in jax.make_jaxpr(motion)(OMEGA).jaxpr.eqns]
+        assert started.count("jit") == 1
+        assert len(started) <= 2  # `advance` joins the two times

@@ -360,6 +360,27 @@ def test_bodies_survive_pickling(body):
     )
 
 
+def test_arrays_of_moments_and_matrices_give_arrays_of_inertias():
+    i3 = np.linspace(2.2, 2.9, 6).reshape(2, 3)
+    many = ph.Inertia.from_principal_moments(1, [[1.5], [2]], i3)
+    assert many.shape == (2, 3)
+    for (i, j), one in np.ndenumerate(many):
+        assert type(one) is ph.Inertia
+        assert one == ph.Inertia.from_principal_moments(1, 1.5 + i / 2, i3[i, j])
+    turns = ph.Rotor.random((2, 3), rng=np.random.default_rng(3)).to_matrix()
+    tensors = turns @ np.stack([one.matrix for one in many.flat]).reshape(2, 3, 3, 3) @ turns.swapaxes(-1, -2)
+    assert ph.Inertia.from_matrix(np.zeros((0, 3, 3))).shape == (0,)
+    for index, one in np.ndenumerate(ph.Inertia.from_matrix(tensors)):
+        alone = ph.Inertia.from_matrix(tensors[index])
+        assert one == alone
+        np.testing.assert_array_equal(one.principal_moments, alone.principal_moments)
+        np.testing.assert_array_equal(one.principal_frame.components, alone.principal_frame.components)
+    # Enough rows for several threads, in their order.
+    column = np.linspace(1, 2, 40_000)
+    several = ph.Inertia.from_principal_moments(column, 2, 2.5)
+    assert [several[k].principal_moments[0] for k in (0, 19_999, -1)] == [1, column[19_999], 2]
+
+
 def test_inertias_compare_and_hash_by_value():
     a, b = ph.Inertia.from_principal_moments(1, 2, 3), ph.Inertia.from_matrix(np.diag([1.0, 2.0, 3.0]))
     assert a == b

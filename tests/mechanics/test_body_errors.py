@@ -22,6 +22,12 @@ from meshes import cube, write_binary_stl, write_obj
             ["symmetric", "row 1, column 2", "2.0"],
         ),
         (lambda: ph.Inertia.from_matrix(np.eye(2)), ["(3, 3)", "(2, 2)"]),
+        (lambda: ph.Inertia.from_principal_moments(1, [2, 1], 3), ["at index (1,)", "1.0, 1.0, 3.0", "i3"]),
+        (lambda: ph.Inertia.from_principal_moments([1, 2], [1, 2, 3], 3), ["(2,) of i1", "(3,) of i2"]),
+        (
+            lambda: ph.Inertia.from_matrix([np.eye(3), np.diag([1, 1, -1])]),
+            ["at index (1,)", "-1.0", "negative"],
+        ),
         (lambda: ph.Inertia.from_points([1, 2], [[0, 0, 0]]), ["(2,)", "(1, 3)"]),
         (lambda: ph.Inertia.from_points([1, -2], np.eye(3)[:2]), ["masses[1]", "-2.0 kg"]),
         (lambda: ph.Inertia.from_points([1, 2], [[0, 0, 0], [0, np.inf, 0]]), ["positions[1]", "inf"]),

@@ -55,7 +55,7 @@ def test_bad_input_is_refused():
         ph.LarmorSphere(moments(1, 1, 1.5), R0, [1, 0, 0], [0, 0, 1])
     with pytest.raises(TypeError, match="Inertia"):
         ph.LarmorSphere([1, 1, 1], R0, [1, 0, 0], [0, 0, 1])
-    with pytest.raises(ValueError, match="batch"):
-        ph.LarmorSphere(moments(1, 1, 1), ph.Rotor.identity((2,)), [1, 0, 0], [0, 0, 1])
+    with pytest.raises(ValueError, match=r"\(2,\) of the rotor, .* and \(3,\) of b do not broadcast"):
+        ph.LarmorSphere(moments(1, 1, 1), ph.Rotor.identity((2,)), [1, 0, 0], np.ones((3, 3)))
     with pytest.raises(ValueError, match="time inf at index 1"):
         ph.LarmorSphere(moments(1, 1, 1), R0, [1, 0, 0], [0, 0, 1]).at([0, np.inf])

@@ -115,6 +115,23 @@ def test_a_spring_oscillates(method):
     assert np.ptp(energy) <= 4e-9 * energy[0]
 
 
+@pytest.mark.parametrize("batch", [(), (3,)])
+@pytest.mark.parametrize("end", [5.0, 20.0])
+def test_a_body_that_falls_from_rest_reaches_its_terminal_velocity(end, batch):
+    """Without spin and speed nothing but the end of a step says how large its error is."""
+    k, g, up = 1.0, 10.0, ph.e3
+    state = ph.State(ph.Rotor.identity(batch), np.zeros((*batch, 3)))
+    linear = F.formula("-m g e3 - k v", g=g, k=k)
+    quadratic = F.constant([0, 0, -M * g]) + F.quadratic_drag(k)
+    terminal = np.sqrt(M * g / k)
+    speeds = M * g / k * -np.expm1(-k * end / M), terminal * np.tanh(g * end / terminal)
+    for force, speed in zip((linear, quadratic), speeds, strict=True):
+        motion = ph.simulate(BODY, state, [end], force=force)
+        error = (motion.velocity + speed * up).norm().max() / speed
+        assert error <= 2 * np.max(motion.certificate.error_estimate) + 8 * EPS
+        assert error < 1e-9
+
+
 def test_drag_slows_down():
     """``v = v0 exp(−kt/m)``; and for ``−k |v| v`` ``x = (m/k) log(1 + k v0 t/m)``."""
     k, v, times = 0.5, np.array([3.0, 0, 4.0]), np.linspace(0, 20, 11)

@@ -95,7 +95,7 @@ def test_eq_4_3_velocity_of_the_frame_is_omega_cross_f():
             assert magnitude(velocity - ph.cross(omega, moving(t)(e))) <= RATE_ERROR
 
 
-def test_eq_4_4_omega_cross_f_as_bivector():
+def test_eq_4_3_omega_cross_f_as_bivector():
     omega, f = a, b
     assert same(ph.cross(omega, f), -I * omega.wedge(f))
     assert same(ph.cross(omega, f), (-I * omega).dot(f))
@@ -128,13 +128,13 @@ def test_eq_4_7_R_dot_R_reverse_is_minus_its_reverse():
     assert same(~(R_dot * ~R_whole), R_whole * ~R_dot)
 
 
-def test_eq_4_8_R_dot_R_reverse_is_a_pure_bivector():
+def test_eq_4_7_R_dot_R_reverse_is_a_pure_bivector():
     R_dot = -R_whole * A / 2
     assert same((R_dot * ~R_whole).grade(0), 0)
     assert same(R_dot * ~R_whole, (R_dot * ~R_whole).grade(2))
 
 
-def test_eq_4_9_frame_rate_is_2_R_dot_R_reverse_dot_f():
+def test_eq_4_8_and_4_9_frame_rate_is_2_R_dot_R_reverse_dot_f():
     R_dot = -R_whole * A / 2
     twice = (2 * R_dot * ~R_whole).grade(2)  # n times 2 R' ~R of the unit rotor
     for e in BASIS:
@@ -285,11 +285,11 @@ def test_eq_4_25_symmetric_top():
     assert same(top_inertia(A), TOP_I1 * A + (TOP_I3 - TOP_I1) * (A.wedge(e3) * e3))
 
 
-def test_eq_4_26_commutator_with_a_dual_vector():
+def test_eq_4_27_commutator_with_a_dual_vector():
     assert same(B.commutator(I * a), -a.wedge(I * B))
 
 
-def test_eq_4_27_commutator_of_the_top():
+def test_eq_4_26_commutator_of_the_top():
     # Ω × I(Ω) = (i3 − i1) Ω × [(Ω∧e3) e3]: the part along Ω drops out.
     volume = A.wedge(e3)
     assert same(A.commutator(top_inertia(A)), (TOP_I3 - TOP_I1) * A.commutator(volume * e3))

@@ -263,7 +263,7 @@ def test_eq_4_20_torque_is_the_rate_of_angular_momentum():
 
 
 @TORQUES
-def test_eq_4_21_the_torque_in_the_body(torque):
+def test_eq_4_20_the_torque_in_the_body(torque):
     """R [I(Ω_B') − Ω_B × I(Ω_B)] ~R = T."""
     m = Moment(torque, body=BODY.inertia)
     T = m.R(ph.vector([0.5, 0.25, 1.0])).wedge(-e3) if torque else ph.bivector([0, 0, 0])
@@ -279,7 +279,7 @@ def test_eq_4_22_no_torque():
     assert_equal(m.L, START.rotor(m.I(START.omega_body)))
 
 
-def test_eq_4_23_the_principal_frame():
+def test_eq_4_23_and_4_24_the_principal_frame():
     """Ω_B = Σ ω_k I e_k, Ω_S = Σ ω_k I f_k, I(Ω_B) = Σ i_k ω_k I e_k in the principal frame."""
     m = Moment()
     F, moments = m.I.principal_frame, m.I.principal_moments
@@ -327,7 +327,7 @@ def test_eq_4_25_inertia_of_the_symmetric_top(i1, i3):
     assert_equal(J(B), i1 * B + (i3 - i1) * B.wedge(e3) * e3)
 
 
-def test_eq_4_26_commutator_with_a_dual():
+def test_eq_4_27_commutator_with_a_dual():
     """B × (Ia) = −a∧(IB)."""
     rng = np.random.default_rng(2)
     B, a = ph.bivector(rng.normal(size=(20, 3))), ph.vector(rng.normal(size=(20, 3)))
@@ -335,7 +335,7 @@ def test_eq_4_26_commutator_with_a_dual():
 
 
 @SYMMETRIC
-def test_eq_4_27_and_4_28_rate_of_the_symmetric_top(i1, i3):
+def test_eq_4_28_rate_of_the_symmetric_top(i1, i3):
     """I(Ω_B') = −(i3 − i1) e3∧[(Ω_B∧e3) Ω_B]."""
     J, _, body, _, body_rate = moment_of_top(i1, i3)
     assert body_rate.norm() > 0.1
@@ -362,7 +362,7 @@ def test_eq_4_30_angular_velocity_from_momentum(i1, i3):
 
 
 @SYMMETRIC
-def test_eq_4_31_angular_velocity_in_space(i1, i3):
+def test_eq_4_31_and_4_32_angular_velocity_in_space(i1, i3):
     """Ω_S = L/i1 + ((i1 − i3)/i1) ω3 R I e3 ~R, with Ω_S from the rate of the rotor."""
     J, R, body, R_rate, _ = moment_of_top(i1, i3)
     w3 = body.components[2]

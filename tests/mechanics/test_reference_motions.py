@@ -16,11 +16,11 @@ from motions import (
     STEPS,
     SYMMETRIC,
     apart,
-    law_of,
     moments,
     order_of,
     random_walk,
 )
+from references import law as law_of
 
 # --- reference states
 
@@ -139,7 +139,9 @@ def test_reference_states(case):
 
 def reference_cases():
     data = json.loads(REFERENCE.read_text())
-    ours = [c for c in data["torqued"] if "omega0" in c and law_of(c) is not None]
+    # STEPS is a splitting, which has no Larmor torque (b).
+    steps_fit = [c for c in data["torqued"] if "b" not in c.get("params", {})]
+    ours = [c for c in steps_fit if "omega0" in c and law_of(c) is not None]
     return [
         pytest.param(case, result, id=f"{case['name']}-{result['t']}")
         for case in data["free_top"] + ours

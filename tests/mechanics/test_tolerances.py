@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import polhode as ph
-from motions import REFERENCE, apart, law_of, moments
+from motions import REFERENCE, apart, moments
+from references import law as law_of
 
 METHODS = ["auto", "kahan_li8", "rkn6", "dop853", "yoshida6"]
 DECADES = range(3, 13)

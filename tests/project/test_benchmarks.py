@@ -170,6 +170,12 @@ def test_the_table_keeps_its_layout():
     )
 
 
+@pytest.mark.parametrize(("ours", "mark"), [(4e-9, "behind 0.500×"), (1e-9, "2.00×")])
+def test_the_table_marks_rows_behind_another_library(ours, mark):
+    row = Row("2 + 2", seconds={OURS: ours, "NumPy": 2e-9})
+    assert report.ratio(row) == mark
+
+
 def test_the_data_are_json():
     row = outcomes()
     row.seconds = {OURS: 4e-9}

@@ -13,7 +13,7 @@ import processes
 ROOT = Path(__file__).parents[2]
 
 SKIPPED = {"node_modules", "_viewer", "target", "__pycache__"}
-FOLDERS = ("crates", "python", "tests", "viewer", "docs", "examples", "benchmarks", "fuzz", ".ci")
+FOLDERS = ("crates", "python", "tests", "viewer", "docs", "examples", "benchmarks", "evidence", "fuzz", ".ci")
 TEXTS = [
     path
     for folder in (ROOT.glob("*"), *((ROOT / name).rglob("*") for name in FOLDERS))

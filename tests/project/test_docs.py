@@ -34,7 +34,15 @@ def test_scenes_run(text, tmp_path):
     assert trajectory.certificate.worst < 1e-10
 
 
+HANDOUT = sorted((ROOT / "docs/handout").glob("*.md"))
+THEORY = sorted((ROOT / "docs/theory").glob("[!i]*.md"))
 PAGES = [
+    "start",
+    *(f"handout/{page.stem}" for page in HANDOUT),
+    *(f"theory/{page.stem}" for page in THEORY),
+    "gallery",
+    "howto",
+    "signs",
     "algebra",
     "motors",
     "pga",
@@ -84,10 +92,11 @@ def test_the_shell_answers_as_the_page_says():
         assert got == expected
 
 
-def test_the_commands_of_the_viewer_are_commands():
-    text = "".join(text for language, text in blocks_of(ROOT / "docs/viewer.md") if language == "console")
-    commands = re.findall(r"^\$ polhode (.*)$", text, flags=re.MULTILINE)
-    assert len(commands) == 3
+@pytest.mark.parametrize(("page", "count"), [("viewer", 3), ("start", 4)])
+def test_the_commands_of_a_page_are_commands(page, count):
+    text = "".join(text for language, text in blocks_of(ROOT / f"docs/{page}.md") if language == "console")
+    commands = re.findall(r"^\$ polhode ((?!--version).*)$", text, flags=re.MULTILINE)
+    assert len(commands) == count
     for command in commands:
         options = main._parser().parse_args(command.split())
         assert callable(options.command)

@@ -10,7 +10,7 @@ import polhode as ph
 import processes
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 # Each section of these pages is a program of its own.
 BY_SECTION = ("translations.md",)
 
@@ -51,7 +51,7 @@ def mypy(folder, files):
 
 def test_the_code_of_the_guides_is_accepted(tmp_path):
     files = {name: code for page in PAGES for name, code in programs(page).items()}
-    assert {"README__0.py", "motion__0.py"} <= set(files)
+    assert {"README__0.py", "motion__0.py", "rotations__0.py"} <= set(files)
     # The line numbers are those of the page.
     found = [re.sub(r"^(\w+)__\d+\.py:", r"\1.md:", line) for line in mypy(tmp_path, files)]
     assert found == []

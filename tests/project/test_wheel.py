@@ -69,6 +69,7 @@ def test_the_wheel_has_all_and_runs_on_any_python(wheel):
     assert {f"polhode/_examples/{name}" for name in files} <= names
     assert {
         "polhode/_viewer/viewer.js",
+        "polhode/_viewer/viewer.licenses.md",
         "polhode/_viewer/page.html",
         "polhode/py.typed",
         "polhode/_native.pyi",
@@ -105,7 +106,13 @@ def test_the_source_distribution_can_be_built(tmp_path):
     with tarfile.open(path) as archive:
         archive.extractall(tmp_path, filter="data")
     (folder,) = (tmp_path / name for name in os.listdir(tmp_path) if name != "out")
-    for name in ("_viewer/viewer.js", "_examples/t-handle.toml", "_examples/t-handle.stl", "py.typed"):
+    for name in (
+        "_viewer/viewer.js",
+        "_viewer/viewer.licenses.md",
+        "_examples/t-handle.toml",
+        "_examples/t-handle.stl",
+        "py.typed",
+    ):
         assert (folder / "python/polhode" / name).is_file(), name
     metadata = ["cargo", "metadata", "--offline", "--format-version", "1", "--manifest-path"]
     done = processes.run([*metadata, folder / "crates/py/Cargo.toml"])

@@ -9,6 +9,7 @@ import pytest
 import polhode as ph
 from command_line import EXAMPLES, ROOT, polhode
 from polhode._mechanics.registry import FORCES, TORQUES
+from polhode._scene.schema import _SIZES as SIZES
 from polhode._scene.schema import scene_schema
 
 jsonschema = pytest.importorskip("jsonschema")
@@ -54,12 +55,12 @@ def test_every_law_of_the_registry_is_in_it():
             assert fields <= set(found), law.name
 
 
-def listed(text, tmp_path):
-    """The fields that the core expects where it meets `nonsense`."""
+def listed(text, tmp_path, what="field"):
+    """The fields or solids that the core expects where it meets `nonsense`."""
     (tmp_path / "a.toml").write_text(text)
     with pytest.raises(ph.SceneError) as caught:
         ph.Scene.read(tmp_path / "a.toml")
-    line = next(x for x in str(caught.value).splitlines() if "unknown field `nonsense`" in x)
+    line = next(x for x in str(caught.value).splitlines() if f"unknown {what} `nonsense`" in x)
     return set(re.findall(r"`(\w+)`", line)) - {"nonsense"}
 
 
@@ -70,6 +71,13 @@ def test_fields_of_tables_are_those_of_the_core(table, tmp_path):
     schema = SCHEMA["properties"][table] if table else SCHEMA
     assert listed(wrong, tmp_path) == set(schema["properties"])
     assert errors_of(wrong) != []
+
+
+def test_solids_are_those_of_the_core(tmp_path):
+    solids = listed(BASE.replace("moments = [1, 2, 3]", 'solid = "nonsense"'), tmp_path, "solid")
+    assert solids == set(SIZES)
+    for name in solids:
+        assert callable(getattr(ph.Body, name))
 
 
 LAWS = [(table, law) for table, laws in (("torque", TORQUES), ("force", FORCES)) for law in laws]

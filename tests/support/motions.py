@@ -88,15 +88,3 @@ SLOPES = {
     ),
     "damping": (ASYMMETRIC, START, ph.torque.damping(0.25), 6.0),
 }
-
-
-def law_of(case):
-    """The torque law of a case in the reference file; None for a free one, and "none" for no law of ours."""
-    given = case.get("params", case)
-    if "c" in given:
-        return ph.torque.heavy([float(x) for x in given["c"]])
-    if "n" in given and "params" in case:
-        return ph.torque.gravity_gradient(float(given["n"]))
-    if "g" in given:
-        return ph.torque.damping(float(given["g"]))
-    return None

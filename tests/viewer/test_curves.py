@@ -29,7 +29,7 @@ LEAVE = (
 
 
 def pointed(page):
-    return page.page.evaluate(f"async () => ({MODEL}).hovered.value")
+    return page.page.evaluate(f"async () => ({MODEL}).pointed.value?.curve ?? null")
 
 
 @pytest.mark.parametrize(
@@ -60,9 +60,9 @@ def test_path_in_space_appears_while_that_in_the_body_is_pointed_at(opened):
     page.drawn()
     points = page.page.locator(".stage")
     assert points.get_attribute("data-points") == "0"
-    page.page.evaluate(f"async () => void (({MODEL}).hovered.value = 'polhode')")
+    page.page.evaluate(f"async () => void (({MODEL}).pointed.value = {{ curve: 'polhode' }})")
     page.until(f"Number({VIEWER}.shadowRoot.querySelector('.stage').dataset.points) > 100")
-    page.page.evaluate(f"async () => void (({MODEL}).hovered.value = null)")
+    page.page.evaluate(f"async () => void (({MODEL}).pointed.value = null)")
     page.drawn()
     assert points.get_attribute("data-points") == "0"
 

@@ -54,7 +54,7 @@ def test_an_entry_emphasizes_its_thing(by, opened):
         # From the entry before it.
         page.page.locator(".key [data-layer=omega]").focus()
         page.page.keyboard.press("Tab")
-    assert page.page.evaluate(f"async () => (await {VIEWER}.ready).pointed.value") == "momentum"
+    assert page.page.evaluate(f"async () => (await {VIEWER}.ready).pointed.value.layer") == "momentum"
     after = picture(page)
     assert near(after, colour["momentum"], 40) > 1.3 * near(before, colour["momentum"], 40)
     assert near(after, colour["omega"], 40) < 0.5 * near(before, colour["omega"], 40)

@@ -11,7 +11,8 @@ export PIP_QUIET := 1
 
 VIEWER := python/polhode/_viewer/viewer.js
 
-.PHONY: setup package demo test test-slow test-all lint bench instructions docs wheel viewer check-viewer clean
+.PHONY: setup package demo test test-slow test-all lint bench evidence instructions docs wheel package-check viewer \
+	check-viewer clean
 
 setup: package
 	@$(MAKE) --no-print-directory .venv/.tools
@@ -103,6 +104,10 @@ bench: .venv/.peers
 	cargo run --quiet --locked --release -p polhode-ga --example batch | tee build/bench-core.txt
 	cargo run --quiet --locked --release -p polhode-rigid --example ensemble | tee build/bench-ensembles.txt
 
+# One page of what the project claims, computed again: build/evidence.html.
+evidence: .venv/.peers
+	PYTHONPATH=benchmarks $(BIN)/python evidence/make.py
+
 # Fails where a core kernel takes more instructions than it did; benchmarks/instructions.py --update after a change.
 instructions: .venv/.python
 	$(BIN)/python benchmarks/instructions.py
@@ -128,6 +133,20 @@ wheel: viewer .venv/.wheel
 	$(BIN)/maturin sdist -o dist && ls dist; \
 	test -z "$$left_out" || { echo "No wheels, because Rust's standard library is missing:$$left_out" >&2; exit 1; }
 
+# What the registries will check: crates that build from their packages, the files of the npm package, and the metadata of
+# the wheel of this machine and of the source distribution. Nothing is uploaded.
+.venv/.package-check: .venv/.python
+	$(BIN)/python -m pip install -q --group package-check
+	@touch $@
+
+package-check: package viewer .venv/.package-check
+	cargo package --quiet --locked --allow-dirty -p polhode-ga -p polhode-rigid
+	cd viewer && npm pack --dry-run --silent
+	rm -rf build/package
+	$(BIN)/maturin build --release --locked --quiet --out build/package
+	$(BIN)/maturin sdist --out build/package
+	$(BIN)/twine check --strict build/package/*
+
 # The guides as pages, with the viewer in them, and the documentation of the core.
 .venv/.docs: .venv/.tools
 	$(BIN)/python -m pip install -q --group docs
@@ -140,4 +159,4 @@ docs: setup .venv/.docs
 	@echo "The documentation of the core is target/doc/polhode_ga/index.html and target/doc/polhode_rigid/index.html."
 
 clean:
-	rm -rf .venv build dist target viewer/node_modules python/polhode/_viewer/viewer.js
+	rm -rf .venv build dist target viewer/node_modules python/polhode/_viewer/viewer.js python/polhode/_viewer/viewer.licenses.md

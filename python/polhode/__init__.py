@@ -120,6 +120,10 @@ _HABITS = {
     "Rotation": "Rotor",
     "RotationSpline": "RotorSpline",
     "Slerp": "slerp",
+    **{
+        name: f"Multivector.{name}"
+        for name in ("dot", "exp", "inverse", "log", "norm", "reverse", "sqrt", "wedge")
+    },
 }
 
 

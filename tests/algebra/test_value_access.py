@@ -323,7 +323,9 @@ def test_the_package_lists_public_names_only():
         (lambda: (1 + e1).inv(), "inverse"),
         (lambda: (1 + e1).mag2(), "norm_squared"),
         (lambda: (e1 * e2).e12, 'A\\["e12"\\]'),
+        (lambda: ph.Rotor.concatenate, "ph.concatenate"),
         (lambda: ph.Rotation, "polhode.Rotor"),
+        (lambda: ph.exp, "polhode.Multivector.exp"),
     ],
 )
 def test_names_of_other_libraries_are_errors_that_name_ours(use, remedy):

@@ -34,6 +34,7 @@ _ROTOR = {
     "as_mrp": "to_mrp()",
     "as_quat": 'to_quaternion(order="xyzw")',
     "as_rotvec": "to_rotation_vector()",
+    "concatenate": "ph.concatenate([R, S])",
     "create_group": "group(name)",
     "from_quat": 'from_quaternion(q, order="xyzw")',
     "from_rotvec": "from_rotation_vector(v)",

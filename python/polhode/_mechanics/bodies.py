@@ -558,7 +558,8 @@ def _points(masses: Any, positions: Any) -> tuple[Array, Array]:
 
 def bodies_of(body: Any) -> Any:
     """Return an object array of bodies or inertias from one or a nested sequence of them."""
-    return objects_of(body, (Body, Inertia), "body must be a Body or an Inertia")
+    remedy = "; for principal moments write ph.Inertia.from_principal_moments(i1, i2, i3)"
+    return objects_of(body, (Body, Inertia), "body must be a Body or an Inertia", remedy)
 
 
 def objects_of(values: Any, kinds: tuple[type, ...], what: str, remedy: str = "") -> Any:
@@ -574,8 +575,8 @@ def objects_of(values: Any, kinds: tuple[type, ...], what: str, remedy: str = ""
     if not types_of(array) <= {*kinds}:
         for index, one in np.ndenumerate(array):
             if not isinstance(one, kinds):
-                where, rest = (f"at index {index}: ", "") if index else ("", remedy)
-                raise TypeError(f"{where}{what}, got {type(one).__name__}{rest}")
+                where = f"at index {index}: " if index else ""
+                raise TypeError(f"{where}{what}, got {type(one).__name__}{remedy}")
     return array
 
 

@@ -310,6 +310,7 @@ fn no_meaning(c: char) -> String {
         '∨' => "; join and meet are methods in Python",
         '÷' | ':' => "; divide with `/`",
         '↦' | '→' | '⇒' | ';' => "; write one formula or equation at a time",
+        '°' => "; angles are in radians: write 90 degrees as `90 π/180`",
         '∫' => "; there are sums (Σ) but no integrals",
         _ => "",
     };

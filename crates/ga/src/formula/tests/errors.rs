@@ -73,6 +73,7 @@ fn errors_have_messages_and_places() {
         ("(exp(B))'", "a prime is the derivative", "exp(B)"),
         ("(S)'", "`S'` has no value; a derivative in this formula needs it", "S"),
         ("a $ b", "`$` has no meaning", "$"),
+        ("sin(90°)", "write 90 degrees as `90 π/180`", "°"),
         ("\\theta", "write plain text, `θ/2 e1∧e2`, not LaTeX", "\\"),
         ("a_", "a subscript must be letters and digits", "_"),
         ("1e+999", "beyond the range", "1e+999"),

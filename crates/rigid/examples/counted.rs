@@ -1,6 +1,7 @@
 //! Kernels for counting instructions: `counted` lists them with the rows that one run computes; `counted NAME RUNS`
 //! runs one. `benchmarks/instructions.py` compares two numbers of runs under valgrind.
 
+use polhode_ga::formula::Names;
 use polhode_ga::product::{Grades, Plan, Product};
 use polhode_ga::rows::compose::compose;
 use polhode_ga::rows::product::turn;
@@ -11,7 +12,8 @@ use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::Inertia;
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start};
 use polhode_rigid::exact::free::FreeMotion;
-use polhode_rigid::laws::torque::{Orbit, Torque};
+use polhode_rigid::laws::formula::{Formula, Purpose};
+use polhode_rigid::laws::torque::{Axes, Orbit, Torque};
 use polhode_rigid::methods::Method;
 use polhode_rigid::run::Options;
 use polhode_rigid::state::center::Center;
@@ -81,6 +83,11 @@ fn stepped(name: &'static str, method: &'static str, laws: Vec<Torque>) -> Kerne
     (name, BODIES * STEPS, Box::new(run))
 }
 
+fn formula(text: &str) -> Vec<Torque> {
+    let law = Formula::new(text, Purpose::Torque(Axes::Body), Names::new([]), |_| None);
+    vec![Torque::Formula(law.expect("a bivector of known names"))]
+}
+
 /// The exact free motion at many times.
 fn exact() -> Kernel {
     let motion = FreeMotion::in_principal_axes([1.0, 2.0, 3.0], Rotor::IDENTITY, Bivector([0.01, 1.0, 0.01]));
@@ -106,6 +113,8 @@ fn kernels() -> Vec<Kernel> {
         stepped("free body, kahan_li8", "kahan_li8", vec![]),
         stepped("gravity gradient, rk4", "rk4", gradient()),
         stepped("gravity gradient, kahan_li8", "kahan_li8", gradient()),
+        stepped("formula, rk4", "rk4", formula("-(0.1 e1 + 0.2 e2 + 0.3 e3) ∧ (~R e3 R)")),
+        stepped("formula of time, rk4", "rk4", formula("-0.01 (1 + sin(t)) Ω + (~R e3 R) ∧ (0.1 e1 + 0.3 e3)")),
     ]
 }
 

@@ -53,17 +53,15 @@ pub(crate) fn sampled(
         }
     };
     let time = |k: usize| from + (to - from) * (k as f64 / SAMPLES as f64);
-    let mut values = Vec::with_capacity(SAMPLES + 1);
-    for k in 0..=SAMPLES {
-        match law.value(body, &Phase { time: time(k), ..state }) {
-            Ok(value) => values.push(value),
-            // An error of a user's function is reported; a formula may fail at this state only.
-            Err(error) if matches!(law, Torque::Function(_)) => {
-                return Err(SimulateError::Torque { time: time(k), message: error.0 });
-            }
-            Err(_) => return Ok(Sampled::default()),
+    let times: Vec<f64> = (0..=SAMPLES).map(time).collect();
+    let values = match law.values(body, &state, &times) {
+        Ok(values) => values,
+        // An error of a user's function is reported; a formula may fail at this state only.
+        Err((time, error)) if matches!(law, Torque::Function(_)) => {
+            return Err(SimulateError::Torque { time, message: error.0 });
         }
-    }
+        Err(_) => return Ok(Sampled::default()),
+    };
     let (peak, largest) = values
         .iter()
         .map(|value| value.norm())
@@ -148,19 +146,18 @@ pub(crate) fn is_aliased(
         return false;
     }
     let checked = (steps as usize).min(CHECKED_STEPS);
-    let value = |time: f64| law.value(body, &Phase { time, ..*start });
-    let (mut missed, mut all) = (0.0, 0.0);
-    for k in 0..checked {
+    let times = (0..checked).flat_map(|k| {
         let begin = from + h * (steps * k as f64 / checked as f64).floor();
-        let seen = (value(begin), value(begin + 0.5 * h), value(begin + h));
-        let (Ok(a), Ok(b), Ok(c)) = seen else { return false };
-        let mut mean = Bivector::default();
-        for j in 0..INSIDE {
-            let Ok(inside) = value(begin + h * ((j as f64 + 0.5) / INSIDE as f64)) else { return false };
-            mean += inside * (1.0 / INSIDE as f64);
-            all += inside.norm() / INSIDE as f64;
-        }
-        missed += ((a + b * 4.0 + c) * (1.0 / 6.0) - mean).norm();
+        let inside = (0..INSIDE).map(move |j| (j as f64 + 0.5) / INSIDE as f64);
+        [0.0, 0.5, 1.0].into_iter().chain(inside).map(move |part| begin + h * part)
+    });
+    let Ok(values) = law.values(body, start, &times.collect::<Vec<_>>()) else { return false };
+    let (mut missed, mut all) = (0.0, 0.0);
+    for of_step in values.chunks_exact(3 + INSIDE) {
+        let (seen, inside) = of_step.split_at(3);
+        let mean = inside.iter().fold(Bivector::default(), |sum, &value| sum + value) * (1.0 / INSIDE as f64);
+        all += inside.iter().map(|value| value.norm()).sum::<f64>() / INSIDE as f64;
+        missed += ((seen[0] + seen[1] * 4.0 + seen[2]) * (1.0 / 6.0) - mean).norm();
     }
     missed > 0.1 * all
 }

@@ -8,6 +8,7 @@ pub(crate) mod side_by_side;
 pub(crate) use side_by_side::Formulas;
 
 use crate::error::TorqueError;
+use crate::laws::torque::lanes::seen;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
@@ -15,6 +16,9 @@ use polhode_ga::formula::{
     Error, Given, Input, Meaning, Names, Program, Runner, Space, Span, Type, compile, parse,
 };
 use polhode_ga::product::Grades;
+use polhode_ga::simd::lanes::One;
+use polhode_ga::simd::threads::Threads;
+use polhode_ga::table::G3;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};
 use std::array::from_fn;
 use std::cell::RefCell;
@@ -63,6 +67,15 @@ pub(crate) enum Motion {
 enum Source {
     Motion(Motion),
     Known(Given),
+}
+
+impl Source {
+    fn at(&self, point: &Point, frame: Rotor) -> Given {
+        match self {
+            Source::Motion(motion) => motion.at(point, frame),
+            Source::Known(given) => *given,
+        }
+    }
 }
 
 /// A formula evaluated along a motion.
@@ -291,11 +304,6 @@ impl Formula {
         if self.purpose() == Purpose::Torque(Axes::Space) { Axes::Space } else { Axes::Body }
     }
 
-    /// The rotor from the axes of the motion to those of the body.
-    pub(crate) fn frame(&self) -> Rotor {
-        self.frame
-    }
-
     pub(crate) fn in_axes(self, frame: Rotor) -> Formula {
         Formula { frame: self.frame * frame, ..self }
     }
@@ -317,6 +325,20 @@ impl Formula {
         Ok(self.value(&at)?.components().first().copied().unwrap_or(f64::NAN))
     }
 
+    /// The numbers of its values at other times of a point, finite; `None` if some have no value.
+    pub(crate) fn numbers_at(&self, at: &Point, times: &[f64]) -> Option<Vec<f64>> {
+        let Compiled { runner, result, program, .. } = &*self.compiled;
+        let given: Vec<Given> = self.sources.iter().map(|source| source.at(at, self.frame)).collect();
+        let is_time = |source: &Source| matches!(source, Source::Motion(Motion::Time));
+        let inputs = self.sources.iter().zip(&given);
+        let inputs = inputs.map(|(source, given)| if is_time(source) { times } else { given.numbers() });
+        let size = program.steps[*result].ty.grades.indices(&G3).len();
+        let mut numbers = vec![0.0; size * times.len()];
+        let rows = 0..times.len();
+        runner.run(Threads::ONE, &inputs.collect::<Vec<_>>(), &mut [&mut numbers], rows).ok()?;
+        numbers.iter().all(|x| x.is_finite()).then_some(numbers)
+    }
+
     /// Its value, finite, of the grades of its purpose.
     pub(crate) fn value(&self, at: &Point) -> Result<Graded, TorqueError> {
         let Compiled { runner, result, .. } = &*self.compiled;
@@ -325,10 +347,7 @@ impl Formula {
         }
         MEMORY.with_borrow_mut(|(inputs, values)| {
             inputs.clear();
-            inputs.extend(self.sources.iter().map(|source| match source {
-                Source::Motion(motion) => motion.at(at, self.frame),
-                Source::Known(given) => *given,
-            }));
+            inputs.extend(self.sources.iter().map(|source| source.at(at, self.frame)));
             if let Err((step, error)) = runner.value_to(inputs, values) {
                 return Err(self.failed(step, &error.to_string()));
             }
@@ -340,6 +359,17 @@ impl Formula {
             }
             Ok(value)
         })
+    }
+
+    /// The torque in principal axes, by the three numbers of its value.
+    pub(crate) fn torque(&self, rotor: Rotor, numbers: &[f64]) -> Bivector {
+        let value = numbers.try_into().unwrap_or_default();
+        let from = match self.axes() {
+            Axes::Space => rotor,
+            Axes::Body if self.frame == Rotor::IDENTITY => return Bivector(value),
+            Axes::Body => self.frame,
+        };
+        Bivector(One::alone(seen(&One::each(from.components()), &One::each(value))))
     }
 
     /// The error of a step without a value, which names its part of the formula.

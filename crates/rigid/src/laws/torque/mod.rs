@@ -202,6 +202,24 @@ impl Torque {
         self.value_within(body, state, state.time)
     }
 
+    /// The values at other times of a state, each with the bits of [`Torque::value`]; fails with the first time that has
+    /// none.
+    pub(crate) fn values(
+        &self,
+        body: &Gyrostat,
+        state: &Phase,
+        times: &[f64],
+    ) -> Result<Vec<Bivector>, (f64, TorqueError)> {
+        let at = Point { body, mass: f64::NAN, phase: state, center: &Center::default() };
+        if let Some(formula) = self.formula()
+            && let Some(numbers) = formula.numbers_at(&at, times)
+        {
+            return Ok(numbers.chunks_exact(3).map(|row| formula.torque(state.rotor, row)).collect());
+        }
+        let value = |&time: &f64| self.value(body, &Phase { time, ..*state }).map_err(|error| (time, error));
+        times.iter().map(value).collect()
+    }
+
     /// The torque at a stage of a step whose middle is given, in s: at a jump, that on the side of the middle.
     pub(crate) fn value_within(
         &self,
@@ -246,15 +264,7 @@ impl Torque {
             }
             Torque::Formula(_) | Torque::Registered(_) => {
                 let Some(formula) = self.formula() else { return Ok(Bivector::default()) };
-                let torque = Bivector(formula.value(&at)?.components().try_into().unwrap_or_default());
-                match formula.frame() {
-                    _ if formula.axes() == Axes::Space => from_space(torque),
-                    Rotor::IDENTITY => torque,
-                    frame => {
-                        let frame = One::each(frame.components());
-                        Bivector(One::alone(seen(&frame, &One::each(torque.0))))
-                    }
-                }
+                formula.torque(rotor, formula.value(&at)?.components())
             }
             Torque::Function(law) => {
                 let torque = law.value(&at)?;
@@ -403,3 +413,6 @@ pub fn total(body: &Gyrostat, torques: &[Torque], state: &Phase) -> Result<Bivec
     }
     Ok(sum)
 }
+
+#[cfg(test)]
+mod tests;

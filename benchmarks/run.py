@@ -107,6 +107,7 @@ def main() -> None:
         target.with_name(f"{target.name}.json"): report.data(
             {
                 **about,
+                "bandwidth": max(one, all_cores),  # bytes per second
                 "versions": versions,
                 "costs": scaling.data(costs),
                 "files": ensemble_files.data(written),

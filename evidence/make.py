@@ -1,16 +1,18 @@
 """Write build/evidence.html, which `make evidence` regenerates.
 
 The page compares our motions with the 40-digit references row by row, measures the rounding of exp and log,
-runs SciPy's own tests of rotations, counts faults, and repeats the benchmarks. The program fails if a row is
+runs the tests of other libraries, counts faults, and repeats the benchmarks. The program fails if a row is
 bad: an estimate smaller than the error, a test that fails without a reason, or a fault.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import subprocess
 import sys
 import warnings
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +23,7 @@ import machine
 import peer_tests
 import references
 import rounding
+import throughput
 from page import Page
 from polhode._support.files import write_atomically
 
@@ -52,7 +55,9 @@ def main() -> None:
     page = Page("Polhode: evidence")
     page.text("Each figure on this page was computed by the commit below, by one command: make evidence.")
     about = machine.describe()
-    page.facts((name, about[name]) for name in ("date", "commit", "processor", "cores", "system", "Python"))
+    page.facts(
+        f"{name}: {about[name]}" for name in ("date", "commit", "processor", "cores", "system", "Python")
+    )
     bad = [motions(page), rotations(page, effort), peers(page), damage(page, effort)]
     if not arguments.no_benchmarks:
         speed(page, effort, about["commit"])
@@ -130,20 +135,37 @@ def rotations(page: Page, effort: Effort) -> int:
 
 
 def peers(page: Page) -> int:
-    """Run the tests of SciPy; return the number of failures without a reason."""
-    page.heading("SciPy's own tests of rotations")
+    """Run the tests of other libraries; return the number of failures without a reason."""
+    page.heading("Other libraries' own tests")
     page.text(
-        f"The tests of {peer_tests.title()}, with Rotation, Slerp, RotationSpline and RigidTransform "
-        "replaced by a layer over Polhode that translates names. Words and kinds of errors are not compared."
+        "The tests that other libraries have of themselves, with Polhode behind their names. Words and "
+        "kinds of errors are not compared. A test that does not pass has a reason, or else it has failed."
     )
-    suites = peer_tests.outcomes()
+    return sum(_peer(page, peer) for peer in peer_tests.PEERS)
+
+
+def _peer(page: Page, peer: peer_tests.Peer) -> int:
+    page.heading(peer.title, level=3)
+    page.text(peer.layer)
+    suites = peer_tests.outcomes(peer)
     page.table(
-        ["file", "passed", "different by design", "failed"],
-        ([s.name, str(s.passed), str(len(s.by_design)), str(len(s.failed))] for s in suites),
+        ["file", "passed", "different by design", "not in Polhode", "skipped by its authors", "failed"],
+        (
+            [
+                s.name,
+                *(str(n) for n in (s.passed, len(s.by_design), len(s.missing), s.skipped, len(s.failed))),
+            ]
+            for s in suites
+        ),
         [bool(s.failed) for s in suites],
     )
-    reasons = {test: reason for suite in suites for test, reason in suite.by_design.items()}
-    page.table(["different by design", "why"], reasons.items())
+    for title, reasons in (
+        ("different by design", [s.by_design for s in suites]),
+        ("not in Polhode", [s.missing for s in suites]),
+    ):
+        counts = Counter(reason for each in reasons for reason in each.values())
+        if counts:
+            page.table([title, "tests"], ([reason, str(count)] for reason, count in counts.items()))
     failed = [test for suite in suites for test in suite.failed]
     if failed:
         page.text("Failed: " + ", ".join(failed))
@@ -181,6 +203,8 @@ def speed(page: Page, effort: Effort, commit: str) -> None:
     page.heading("Speed and precision beside other libraries")
     subprocess.run([sys.executable, str(machine.ROOT / "benchmarks/run.py"), *effort.benchmarks], check=True)
     target = machine.ROOT / "build" / f"bench-{commit}"
+    measured = json.loads(target.with_name(f"{target.name}.json").read_text())
+    page.plot(throughput.plot(measured["rows"], measured["bandwidth"]), throughput.CAPTION)
     plots = {
         "motion": "Work and precision: error of the final attitude against CPU time.",
         "ensembles": "Ensembles: cost of a body and step.",
@@ -190,7 +214,8 @@ def speed(page: Page, effort: Effort, commit: str) -> None:
         path = target.with_name(f"{target.name}-{name}.png")
         if path.is_file():
             page.image(path, caption)
-    page.listing(target.with_name(f"{target.name}.md").read_text())
+    _, _, text = target.with_name(f"{target.name}.md").read_text().partition("\n## ")
+    page.markdown(f"## {text}", deeper=1)
 
 
 if __name__ == "__main__":

@@ -20,10 +20,9 @@ th, td { padding: 0.15rem 0.7rem; text-align: right; border-bottom: 1px solid #8
 th:first-child, td:first-child { text-align: left; }
 td.words, th.words { white-space: normal; text-align: left; min-width: 12rem; overflow-wrap: anywhere; }
 .bad { color: #c62828; font-weight: 600; }
-figure { margin: 1rem 0; background: white; border-radius: 0.3rem; padding: 0.5rem; }
-figure svg, figure img { max-width: 100%; height: auto; }
-figcaption { color: #555; font-size: 0.9rem; }
-pre { overflow-x: auto; font-size: 0.85rem; }
+figure { margin: 1rem 0; background: white; border-radius: 0.3rem; padding: 0.5rem; overflow-x: auto; }
+figure svg, figure img { width: 100%; min-width: 38rem; height: auto; }
+figcaption { color: #555; font-size: 0.9rem; position: sticky; left: 0; }
 """
 
 
@@ -38,18 +37,17 @@ class Page:
     def __init__(self, title: str) -> None:
         self.title, self.parts = title, [f"<h1>{escape(title)}</h1>"]
 
-    def heading(self, text: str) -> None:
-        """Begin a section."""
-        self.parts.append(f"<h2>{escape(text)}</h2>")
+    def heading(self, text: str, level: int = 2) -> None:
+        """Begin a section, of level 2 or deeper."""
+        self.parts.append(f"<h{level}>{escape(text)}</h{level}>")
 
     def text(self, *paragraphs: str) -> None:
         """Add paragraphs."""
         self.parts += [f"<p>{escape(text)}</p>" for text in paragraphs]
 
-    def facts(self, pairs: Iterable[tuple[str, str]]) -> None:
-        """Add names and values, a line each."""
-        lines = (f"<li>{escape(name)}: {escape(value)}</li>" for name, value in pairs)
-        self.parts.append(f"<ul>{''.join(lines)}</ul>")
+    def facts(self, lines: Iterable[str]) -> None:
+        """Add a list, a line each."""
+        self.parts.append(f"<ul>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</ul>")
 
     def table(self, header: Sequence[str], rows: Iterable[Sequence[str]], bad: Sequence[bool] = ()) -> None:
         """Add a table; bad rows stand out. Columns with long cells are set as words, others as numbers."""
@@ -76,9 +74,21 @@ class Page:
     def _figure(self, drawing: str, caption: str) -> None:
         self.parts.append(f"<figure>{drawing}<figcaption>{escape(caption)}</figcaption></figure>")
 
-    def listing(self, text: str) -> None:
-        """Add preformatted text."""
-        self.parts.append(f"<pre>{escape(text)}</pre>")
+    def markdown(self, text: str, deeper: int = 0) -> None:
+        """Add headings, tables, lists and paragraphs of a report, its headings deeper by some levels."""
+        for block in text.strip().split("\n\n"):
+            lines = block.splitlines()
+            if block.startswith("#"):
+                marks, _, title = lines[0].partition(" ")
+                self.heading(title, len(marks) + deeper)
+                lines = lines[1:]
+            if lines and lines[0].startswith("|"):
+                header, _, *rows = ([cell.strip() for cell in line.strip("|").split(" | ")] for line in lines)
+                self.table(header, rows)
+            elif lines and lines[0].startswith("- "):
+                self.facts(line.removeprefix("- ") for line in lines)
+            elif lines:
+                self.text(" ".join(lines))
 
     def html(self) -> bytes:
         """The page."""

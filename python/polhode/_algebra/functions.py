@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from typing import TYPE_CHECKING, Any
 
@@ -71,6 +72,16 @@ def power(value: Multivector, n: Any) -> Multivector:
         if not exponent:
             return result  # type: ignore[return-value]
         base = base * base
+
+
+def power_of(value: Multivector, base: Any) -> Multivector:
+    """``base**A = exp(A log base)`` for a number base > 0, so ``math.e**B`` is ``exp B``."""
+    if not isinstance(base, int | float | np.integer | np.floating):
+        return NotImplemented  # type: ignore[no-any-return]
+    if not base > 0:
+        raise ValueError(f"the base of a power of a multivector must be > 0, got {base}")
+    found: Multivector = (value * math.log(base)).exp()
+    return found
 
 
 def as_precise(value: Multivector, like: Multivector) -> Multivector:

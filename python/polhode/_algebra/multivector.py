@@ -355,6 +355,7 @@ class Multivector(_native.Multivector):
     anticommutator = _products.anticommutator
 
     __pow__ = _functions.power
+    __rpow__ = _functions.power_of
     __call__ = _versors.act
     __rshift__ = _versors.sandwich
 

@@ -156,6 +156,11 @@ impl Multivector {
     }
 
     /// ``~A``: reverses the order of all products; grades 2 and 3 change sign (handout eq. 1.28).
+    ///
+    /// Examples
+    /// --------
+    /// >>> ~(1 + ph.e1 + (ph.e1 ^ ph.e2) + ph.I)
+    /// 1 + e1 - e1∧e2 - I
     fn reverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
         match slf.get().single() {
             Some(a) => wrap(slf.py(), Storage::One(a.reverse()), slf.get().unit),
@@ -164,6 +169,14 @@ impl Multivector {
     }
 
     /// Return the part of one grade or of several, ``grade(2)`` or ``grade(1, 3)``; zeros where absent.
+    ///
+    /// Examples
+    /// --------
+    /// >>> A = 1 + 2 * ph.e1 + ph.I
+    /// >>> A.grade(1)
+    /// 2 e1
+    /// >>> A.grade(0, 3)
+    /// 1 + I
     #[pyo3(signature = (*grades))]
     fn grade<'py>(slf: &Bound<'py, Self>, grades: &Bound<'py, PyTuple>) -> Object<'py> {
         let single = grades.get_item(0).ok().filter(|_| grades.len() == 1);
@@ -192,6 +205,14 @@ impl Multivector {
     /// ``A⁻¹``. Raises a ValueError, with the batch index, where A is singular to rounding (``1 + e1``).
     ///
     /// With ``errors="mask"``, here and in exp, log and sqrt, such rows are NaN: see ``is_finite``.
+    ///
+    /// Examples
+    /// --------
+    /// >>> A = 1 + 2 * ph.e1
+    /// >>> A * A.inverse()
+    /// 1
+    /// >>> (1 + ph.e1).inverse(errors="mask").is_finite()
+    /// False
     #[pyo3(signature = (*, errors="raise"))]
     fn inverse<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
         function(slf, Function::Inverse, errors)
@@ -200,6 +221,12 @@ impl Multivector {
     /// ``exp A``; of a bivector of 3-d space it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
     ///
     /// A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
+    ///
+    /// Examples
+    /// --------
+    /// >>> R = (-np.pi / 6 * (ph.e1 ^ ph.e2)).exp()  # turns by 60° in the plane e1∧e2
+    /// >>> R(ph.e1)
+    /// 0.5 e1 + 0.8660254 e2
     #[pyo3(signature = (*, errors="raise"))]
     fn exp<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
         function(slf, Function::Exp, errors)
@@ -210,12 +237,22 @@ impl Multivector {
     /// The logarithm of an even element (scalar and bivector) is even, so ``log(−1) = π e1∧e2``; others have the
     /// principal one. Raises a ValueError, with the batch index, where A is singular. In other algebras it exists
     /// for positive multiples of rotors and motors.
+    ///
+    /// Examples
+    /// --------
+    /// >>> (2 * (ph.e1 ^ ph.e2)).log()
+    /// 0.69314718 + 1.5707963 e1∧e2
     #[pyo3(signature = (*, errors="raise"))]
     fn log<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
         function(slf, Function::Log, errors)
     }
 
     /// Return a square root; of an even element the half-way one, ``√(−1) = e1∧e2``.
+    ///
+    /// Examples
+    /// --------
+    /// >>> (3 + 4 * (ph.e1 ^ ph.e2)).sqrt()
+    /// 2 + e1∧e2
     #[pyo3(signature = (*, errors="raise"))]
     fn sqrt<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
         function(slf, Function::Sqrt, errors)
@@ -225,6 +262,11 @@ impl Multivector {
     ///
     /// `out` receives the components of the result: a writable float array in C order of their shape (..., K).
     /// The result is a view of it. It must not overlap the factors.
+    ///
+    /// Examples
+    /// --------
+    /// >>> ph.e1.geometric_product(ph.e1 + ph.e2)
+    /// 1 + e1∧e2
     #[pyo3(signature = (other, *, out=None))]
     fn geometric_product<'py>(
         slf: This<'_, 'py>,
@@ -235,24 +277,48 @@ impl Multivector {
     }
 
     /// ``A∧B``, the highest grade r + s of the product (handout eq. 1.10). `out` as in `geometric_product`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> ph.e1.wedge(ph.e1 + ph.e2)
+    /// e1∧e2
     #[pyo3(signature = (other, *, out=None))]
     fn wedge<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>, out: Option<Any<'_, 'py>>) -> Object<'py> {
         named(slf, Product::Wedge, other, out)
     }
 
     /// ``A·B``, the lowest grade abs(r − s) of the product, scalars included: ``3·a = 3a``.
+    ///
+    /// Examples
+    /// --------
+    /// >>> ph.e1.dot(ph.e1 + ph.e2)
+    /// 1
+    /// >>> ph.e1.dot(ph.e1 ^ ph.e2)
+    /// e2
     #[pyo3(signature = (other, *, out=None))]
     fn dot<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>, out: Option<Any<'_, 'py>>) -> Object<'py> {
         named(slf, Product::Dot, other, out)
     }
 
     /// ``A×B = ½(AB − BA)``; not the vector cross product, which is `cross`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> (ph.e1 ^ ph.e2).commutator(ph.e1)
+    /// -e2
     #[pyo3(signature = (other, *, out=None))]
     fn commutator<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>, out: Option<Any<'_, 'py>>) -> Object<'py> {
         named(slf, Product::Commutator, other, out)
     }
 
     /// ``A⌋B``, grade s − r; zero where r > s.
+    ///
+    /// Examples
+    /// --------
+    /// >>> ph.e1.left_contraction(ph.e1 ^ ph.e2)
+    /// e2
+    /// >>> (ph.e1 ^ ph.e2).left_contraction(ph.e1)
+    /// 0
     #[pyo3(signature = (other, *, out=None))]
     fn left_contraction<'py>(
         slf: This<'_, 'py>,
@@ -263,6 +329,11 @@ impl Multivector {
     }
 
     /// ``A⌊B``, grade r − s; zero where r < s.
+    ///
+    /// Examples
+    /// --------
+    /// >>> (ph.e1 ^ ph.e2).right_contraction(ph.e2)
+    /// e1
     #[pyo3(signature = (other, *, out=None))]
     fn right_contraction<'py>(
         slf: This<'_, 'py>,
@@ -273,6 +344,11 @@ impl Multivector {
     }
 
     /// ``⟨AB⟩``, grade 0.
+    ///
+    /// Examples
+    /// --------
+    /// >>> (1 + ph.e1).scalar_product(2 + 3 * ph.e1)
+    /// 5
     #[pyo3(signature = (other, *, out=None))]
     fn scalar_product<'py>(
         slf: This<'_, 'py>,
@@ -303,6 +379,11 @@ impl Rotor {
     }
 
     /// Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``.
+    ///
+    /// Examples
+    /// --------
+    /// >>> ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, 0.5).log()
+    /// -0.25 e1∧e2
     #[pyo3(signature = (*, errors="raise"))]
     fn log<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {
         if errors != "raise" {
@@ -325,6 +406,12 @@ impl Rotor {
     ///
     /// `out` receives the components of the result: a writable float array in C order of their shape. The
     /// result is a view of it. It must not overlap the operands.
+    ///
+    /// Examples
+    /// --------
+    /// >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, np.pi / 3)
+    /// >>> R.apply(ph.e1)
+    /// 0.5 e1 + 0.8660254 e2
     #[pyo3(signature = (x, *, out=None))]
     fn apply<'py>(slf: &Bound<'py, Self>, x: Any<'_, 'py>, out: Option<Any<'_, 'py>>) -> Object<'py> {
         let here = if out.is_none() { turned(slf, x) } else { None };

@@ -192,7 +192,9 @@ def _downloaded(package: str) -> Path:
     if not folder.is_dir():
         DOWNLOADS.mkdir(parents=True, exist_ok=True)
         command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--no-binary", package]
-        subprocess.run([*command, "--dest", str(DOWNLOADS), f"{package}=={version(package)}"], check=True)
+        asked = f"{package}=={version(package)}"
+        if subprocess.run([*command, "--dest", str(DOWNLOADS), asked], check=False).returncode:
+            raise ConnectionError(f"pip cannot download the source distribution of {asked}")
         with tarfile.open(DOWNLOADS / f"{name}.tar.gz") as archive:
             archive.extractall(DOWNLOADS, filter="data")
     return folder

@@ -11,6 +11,7 @@ from polhode._cli import main
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text()
+SYSTEMS = ("unknown-linux-gnu", "apple-darwin")
 POLHODE = Path(sys.executable).with_name("polhode")
 
 
@@ -23,6 +24,34 @@ def test_python_blocks_run():
     assert "ph.simulate" in code
     done = processes.run([sys.executable, "-W", "error", "-c", code])
     assert done.returncode == 0, done.stderr
+
+
+def test_links_work_on_other_sites():
+    """PyPI shows this file too, so that links are whole addresses."""
+    text = re.sub(r"```.*?```|(?<!\[)`[^`\n]+`(?!\])", "", README, flags=re.DOTALL)
+    addresses = dict(re.findall(r"^\[(.+)\]: (\S+)$", text, flags=re.MULTILINE))
+    used = re.findall(r"\[([^\[\]]+)\](?!: http|\()", text)
+    assert {*used} == {*addresses}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    for address in addresses.values():
+        kind, _, path = address.removeprefix(f"{project['urls']['Source']}/").partition("/main/")
+        assert (ROOT / path).is_dir() if kind == "tree" else (ROOT / path).is_file(), address
+    assert re.findall(r"\]\((?!https:)[^)]*\)", text) == []
+
+
+def test_wheels_are_those_of_the_release():
+    """The systems that the comment on `pip install` names are those of the workflow."""
+    (said,) = re.findall(r"^pip install polhode +# (.*)$", README, flags=re.MULTILINE)
+    workflow = (ROOT / ".github/workflows/release.yml").read_text()
+    targets = {*re.findall(r"target: ([\w-]+)", workflow)}
+    targets |= {
+        f"{m}-unknown-linux-gnu" for m in ("x86_64", "aarch64") if m in (ROOT / "Makefile").read_text()
+    }
+    assert "Linux and macOS on x86-64 and arm64, and Windows on x86-64" in said
+    assert targets == {
+        *(f"{machine}-{system}" for machine in ("x86_64", "aarch64") for system in SYSTEMS),
+        "x86_64-pc-windows-msvc",
+    }
 
 
 def test_the_scene_is_the_example():

@@ -1,5 +1,6 @@
 """A release: one version, one address, and files that the hosts and registries can read."""
 
+import importlib.util
 import json
 import re
 import shutil
@@ -20,6 +21,7 @@ SHARED = CARGO["workspace"]["package"]
 VERSION, ADDRESS = SHARED["version"], SHARED["repository"]
 CRATES = ("polhode-ga", "polhode-rigid")
 LICENCES = {"LICENSE-MIT", "LICENSE-APACHE"}
+NOTICES = "LICENSE-THIRD-PARTY.md"
 WORKFLOWS = sorted((ROOT / ".github/workflows").iterdir())
 
 # Files in the root and in these folders may contain the address.
@@ -189,6 +191,23 @@ def test_a_crate_has_all_that_a_registry_shows(name):
         assert (folder / licence).read_text() == (ROOT / licence).read_text()
 
 
+def test_the_notices_are_those_of_the_crates_that_are_compiled():
+    program("cargo")
+    spec = importlib.util.spec_from_file_location("notices", ROOT / ".ci/notices.py")
+    notices = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(notices)
+    current = notices.notices()
+    assert "## pyo3 v" in current
+    assert "## toml_edit v" in current
+    assert "## proc-macro2 v" not in current
+    assert (ROOT / NOTICES).read_text() == current, "run python .ci/notices.py"
+
+
+def test_every_package_has_the_licences():
+    assert {*PYTHON["project"]["license-files"]} == {NOTICES, *LICENCES}
+    assert {*parsed("conda/recipe.yaml")["about"]["license_file"]} == {NOTICES, *LICENCES}
+
+
 def test_only_the_core_is_published():
     for name in ("py", "wasm"):
         assert crate(name)["package"]["publish"] == {"workspace": True}
@@ -201,5 +220,5 @@ def test_the_npm_package_is_the_bundle():
     assert done.returncode == 0, done.stderr
     (package,) = json.loads(done.stdout[done.stdout.index("[\n") :])
     files = {file["path"] for file in package["files"]}
-    assert files == {"package.json", "README.md", "viewer.js", "viewer.licenses.md", *LICENCES}
+    assert files == {"package.json", "README.md", "viewer.js", "viewer.licenses.md", NOTICES, *LICENCES}
     assert "dependencies" not in json.loads((ROOT / "viewer/package.json").read_text())

@@ -74,6 +74,8 @@ def test_the_wheel_has_all_and_runs_on_any_python(wheel):
         "polhode/py.typed",
         "polhode/_native.pyi",
     } <= names
+    licences = {name.rpartition("/")[2] for name in names if ".dist-info/licenses/" in name}
+    assert licences == {"LICENSE-MIT", "LICENSE-APACHE", "LICENSE-THIRD-PARTY.md"}
     assert not [name for name in names if name.endswith((".pyc", ".map")) or "/tests/" in name]
 
 

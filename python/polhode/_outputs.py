@@ -195,6 +195,12 @@ def plot(
         Without matplotlib, and for ``"scene"`` without Playwright: ``pip install 'polhode[film]'``.
     OSError
         For ``"scene"`` without a browser.
+
+    Examples
+    --------
+    >>> body = ph.Inertia.from_principal_moments(1, 2, 3)
+    >>> motion = ph.simulate(body, ph.State(ph.Rotor.identity(), [0.01, 1, 0.01]), np.linspace(0, 20, 201))
+    >>> motion.plot("polhode").savefig("polhode.png")
     """
     self._require_one("plot")
     from polhode._figures.registry import figure
@@ -309,6 +315,20 @@ def reduce(
         Without an ensemble, or with words that are unknown or do not fit; else as for `Scene.run`.
     MemoryError
         If the outputs would not fit into memory; raised before the run.
+
+    Examples
+    --------
+    >>> text = '''
+    ... body.moments = [1, 2, 3]
+    ... initial.spin = { vector = [0, 0, 1] }
+    ... ensemble = { number = 100, spin = { normal = 0.3 } }
+    ... run = { duration = 10, samples = 11 }
+    ... '''
+    >>> with open("spins.toml", "w") as file:
+    ...     _ = file.write(text)
+    >>> found = ph.Scene.read("spins.toml").reduce(["last"])
+    >>> found["last_omega_body"].shape
+    (100, 3)
     """
     from polhode._report.ensemble.reduced_ensemble import reduce
 

@@ -110,7 +110,14 @@ class CGA(Algebra):
         return self.vector(kind.stack([*parts, half - one, half + one]))
 
     def point(self, x: Any) -> Multivector:
-        """Return `up(x)`."""
+        """Return `up(x)`.
+
+        Examples
+        --------
+        >>> C = ph.cga(3)
+        >>> C.down(C.point([1, 0, 0]))
+        e1
+        """
         return self.up(x)
 
     def down(self, X: Multivector) -> Multivector:

@@ -55,12 +55,24 @@ def cos(value: Multivector) -> Multivector:
 
 
 def tan(value: Multivector, *, errors: Errors = "raise") -> Multivector:
-    """``sin A (cos A)⁻¹``; a ValueError, or with ``errors="mask"`` NaN, where cos A has no inverse."""
+    """``sin A (cos A)⁻¹``; a ValueError, or with ``errors="mask"`` NaN, where cos A has no inverse.
+
+    Examples
+    --------
+    >>> ph.scalar(np.pi / 4).tan()
+    1
+    """
     return _ratio("tan", value, -1, errors)
 
 
 def sinh(value: Multivector) -> Multivector:
-    """``sinh A = A + A³/3! + …``, ``½(e^A − e^−A)`` without its cancellation. See `sin`."""
+    """``sinh A = A + A³/3! + …``, ``½(e^A − e^−A)`` without its cancellation. See `sin`.
+
+    Examples
+    --------
+    >>> (ph.e1 * np.log(2)).sinh()  # e1² = 1
+    0.75 e1
+    """
     return _pair("sinh", value, 1)[1]
 
 
@@ -77,7 +89,13 @@ def cosh(value: Multivector) -> Multivector:
 
 
 def tanh(value: Multivector, *, errors: Errors = "raise") -> Multivector:
-    """``sinh A (cosh A)⁻¹``; errors as of `tan`. See `sin`."""
+    """``sinh A (cosh A)⁻¹``; errors as of `tan`. See `sin`.
+
+    Examples
+    --------
+    >>> (ph.e1 * np.log(2)).tanh()
+    0.6 e1
+    """
     return _ratio("tanh", value, 1, errors)
 
 

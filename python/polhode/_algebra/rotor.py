@@ -260,7 +260,14 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def from_numpy_quaternion(q: Any) -> Rotor:
-        """From quaternions of the package numpy-quaternion, one or an array (...), divided by their norm."""
+        """From quaternions of the package numpy-quaternion, one or an array (...), divided by their norm.
+
+        Examples
+        --------
+        >>> import quaternion
+        >>> ph.Rotor.from_numpy_quaternion(quaternion.x)  # ij = k, but e2e3 e3e1 = −e1e2
+        -e2∧e3
+        """
         quaternion = optional("quaternion", "quaternion", "from_numpy_quaternion")
         array = np.asarray(q)
         if array.dtype != np.dtype(quaternion.quaternion):
@@ -394,7 +401,14 @@ class Rotor(_native.Rotor, Multivector):
         return rotation
 
     def to_numpy_quaternion(self) -> Any:
-        """Return an array (...) of dtype quaternion, of the package numpy-quaternion."""
+        """Return an array (...) of dtype quaternion, of the package numpy-quaternion.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, np.pi)
+        >>> R.to_numpy_quaternion().vec
+        array([0., 0., 1.])
+        """
         quaternion = optional("quaternion", "quaternion", "to_numpy_quaternion")
         return quaternion.as_quat_array(self.to_quaternion(order="wxyz"))
 
@@ -464,7 +478,13 @@ class Rotor(_native.Rotor, Multivector):
         return angle[()] if kind.native else angle
 
     def astype(self, dtype: Any) -> Rotor:
-        """Return the rotor with components of another type, of norm 1 in its precision."""
+        """Return the rotor with components of another type, of norm 1 in its precision.
+
+        Examples
+        --------
+        >>> ph.Rotor.random(3, rng=0).astype(np.float32).dtype
+        dtype('float32')
+        """
         return Rotor.from_components(Multivector.astype(self, dtype)._data)
 
     # --- signs and symmetries
@@ -526,11 +546,25 @@ class Rotor(_native.Rotor, Multivector):
         return self**0.5 if errors == "raise" else masked(errors, lambda R: R**0.5, (self, 1))
 
     def normalized(self, *, errors: Errors = "raise") -> Rotor:
-        """Return the rotor itself, which has norm 1."""
+        """Return the rotor itself, which has norm 1.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, 0.5)
+        >>> R.normalized() == R
+        True
+        """
         return self
 
     def grade_involution(self) -> Rotor:
-        """Return the rotor itself, which is even."""
+        """Return the rotor itself, which is even.
+
+        Examples
+        --------
+        >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, 0.5)
+        >>> R.grade_involution() == R
+        True
+        """
         return self
 
     def __pow__(self, n: Any) -> Rotor:

@@ -246,7 +246,14 @@ class RigidTransform:
 
     @staticmethod
     def from_scipy(transform: ScipyTransform) -> RigidTransform:
-        """From a ``scipy.spatial.transform.RigidTransform``."""
+        """From a ``scipy.spatial.transform.RigidTransform``.
+
+        Examples
+        --------
+        >>> from scipy.spatial.transform import RigidTransform
+        >>> ph.RigidTransform.from_scipy(RigidTransform.from_translation([1, 2, 3])).translation
+        e1 + 2 e2 + 3 e3
+        """
         if not hasattr(transform, "as_components"):
             raise TypeError(
                 "from_scipy needs a scipy.spatial.transform.RigidTransform, got " + type(transform).__name__
@@ -367,7 +374,13 @@ class RigidTransform:
         return of_columns(algebra, [zero + 1, *[zero] * 3, *half, zero]) * rotor
 
     def to_scipy(self) -> ScipyTransform:
-        """Return a ``scipy.spatial.transform.RigidTransform`` (SciPy 1.16 or later)."""
+        """Return a ``scipy.spatial.transform.RigidTransform`` (SciPy 1.16 or later).
+
+        Examples
+        --------
+        >>> ph.RigidTransform.from_translation([1, 2, 3]).to_scipy().translation
+        array([1., 2., 3.])
+        """
         transform = optional("scipy.spatial.transform", "scipy", "to_scipy")
         if not hasattr(transform, "RigidTransform"):
             raise ImportError("to_scipy needs SciPy 1.16 or later, which has RigidTransform")
@@ -422,7 +435,14 @@ class RigidTransform:
         return RigidTransform(back, -back(self.translation))
 
     def inverse(self) -> RigidTransform:
-        """Return the transform that moves back."""
+        """Return the transform that moves back.
+
+        Examples
+        --------
+        >>> move = ph.RigidTransform.from_translation([1, 0, 0])
+        >>> move.inverse().apply(ph.e1 + ph.e2)
+        e2
+        """
         return self.inv()
 
     def __invert__(self) -> RigidTransform:

@@ -130,6 +130,18 @@ class Fit:
 
         Quantiles are those of the normal distribution, or of Student's if the standard deviations of the data
         were estimated. A ValueError unless 0 < level < 1.
+
+        Examples
+        --------
+        >>> rng = np.random.default_rng(1)
+        >>> inertia = ph.Inertia.from_principal_moments(1, 2, 2.5)
+        >>> times = np.linspace(0, 5, 51)
+        >>> rates = ph.FreeMotion(inertia, ph.Rotor.identity(), [0.5, 2, 0.5]).at(times).omega_body
+        >>> measured = rates.components + 0.01 * rng.normal(size=(51, 3))
+        >>> found = ph.fit(rates=(times, measured), sigma_rates=0.01, bias=False)
+        >>> low, high = found.interval(0.99).T
+        >>> bool(((low < found.values) & (found.values < high)).all())
+        True
         """
         share = as_float(level, "level")
         if not 0 < share < 1:
@@ -141,7 +153,19 @@ class Fit:
         return np.stack([self.values - half, self.values + half], axis=1)
 
     def summary(self) -> str:
-        """Return the parameters with their standard deviations and the other findings, as text."""
+        """Return the parameters with their standard deviations and the other findings, as text.
+
+        Examples
+        --------
+        >>> rng = np.random.default_rng(1)
+        >>> inertia = ph.Inertia.from_principal_moments(1, 2, 2.5)
+        >>> times = np.linspace(0, 5, 51)
+        >>> rates = ph.FreeMotion(inertia, ph.Rotor.identity(), [0.5, 2, 0.5]).at(times).omega_body
+        >>> measured = rates.components + 0.01 * rng.normal(size=(51, 3))
+        >>> found = ph.fit(rates=(times, measured), sigma_rates=0.01, bias=False)
+        >>> print(found.summary().splitlines()[0])
+        i1/i3                 0.3985 ± 0.0012
+        """
         lines = [f"{name:<21} {text}" for name, text in self._rows()]
         return "\n".join([*lines, "not determined by the data", *(f"  {x}" for x in self.undetermined)])
 
@@ -178,7 +202,19 @@ class Fit:
         return f"Fit({self.inertia!r}, parameters {', '.join(self.names)})"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the fit as numbers, lists and strings, for a JSON file; without the residuals."""
+        """Return the fit as numbers, lists and strings, for a JSON file; without the residuals.
+
+        Examples
+        --------
+        >>> rng = np.random.default_rng(1)
+        >>> inertia = ph.Inertia.from_principal_moments(1, 2, 2.5)
+        >>> times = np.linspace(0, 5, 51)
+        >>> rates = ph.FreeMotion(inertia, ph.Rotor.identity(), [0.5, 2, 0.5]).at(times).omega_body
+        >>> measured = rates.components + 0.01 * rng.normal(size=(51, 3))
+        >>> found = ph.fit(rates=(times, measured), sigma_rates=0.01, bias=False)
+        >>> found.to_dict()['dof']
+        148
+        """
         return {
             "moments": self.inertia.principal_moments.tolist(),
             "time": self.time,
@@ -211,6 +247,16 @@ class Fit:
             If `ax` is given and the data are attitudes and rates.
         ImportError
             Without matplotlib: ``pip install 'polhode[plot]'``.
+
+        Examples
+        --------
+        >>> rng = np.random.default_rng(1)
+        >>> inertia = ph.Inertia.from_principal_moments(1, 2, 2.5)
+        >>> times = np.linspace(0, 5, 51)
+        >>> rates = ph.FreeMotion(inertia, ph.Rotor.identity(), [0.5, 2, 0.5]).at(times).omega_body
+        >>> measured = rates.components + 0.01 * rng.normal(size=(51, 3))
+        >>> found = ph.fit(rates=(times, measured), sigma_rates=0.01, bias=False)
+        >>> found.plot().savefig("residuals.png")
         """
         from polhode._figures.style import Sheet
         from polhode._fit.figure import residual_figure

@@ -192,7 +192,14 @@ class Inertia(LinearMap):
         return Rotor._from_rows(self._core.principal_frame())
 
     def eigenplanes(self) -> tuple[Multivector, Array]:
-        """Return the principal planes ``F(I e_k)``, F the `principal_frame`, and the principal moments."""
+        """Return the principal planes ``F(I e_k)``, F the `principal_frame`, and the principal moments.
+
+        Examples
+        --------
+        >>> planes, moments = ph.Inertia.from_principal_moments(1, 2, 2.5).eigenplanes()
+        >>> planes[0], float(moments[0])
+        (e2∧e3, 1.0)
+        """
         return self.principal_frame(bivector(np.eye(3))), self.principal_moments
 
     def __repr__(self) -> str:

@@ -152,6 +152,13 @@ class FreeMotion(ClosedForm):
         `at`, and where the derivatives of an unstable rotation overflow.
 
         `polhode.jax.free` is the same function for JAX.
+
+        Examples
+        --------
+        >>> ball = ph.Inertia.from_principal_moments(1, 1, 1)
+        >>> motion = ph.FreeMotion(ball, ph.Rotor.identity(), [0, 0, np.pi])
+        >>> motion.derivatives([0.0, 1.0]).d_rotor_d_omega.shape
+        (2, 4, 3)
         """
         times = as_floats(t, "time")
         shape = self.shape + times.shape
@@ -265,7 +272,15 @@ class SymmetricTop(FreeMotion):
         return k, i[k - 2], i[k]
 
     def at(self, t: Any) -> State:
-        """Return the state at time t in s; an array of times gives a state of that batch shape."""
+        """Return the state at time t in s; an array of times gives a state of that batch shape.
+
+        Examples
+        --------
+        >>> body = ph.Inertia.from_principal_moments(2, 2, 1)
+        >>> top = ph.SymmetricTop(body, ph.Rotor.identity(), [1, 0, 3])
+        >>> top.at([0.0, 1.0, 2.0]).shape
+        (3,)
+        """
         times = as_floats(t, "time")
         rotor, omega = (row[0] for row in self._core.starts())
         rotors, omegas = _native.symmetric_top(self._inertia._core, rotor, omega, np.ravel(times))

@@ -50,6 +50,11 @@ class Moments:
         """Add values, an array or a multivector (its components), and return self.
 
         A ValueError if the shape without the axis differs from that of the values added before.
+
+        Examples
+        --------
+        >>> float(ph.Moments().add([1, 2]).add([6]).mean)
+        3.0
         """
         array = as_floats(values._data if isinstance(values, Multivector) else values, "values")
         if not -array.ndim <= self._axis < array.ndim:

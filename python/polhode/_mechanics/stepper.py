@@ -177,7 +177,18 @@ class Stepper:
         return self._core.wheel_speeds()
 
     def reset(self, state: State) -> None:
-        """Set the state of all bodies, and with it the time; reaction wheels follow their law again."""
+        """Set the state of all bodies, and with it the time; reaction wheels follow their law again.
+
+        Examples
+        --------
+        >>> ball = ph.Inertia.from_principal_moments(4, 4, 4)
+        >>> start = ph.State(ph.Rotor.identity(), [0, 0, 1])
+        >>> satellite = ph.Stepper(ball, start)
+        >>> _ = satellite.step(0.5)
+        >>> satellite.reset(start)
+        >>> satellite.time
+        0.0
+        """
         check_state(state)
         shape = state.shape
         if np.broadcast_shapes(shape, self.shape) != self.shape:

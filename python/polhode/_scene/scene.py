@@ -206,6 +206,19 @@ class Scene:
         Vertices (n, 3) in body axes in m, and triangles (m, 3), counter-clockwise seen from outside. A round
         solid has 64 faces about its axis, with vertices on the solid; a rod and a disc are given a thickness.
         None for a body known by its moments.
+
+        Examples
+        --------
+        >>> text = '''
+        ... body = { solid = "sphere", radius = "10 cm", mass = "5 kg" }
+        ... initial.spin = { plane = "e1e2", rate = "1 rad/s" }
+        ... run = { duration = "2 s", samples = 3 }
+        ... '''
+        >>> with open("ball.toml", "w") as file:
+        ...     _ = file.write(text)
+        >>> vertices, triangles = ph.Scene.read("ball.toml").surface()
+        >>> float(np.linalg.norm(vertices, axis=1).max().round(9))
+        0.1
         """
         surface = self._core.surface(os.fspath(self.path))
         return None if surface is None else (surface[0], np.array(surface[1], int))
@@ -232,7 +245,21 @@ class Scene:
         return self.title or self.path.stem
 
     def alone(self) -> Scene:
-        """Return the scene of the nominal body, without the ensemble."""
+        """Return the scene of the nominal body, without the ensemble.
+
+        Examples
+        --------
+        >>> text = '''
+        ... body.moments = [1, 2, 3]
+        ... initial.spin = { vector = [0, 0, 1] }
+        ... ensemble = { number = 100, spin = { normal = 0.3 } }
+        ... run = { duration = 10, samples = 11 }
+        ... '''
+        >>> with open("spins.toml", "w") as file:
+        ...     _ = file.write(text)
+        >>> ph.Scene.read("spins.toml").alone().run().shape
+        ()
+        """
         return replace(self, ensemble=None)
 
     @property
@@ -375,6 +402,22 @@ class Scene:
         ------
         ValueError
             Without an ensemble; else as for `polhode.simulate`.
+
+        Examples
+        --------
+        >>> text = '''
+        ... body.moments = [1, 2, 3]
+        ... initial.spin = { vector = [0, 0, 1] }
+        ... ensemble = { number = 100, spin = { normal = 0.3 } }
+        ... run = { duration = 10, samples = 11 }
+        ... '''
+        >>> with open("spins.toml", "w") as file:
+        ...     _ = file.write(text)
+        >>> for rows, motion in ph.Scene.read("spins.toml").run_blocks(40):
+        ...     print(rows, motion.shape)
+        slice(0, 40, None) (40,)
+        slice(40, 80, None) (40,)
+        slice(80, 100, None) (20,)
         """
         if self.ensemble is None:
             raise ValueError("this scene has no table [ensemble]; use run")

@@ -211,7 +211,7 @@ impl Multivector {
     /// >>> A = 1 + 2 * ph.e1
     /// >>> A * A.inverse()
     /// 1
-    /// >>> (1 + ph.e1).inverse(errors="mask").is_finite()
+    /// >>> bool((1 + ph.e1).inverse(errors="mask").is_finite())
     /// False
     #[pyo3(signature = (*, errors="raise"))]
     fn inverse<'py>(slf: &Bound<'py, Self>, errors: &str) -> Object<'py> {

@@ -85,6 +85,20 @@ class ReducedEnsemble(Mapping[str, Array]):
         ------
         ImportError
             Without xarray: ``pip install 'polhode[io]'``.
+
+        Examples
+        --------
+        >>> text = '''
+        ... body.moments = [1, 2, 3]
+        ... initial.spin = { vector = [0, 0, 1] }
+        ... ensemble = { number = 100, spin = { normal = 0.3 } }
+        ... run = { duration = 10, samples = 11 }
+        ... '''
+        >>> with open("spins.toml", "w") as file:
+        ...     _ = file.write(text)
+        >>> found = ph.Scene.read("spins.toml").reduce(["last"])
+        >>> found.to_xarray()["last_attitude"].dims
+        ('body', 'quaternion')
         """
         xr = optional("xarray", "io", "labelled data")
         data = {name: (x.dims, np.array(x.values), x.labels) for name, x in self._variables.items()}

@@ -58,7 +58,10 @@ def main() -> None:
     page.facts(
         f"{name}: {about[name]}" for name in ("date", "commit", "processor", "cores", "system", "Python")
     )
-    bad = [motions(page), rotations(page, effort), peers(page), damage(page, effort)]
+    bad = []
+    for part in (motions, rotations, peers, damage):
+        print((part.__doc__ or "").partition(";")[0], flush=True)
+        bad.append(part(page, effort))
     if not arguments.no_benchmarks:
         speed(page, effort, about["commit"])
     target = machine.ROOT / "build" / "evidence.html"
@@ -69,7 +72,7 @@ def main() -> None:
         sys.exit(f"{sum(bad)} rows are bad; they are red on the page")
 
 
-def motions(page: Page) -> int:
+def motions(page: Page, _effort: Effort) -> int:
     """Compare motions with the references; return the number of estimates that are too small."""
     rows = list(references.outcomes())
     page.heading("Motions against 40 digits")
@@ -134,7 +137,7 @@ def rotations(page: Page, effort: Effort) -> int:
     return sum(bool(e.ulps.max() > 2) for e in found)
 
 
-def peers(page: Page) -> int:
+def peers(page: Page, _effort: Effort) -> int:
     """Run the tests of other libraries; return the number of failures without a reason."""
     page.heading("Other libraries' own tests")
     page.text(

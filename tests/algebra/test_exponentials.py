@@ -1,5 +1,7 @@
 """exp, log, sqrt: against 60 digits, as inverses of each other, near-singular and extreme values."""
 
+import math
+
 import mpmath
 import numpy as np
 import pytest
@@ -81,6 +83,20 @@ def test_exp_of_a_bivector_of_any_norm_is_a_unit_rotor(exponent):
     R = ph.bivector(10.0**exponent * np.array([0.48, -0.6, 0.64])).exp()
     assert isinstance(R, ph.Rotor)
     assert abs(magnitude(R) - 1) <= 4 * EPS
+
+
+def test_powers_of_numbers():
+    assert same(math.e**e12, e12.exp())
+    assert isinstance(math.e ** (0.3 * e12), ph.Rotor)
+    assert close(2**e1, 1.25 + 0.75 * e1, 4)  # cosh and sinh of log 2
+    assert same(np.float64(2.0) ** e1, 2**e1)
+    bivectors = ph.bivector([[0.0, 0.0, 0.5], [1.0, 2.0, 3.0]])
+    assert same(math.e**bivectors, bivectors.exp())
+    for base in (0, -1.0, math.nan):
+        with pytest.raises(ValueError, match=f"must be > 0, got {base}"):
+            _ = base**e12
+    with pytest.raises(TypeError):
+        _ = "2" ** e12
 
 
 def test_exp_of_special_values():

@@ -1,11 +1,13 @@
-//! Interpreter: a formula over many rows gives the same bits, and the same error, as over single rows.
+//! Interpreter: a formula over many rows gives the same bits, and the same error, as over single rows, whose products are
+//! those of the blade table.
 #![no_main]
 
 mod names;
+mod table;
 
 use libfuzzer_sys::fuzz_target;
 use names::BOUND;
-use polhode_ga::formula::{Given, InputKind, Program, Runner, Space, compile, parse};
+use polhode_ga::formula::{Given, InputKind, Op, Program, Runner, Space, compile, parse};
 use polhode_ga::graded::Graded;
 use polhode_ga::product::Grades;
 use polhode_ga::simd::threads::Threads;
@@ -46,6 +48,7 @@ fn check_rows(program: &Program, rows: usize, mut seed: u64) {
         match (runner.value(&one), outcome) {
             (Ok(_), Err(error)) => assert_ne!(error.row, row, "{error:?}"),
             (Ok(values), Ok(())) => {
+                check_products(&program, &values);
                 for ((id, size), output) in results.iter().zip(&sizes).zip(&outputs) {
                     let (found, expected) = (&output[row * size..][..*size], values[*id].components());
                     assert!(found.iter().zip(expected).all(same), "row {row}: {found:?}, alone {expected:?}");
@@ -58,6 +61,21 @@ fn check_rows(program: &Program, rows: usize, mut seed: u64) {
             (Err((_, error)), Ok(())) => panic!("row {row}: {error:?}"),
         }
     }
+}
+
+/// Each product of two steps, by the table; a step keeps some grades of it.
+fn check_products(program: &Program, values: &[Graded]) {
+    for (step, value) in program.steps.iter().zip(values) {
+        if let Op::Product(product, a, b) = step.op {
+            let full = |of: &[f64]| Graded::full(&whole(of).with_grades(value.grades())).to_vec();
+            let (sums, sizes) = table::product(&G3, product, &values[a].full(), &values[b].full());
+            table::assert_close(&value.full(), &(full(&sums), full(&sizes)), 8, product.name());
+        }
+    }
+}
+
+fn whole(components: &[f64]) -> Graded {
+    Graded::new(components, Grades::ALL).expect("eight components")
 }
 
 fn same((a, b): (&f64, &f64)) -> bool {
@@ -74,6 +92,13 @@ fn random(seed: &mut u64) -> f64 {
     ((*seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 4.0
 }
 
+/// A number from −2 to 2, and one in four from the edges of the range.
+fn component(seed: &mut u64) -> f64 {
+    const EDGES: [f64; 8] = [0.0, -0.0, 1.0, 1e-310, -1e-160, 1e160, f64::MAX, f64::INFINITY];
+    let number = random(seed);
+    if number < 1.0 { number } else { EDGES[((number - 1.0) * 8.0) as usize] }
+}
+
 fn components(kind: InputKind, seed: &mut u64) -> Vec<f64> {
     match kind {
         InputKind::Value(ty) if ty.unit => {
@@ -81,9 +106,9 @@ fn components(kind: InputKind, seed: &mut u64) -> Vec<f64> {
             let norm = four.iter().map(|x| x * x).sum::<f64>().sqrt();
             four.map(|x| x / norm).to_vec()
         }
-        InputKind::Value(ty) => (0..size(ty.grades)).map(|_| random(seed)).collect(),
-        InputKind::Matrix { .. } => (0..9).map(|_| random(seed)).collect(),
-        InputKind::Determinant => vec![random(seed)],
+        InputKind::Value(ty) => (0..size(ty.grades)).map(|_| component(seed)).collect(),
+        InputKind::Matrix { .. } => (0..9).map(|_| component(seed)).collect(),
+        InputKind::Determinant => vec![component(seed)],
     }
 }
 

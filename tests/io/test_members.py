@@ -175,3 +175,56 @@ def test_errors(folder, tmp_path):
     (tmp_path / "z.nc").write_bytes(b"\x89HDF\r\n\x1a\nmore")
     with pytest.raises(ph.io.FileError, match="cannot be read as a netCDF file"):
         ph.io.read(tmp_path / "z.nc", body=0)
+
+
+# The declaration of a variable whose values are not in the file.
+GIANT = {"shape": (1 << 40, 2, 4), "chunks": True, "dtype": "f8"}
+
+
+@pytest.mark.parametrize("many", [False, True])
+@pytest.mark.parametrize(
+    ("name", "change", "expected"),
+    [
+        ("time", {"data": np.zeros((2, 2))}, r"time must have shape \(n,\), got \(2, 2\)"),
+        ("time", {"data": 0.0}, "time must have shape|cannot be read"),
+        ("attitude", {"data": np.ones((2, 2, 3))}, r"attitude must have shape|got norm"),
+        ("energy", {"data": np.zeros((2, 5))}, r"energy must have shape \(2,\), a row for each time"),
+        (
+            "attitude",
+            {"data": np.zeros((2, 2, 4), complex)},
+            "'attitude' must hold real numbers, got the type",
+        ),
+        ("attitude", GIANT, "values of 'attitude' take|values are missing|got norm 0"),
+        ("time", GIANT, "values of 'time' take|values are missing"),
+        ("time", GIANT | {"shape": (1 << 24,)}, "'time' has the shape .* its values are missing"),
+        ("omega_body", {}, "'omega_body' is not a variable"),
+    ],
+)
+def test_variables_that_are_not_those_of_a_motion(many, name, change, expected, tmp_path):
+    """Of any other shape, type, or so large that only its declaration is in the file."""
+    h5py = pytest.importorskip("h5py")
+    omega = [[0, 0, 1.0], [0, 0, 2.0]] if many else [0, 0, 1.0]
+    path = tmp_path / "a.nc"
+    ph.simulate(ASYMMETRIC, ph.State(ph.Rotor.identity(), omega), [0, 1]).save(path)
+    with h5py.File(path, "r+") as file:
+        del file[name]
+        file.create_dataset(name, **change) if change else file.create_group(name)
+    readers = [lambda: ph.io.read(path, body=1 if many else None)]
+    if not many:
+        readers.append(lambda: ph.Trajectory.read(path))
+    for read in readers:
+        with pytest.raises((ValueError, OSError), match=expected) as caught:
+            read()
+        assert str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize("drift", ["1e999", '{"rotor_norm": "x"}', "[]"])
+def test_attributes_that_are_not_those_of_a_motion(drift, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "a.nc"
+    ph.simulate(ASYMMETRIC, START, [0, 1]).save(path)
+    with h5py.File(path, "r+") as file:
+        file.attrs["drift"], file.attrs["title"] = drift, [1.0, 2.0]
+    with pytest.raises(ValueError, match="the attribute 'drift' must be numbers by name"):
+        ph.Trajectory.read(path)
+    assert len(ph.io.read(path)) == 2

@@ -90,10 +90,20 @@ HEADER = "time,attitude_w,attitude_x,attitude_y,attitude_z"
         (f"{HEADER}\n1,1,0,0,0\n0,1,0,0,0\n", "a.csv:3:1: error: times must increase, got 0.0 s after 1.0 s"),
         (f"{HEADER},omega_body_x\n0,1,0,0,0,1\n", "the columns of omega_body must be"),
         (f"{HEADER},time\n0,1,0,0,0,1\n", "column 'time' appears more than once"),
+        # Lines end as in any text; other separators of lines are in a field.
+        (f"{HEADER}\r0,1,0,0,0\r0,1,0,0,0\r", "a.csv:3:1: error: times must increase"),
+        (
+            f"{HEADER}\n0,1,0,0,0\n1,1,0,0,\x850\f0\n",
+            "a.csv:3:9: error: '\\x850\\x0c0' is not a finite number",
+        ),
+        (
+            HEADER + "," + 150_000 * "x",
+            "a.csv:1:1: error: not a row of numbers: field larger than field limit",
+        ),
     ],
 )
 def test_errors_of_tables_have_their_place(text, expected, tmp_path):
-    (tmp_path / "a.csv").write_text(text)
+    (tmp_path / "a.csv").write_text(text, "utf-8", newline="")
     with pytest.raises(ph.io.FileError) as caught:
         ph.io.read_csv(tmp_path / "a.csv")
     assert expected in str(caught.value)
@@ -114,6 +124,16 @@ def test_missing_and_foreign_files(form, tmp_path):
         ph.io.read(tmp_path / f"b.{form}")
 
 
+@pytest.mark.parametrize("stated", [b"1e999", b"[1]", b"{"])
+def test_attributes_of_parquet_files_are_an_object(stated, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    MOTION.save(tmp_path / "a.parquet")
+    table = parquet.read_table(tmp_path / "a.parquet")
+    parquet.write_table(table.replace_schema_metadata({"PANDAS_ATTRS": stated}), tmp_path / "a.parquet")
+    with pytest.raises(ph.io.FileError, match=r"a\.parquet: error: cannot be read as a Parquet file"):
+        ph.io.read(tmp_path / "a.parquet")
+
+
 def test_other_suffixes_are_refused(tmp_path):
     with pytest.raises(
         ValueError, match=r"files that can be read end in \.aem, \.bc, \.csv, \.nc, \.parquet or \.zarr"
@@ -131,6 +151,8 @@ def test_other_suffixes_are_refused(tmp_path):
         ({"time": [[0.0]]}, "time must be finite numbers of shape"),
         ({"omega_body": ph.vector([[1, 2, 3.0]] * 2)}, "omega_body must be bivectors"),
         ({"rotor": 1}, "rotor must be a Rotor"),
+        ({"energy": np.zeros((1, 2))}, r"energy must have shape \(n,\) for n = 2, got \(1, 2\)"),
+        ({"wheel_speed": np.zeros((1, 2))}, r"wheel_speed must have shape \(n, k\) for n = 2, got \(1, 2\)"),
     ],
 )
 def test_histories_check_their_values(arguments, expected):

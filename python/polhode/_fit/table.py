@@ -56,7 +56,13 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     if not rows:
         raise UnreadableError(f"{path}: error: the file is empty; its first line has names of columns")
     separator = next((x for x in SEPARATORS if x in rows[0][1]), SEPARATORS[0])
-    header = [x.strip() for x in next(csv.reader([rows[0][1]], delimiter=separator, skipinitialspace=True))]
+    try:
+        fields = next(csv.reader([rows[0][1]], delimiter=separator, skipinitialspace=True))
+    except csv.Error as error:
+        raise UnreadableError(
+            f"{path}:{rows[0][0]}:1: error: not names of columns: {error}; write them as t,wx,wy,wz"
+        ) from None
+    header = [x.strip() for x in fields]
     if all(_is_number(x) for x in header):
         raise UnreadableError(
             f"{path}:{rows[0][0]}:1: error: the first line has numbers; it must have the names of the columns"

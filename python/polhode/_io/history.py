@@ -114,6 +114,13 @@ class AttitudeHistory:
                 raise ValueError(f"{name} must have shape {time.shape} as the times, got {values.shape}")
             if not np.isfinite(values.components).all():
                 raise ValueError(f"{name} must be finite")
+        for name, ndim in (("energy", 1), ("wheel_speed", 2)):
+            values = getattr(self, name)
+            if values is not None and (np.ndim(values) != ndim or len(values) != len(time)):
+                shape = "(n,)" if ndim == 1 else "(n, k)"
+                raise ValueError(
+                    f"{name} must have shape {shape} for n = {len(time)}, got {np.shape(values)}"
+                )
 
     def __len__(self) -> int:
         return len(self.time)

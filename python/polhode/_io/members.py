@@ -66,8 +66,7 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
                     return _member(name, file, attributes, body)
         except FileError:
             raise
-        except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
-            # The library raises any of these for a damaged file.
+        except netcdf.DAMAGED as error:
             raise FileError(f"{name}: error: cannot be read as a netCDF file: {error}") from None
     fields, attributes = netcdf._content(path)
     if body is not None:
@@ -119,11 +118,12 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
         group = library.open_group(name, mode="r")
         if "body" in group:
             return _member(name, group, dict(group.attrs), body)
-        fields = {x: np.asarray(group[x][...]) for x in ("time", "wheel_speed", *netcdf.MOTION) if x in group}
+        known = ("time", "wheel_speed", *netcdf.MOTION)
+        fields = {x: netcdf.values(x, group[x]) for x in known if x in group}
         attributes = dict(group.attrs)
     except FileError:
         raise
-    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+    except netcdf.DAMAGED as error:
         raise FileError(f"{name}: error: cannot be read as a Zarr store: {error}") from None
     if body is not None:
         raise FileError(f"{name}: error: the store holds one body; leave out body={body}")
@@ -174,10 +174,11 @@ def _member(name: str, arrays: Any, attributes: Mapping[str, Any], body: int | N
     for needed in ("time", "attitude"):
         if needed not in arrays:
             raise FileError(f"{name}: error: no attitudes of bodies: {needed!r} is missing")
-    body = _require_body(name, body, arrays["attitude"].shape[0])
-    time = np.asarray(arrays["time"][...], float)
+    # A group has no shape.
+    body = _require_body(name, body, getattr(arrays["attitude"], "shape", (0,))[0])
+    time = np.asarray(netcdf.values("time", arrays["time"]), float)
     known = [x for x in (*ALONG_TIME, "wheel_speed") if x in arrays]
-    parts = {x: np.asarray(arrays[x][body], float) for x in known}
+    parts = {x: np.asarray(netcdf.values(x, arrays[x], body), float) for x in known}
     inertia = _inertia(arrays, body)
     wheels = parts.pop("wheel_speed", None)
     parts = _along(time, parts)
@@ -195,12 +196,13 @@ def _along(time: Array, parts: dict[str, Array]) -> dict[str, Array]:
     """Return the quantities at all times; some are in the file once for each body."""
     found = {}
     for name, values in parts.items():
-        if values.ndim > len(ALONG_TIME[name][0]):
+        if values.shape != netcdf.shape_of(name):
             found[name] = values
         else:
             found[name] = np.repeat(values[np.newaxis], len(time), axis=0)
             if name == "position":
                 found[name] += np.multiply.outer(time - time[0], parts["velocity"])
+    netcdf.require_shapes(time, found)
     return found
 
 
@@ -208,8 +210,8 @@ def _inertia(arrays: Any, body: int) -> Array | None:
     """Return the inertia matrix of a body; the file has one for each or one for all."""
     if "inertia" not in arrays:
         return None
-    matrices = arrays["inertia"]
-    return np.asarray(matrices[body] if len(matrices.shape) == 3 else matrices[...], float)
+    each = len(getattr(arrays["inertia"], "shape", ())) == 3
+    return np.asarray(netcdf.values("inertia", arrays["inertia"], body if each else None), float)
 
 
 def _complete(name: str, time: Array, attitudes: Array, body: int) -> int:

@@ -7,6 +7,7 @@ import io
 import json
 import math
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -64,21 +65,21 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
     """
     name = os.fsdecode(path)
     text = _content(path, name).decode("utf-8-sig", "replace")
-    source = Source(name, text.splitlines())
-    rows = csv.reader(io.StringIO(text))
-    header = [word.strip() for word in next(rows, [])]
+    source = Source(name, io.StringIO(text, newline=None).read().split("\n"))
+    rows = _rows(source)
+    header = [word.strip() for word in next(rows, (1, []))[1]]
     if not header:
         raise FileError(f"{name}: error: the file is empty; its first line must name the columns")
     numbers: list[list[float]] = []
     lines: list[int] = []
-    for row in rows:
+    for line, row in rows:
         if not row:
             continue
         if len(row) != len(header):
             words = f"expected {len(header)} numbers as in the first line, got {len(row)}"
-            raise FileError(source.error(rows.line_num, 0, words))
-        numbers.append([_number(source, rows.line_num, row, k) for k in range(len(row))])
-        lines.append(rows.line_num)
+            raise FileError(source.error(line, 0, words))
+        numbers.append([_number(source, line, row, k) for k in range(len(row))])
+        lines.append(line)
     found = np.array(numbers).reshape(len(numbers), len(header))
     columns = dict(zip(header, found.T, strict=True))
     if len(columns) < len(header):
@@ -121,7 +122,10 @@ def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> At
         found = library.read_table(io.BytesIO(content))
         columns = {x: np.asarray(found[x].to_numpy(), float) for x in found.column_names}
         kept = (found.schema.metadata or {}).get(b"PANDAS_ATTRS", b"{}")
-        attributes = {x: y for x, y in json.loads(kept).items() if x not in _OWN}
+        stated = json.loads(kept)
+        if not isinstance(stated, dict):
+            raise ValueError(f"PANDAS_ATTRS must be attributes by name, as JSON, got {kept[:40]!r}")
+        attributes = {x: y for x, y in stated.items() if x not in _OWN}
     except (OSError, KeyError, TypeError, ValueError, NotImplementedError) as error:
         raise FileError(f"{name}: error: cannot be read as a Parquet file of numbers: {error}") from None
     try:
@@ -151,6 +155,16 @@ def _content(path: str | os.PathLike[str], name: str) -> bytes:
     if not os.path.isfile(path):
         raise FileError(f"{name}: error: not a regular file; give the path of a file")
     return Path(path).read_bytes()
+
+
+def _rows(source: Source) -> Iterator[tuple[int, list[str]]]:
+    """Yield the fields of each row, and the number of its last line."""
+    rows = csv.reader(source.lines)
+    try:
+        for row in rows:
+            yield rows.line_num, row
+    except csv.Error as error:
+        raise FileError(source.error(rows.line_num, 0, f"not a row of numbers: {error}")) from None
 
 
 def _number(source: Source, line: int, row: list[str], k: int) -> float:
@@ -222,6 +236,7 @@ def of_parts(
     inertia: Array | None = None,
 ) -> AttitudeHistory:
     """Return the history with these components, attitudes as quaternions w, x, y, z."""
+    netcdf.require_shapes(time, parts)
     quaternions = np.asarray(parts["attitude"], float)
     norms = np.linalg.norm(quaternions, axis=-1)
     if not (np.abs(norms - 1) < 1e-3).all():

@@ -6,6 +6,8 @@ import io
 import json
 import math
 import os
+import re
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +19,7 @@ from polhode._mechanics.bodies import Inertia, matrices
 from polhode._mechanics.result import Certificate, Crossings
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.summary import QUANTITIES
+from polhode._support import memory
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 
@@ -51,6 +54,12 @@ MOTION: dict[str, tuple[tuple[str, ...], str, str]] = {
     "energy": ((), "J", "rotational kinetic and potential energy"),
     "inertia": (("axis", "inertia_column"), "kg m^2", "inertia matrix in body axes"),
 }
+
+# Numbers in a dimension of a quantity.
+_SIZES = {"quaternion": 4, "axis": 3, "inertia_column": 3}
+# Deflate, which compresses best, makes a variable at most this many times smaller.
+_DEFLATED = 1100
+_SMALL = 1 << 26  # bytes
 
 # Powers in units, as UDUNITS reads them.
 _POWERS = str.maketrans({"²": "^2", "³": "^3", "⁴": "^4"})
@@ -220,6 +229,8 @@ def attributes_of(trajectory: Trajectory) -> dict[str, Any]:
 
 # --- reading
 
+# Libraries raise any of these for a damaged file or store.
+DAMAGED = (OSError, RuntimeError, LookupError, MemoryError, TypeError, ValueError)
 # Foreign files may have any size: nothing else is read.
 _READ = {"time", "wheel_speed", *MOTION}
 # Attributes written here or by the library; all others are the user's.
@@ -243,6 +254,7 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
     """Return the motion in a netCDF file, as `Trajectory.read`."""
     fields, attributes = _content(path)
     try:
+        require_shapes(fields["time"], {name: fields[name] for name in MOTION if name != "inertia"})
         return Trajectory(
             fields["time"],
             _rotors(fields["attitude"]),
@@ -268,9 +280,48 @@ def of_user(attributes: dict[str, Any]) -> dict[str, Any]:
         name: x
         for name, x in attributes.items()
         if name not in _OWN
-        and not (name == "title" and x == CF["title"])
-        and not (name == "history" and str(x).startswith("written by polhode ") and "\n" not in x)
+        and not (name == "title" and str(x) == CF["title"])
+        and not (name == "history" and re.fullmatch("written by polhode .*", str(x)))
     }
+
+
+def require_shapes(time: Array, parts: Mapping[str, Array]) -> None:
+    """Raise a ValueError unless the times are a row, and each quantity has a row for each time."""
+    if time.ndim != 1:
+        raise ValueError(f"time must have shape (n,), got {time.shape}")
+    for name, x in parts.items():
+        expected = (len(time), *shape_of(name))
+        if x.shape != expected:
+            raise ValueError(f"{name} must have shape {expected}, a row for each time, got {x.shape}")
+
+
+def shape_of(name: str) -> tuple[int, ...]:
+    """Return the shape of a quantity at one time."""
+    return tuple(_SIZES[dim] for dim in MOTION[name][0])
+
+
+def values(name: str, variable: Any, body: int | None = None) -> Any:
+    """Return the values of a variable of an HDF5 file or a Zarr store, or those of one body.
+
+    A ValueError if these are not real numbers, but for the variables of events; if the file declares values
+    that it does not hold, which could fill any memory; and if there is no such body. A MemoryError if the
+    values do not fit into memory.
+    """
+    if not hasattr(variable, "dtype"):
+        raise ValueError(f"{name!r} is not a variable")
+    if name in _READ and variable.dtype.kind not in "fiu":
+        raise ValueError(f"{name!r} must hold real numbers, got the type {variable.dtype}")
+    if body is not None and not body < (variable.shape or (0,))[0]:
+        raise ValueError(f"{name!r} has no values of body {body}, got the shape {variable.shape}")
+    size = variable.dtype.itemsize * math.prod(variable.shape if body is None else variable.shape[1:])
+    memory.require(size, f"the values of {name!r}")
+    if hasattr(variable, "id") and size > max(_SMALL, _DEFLATED * variable.id.get_storage_size()):
+        raise ValueError(
+            f"{name!r} has the shape {variable.shape}, but its values are missing; write the file again"
+        )
+    if body is not None:
+        return variable[body]
+    return variable.asstr()[...] if variable.dtype.kind == "O" else variable[...]
 
 
 def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -287,9 +338,8 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
             attributes = {name: _attribute(x) for name, x in file.attrs.items()}
             many = "batch_shape" in attributes or "body" in file
             names = [] if many else [name for name in file if name in _READ or name.startswith("event_")]
-            fields = {name: _array(name, file[name]) for name in names}
-    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
-        # The library raises any of these for a damaged file.
+            fields = {name: values(name, file[name]) for name in names}
+    except DAMAGED as error:
         raise OSError(f"{path} cannot be read as a netCDF file: {error}") from error
     if many:
         raise ValueError(
@@ -304,19 +354,13 @@ def _attribute(x: Any) -> Any:
     return x.item() if isinstance(x, np.ndarray) and x.size == 1 else x
 
 
-def _array(name: str, variable: Any) -> Any:
-    if not hasattr(variable, "dtype"):
-        raise OSError(f"`{name}` is not a variable")
-    return variable.asstr()[...] if variable.dtype.kind == "O" else variable[...]
-
-
 def _rotors(quaternions: Any) -> Any:
     """Return the rotors of quaternions wxyz: three signs change, without rounding."""
     return Rotor._from_rows(np.ascontiguousarray(quaternions * [1.0, -1.0, -1.0, -1.0]))
 
 
 def _certificate(attributes: dict[str, Any]) -> Any:
-    drift = json.loads(attributes["drift"])
+    drift, conserved = (_object(attributes, name) for name in ("drift", "conserved"))
     norm_drift = drift.pop("rotor_norm")
     return Certificate(
         attributes["method"],
@@ -324,11 +368,18 @@ def _certificate(attributes: dict[str, Any]) -> Any:
         attributes["steps"],
         attributes.get("evaluations"),
         attributes.get("error_estimate"),
-        json.loads(attributes["conserved"]),
+        conserved,
         drift,
         norm_drift,
         tuple(json.loads(attributes.get("warnings", "[]"))),
     )
+
+
+def _object(attributes: dict[str, Any], name: str) -> dict[str, float]:
+    found = json.loads(attributes[name])
+    if not isinstance(found, dict) or not all(isinstance(x, int | float) for x in found.values()):
+        raise ValueError(f"the attribute {name!r} must be numbers by name, as JSON, got {attributes[name]!r}")
+    return found
 
 
 def _crossings(fields: dict[str, Any]) -> tuple[Crossings, ...]:

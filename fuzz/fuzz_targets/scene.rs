@@ -40,8 +40,10 @@ fn check(text: &str) {
     if let Some(surface) = scene.surface_with(&mesh) {
         assert!(!surface.expect("the body was built").faces.is_empty());
     }
-    let problem = scene.problem(&body, &laws);
-    assert!(!problem.facts().is_empty());
+    let setup = scene.setup(&body, &laws);
+    assert!(!setup.facts().is_empty());
+    assert!(setup.sources(setup.time).iter().all(|source| !source.facts().is_empty()));
+    let _ = scene.problem(&body, &laws);
     if scene.run.samples <= MOST {
         let times = scene.times();
         assert_eq!(times.len(), scene.run.samples);

@@ -224,6 +224,19 @@ def test_geoms_are_solids(tmp_path):
     assert bodies["c"].mass == 2
 
 
+def test_a_range_of_groups_may_have_any_size(tmp_path):
+    geoms = '<body><geom size="1" group="{}"/></body>'
+    for group, count in (("1e50", 1), ("-1e99", 0)):
+        path = mjcf(tmp_path, geoms.format(group), '<compiler inertiagrouprange="-1e50 1e99"/>')
+        assert len(ph.read_mjcf(path)) == count
+
+
+def test_a_total_mass_beyond_the_range_of_floats_is_an_error_of_the_body(tmp_path):
+    body = '<body><inertial pos="0 0 0" mass="1e-300" diaginertia="1 1 1"/></body>'
+    with pytest.raises(ValueError, match=r"robot.xml:4:\d+: error: scaled to settotalmass=1e\+99: "):
+        ph.read_mjcf(mjcf(tmp_path, body, '<compiler settotalmass="1e99"/>'))
+
+
 def test_included_files_are_read(tmp_path):
     (tmp_path / "parts").mkdir()
     write(
@@ -233,8 +246,9 @@ def test_included_files_are_read(tmp_path):
     assert ph.read_mjcf(path)["b"] == ph.Body.sphere(1, density=1000)
     with pytest.raises(ValueError, match="included twice"):
         ph.read_mjcf(mjcf(tmp_path, '<include file="robot.xml"/>'))
-    with pytest.raises(ValueError, match=r"robot.xml:4:1: error: <include> needs .*nowhere.xml"):
-        ph.read_mjcf(mjcf(tmp_path, '<include file="nowhere.xml"/>'))
+    for name in ("nowhere.xml", 300 * "n" + "owhere.xml"):
+        with pytest.raises(ValueError, match=r"robot.xml:4:1: error: <include> needs .*nowhere.xml"):
+            ph.read_mjcf(mjcf(tmp_path, f'<include file="{name}"/>'))
 
 
 # --- links without mass

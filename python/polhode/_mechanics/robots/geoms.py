@@ -69,7 +69,8 @@ def geom_body(node: Node, compiler: Compiler, attributes: dict[str, str]) -> Bod
     kind = attributes.get("type", "sphere")
     (group,) = geom.numbers("group", 1) or [0.0]
     amount = _amount(geom)
-    if group not in compiler.groups or kind in _FLAT or 0.0 in amount.values():
+    first, last = compiler.groups
+    if not first <= group <= last or kind in _FLAT or 0.0 in amount.values():
         return None
     if kind not in _SIZES or "mesh" in attributes:
         what = "of a mesh" if kind == "mesh" or "mesh" in attributes else f"of type {kind!r}"

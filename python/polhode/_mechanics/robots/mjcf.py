@@ -49,8 +49,13 @@ def _set_total_mass(links: list[Link], total: float) -> None:
         factor = total / sum(body.mass for body in bodies)
         for link in links:
             if (body := link.body) is not None:
-                scaled = Inertia.from_matrix(factor * body.inertia.matrix)
-                link.body = Body(factor * body.mass, scaled, body.center_of_mass)
+                try:
+                    with np.errstate(over="ignore", invalid="ignore"):
+                        scaled = Inertia.from_matrix(factor * body.inertia.matrix)
+                    link.body = Body(factor * body.mass, scaled, body.center_of_mass)
+                except ValueError as error:
+                    link.body = None
+                    link.errors.append(link.node.message(f"scaled to settotalmass={total:g}: {error}"))
 
 
 def _include(node: Node, folder: Path, known: set[str]) -> None:
@@ -62,7 +67,8 @@ def _include(node: Node, folder: Path, known: set[str]) -> None:
             children.append(child)
             continue
         path = folder / child.attributes.get("file", "")
-        if not path.is_file():
+        # Path.is_file raises for a name that is too long.
+        if not os.path.isfile(path):
             raise child.error(
                 f"<include> needs the attribute 'file' with the path of a file, got {str(path)!r}"
             )
@@ -93,12 +99,12 @@ def _compiler(root: Node) -> Compiler:
             raise node.error(f"eulerseq must be three of x, y, z, X, Y, Z, got {sequence!r}")
         node.numbers("inertiagrouprange", 2)
         node.numbers("settotalmass", 1)
-    first, last = (int(float(x)) for x in settings.get("inertiagrouprange", "0 5").split())
+    first, last = map(float, settings.get("inertiagrouprange", "0 5").split())
     return Compiler(
         settings.get("angle", "degree") == "degree",
         settings.get("eulerseq", "xyz"),
         settings.get("inertiafromgeom", "auto"),
-        range(first, last + 1),
+        (first, last),
         float(settings.get("settotalmass", "0")),
     )
 

@@ -22,7 +22,8 @@ class Compiler:
     degrees: bool
     euler_sequence: str
     inertia_from_geom: str
-    groups: range
+    # First and last.
+    groups: tuple[float, float]
     total_mass: float
 
 

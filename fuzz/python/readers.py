@@ -52,8 +52,12 @@ class Fields(Target):
 
     @functools.cached_property
     def files(self) -> list[bytes]:
-        """The seeds."""
-        return self.corpus()
+        """The sound files."""
+        return super().corpus()
+
+    def corpus(self) -> list[bytes]:
+        """Return some single changes."""
+        return [bytes([k % 2, k, 3 * k, 5 * k]) for k in range(40)]
 
     def check(self, content: bytes) -> None:
         """As for other targets."""

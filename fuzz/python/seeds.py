@@ -1,4 +1,4 @@
-"""Files to begin with for the targets in Rust: python fuzz/python/seeds.py writes them to fuzz/corpus/NAME."""
+"""Writes files to begin with for the targets in Rust to fuzz/corpus/NAME: python fuzz/python/seeds.py."""
 
 from __future__ import annotations
 
@@ -39,7 +39,10 @@ def meshes() -> Iterator[bytes]:
     yield b"\0" + f"solid part\n{facets}endsolid part\n".encode()
     records = (struct.pack("<12fH", 0, 0, 0, *(x for i in face for x in _CORNERS[i]), 0) for face in _FACES)
     yield b"\0" + bytes(80) + struct.pack("<I", len(_FACES)) + b"".join(records)
-    lines = [*("v {} {} {}".format(*x) for x in _CORNERS), *(f"f {a + 1} {b + 1}/1 -{4 - c}" for a, b, c in _FACES)]
+    lines = [
+        *("v {} {} {}".format(*x) for x in _CORNERS),
+        *(f"f {a + 1} {b + 1}/1 -{4 - c}" for a, b, c in _FACES),
+    ]
     yield b"\1" + "\n".join(lines).encode()
     head = "ply\nformat {} 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
     head += "element face 4\nproperty list uchar int vertex_indices\nend_header\n"

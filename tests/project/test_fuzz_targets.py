@@ -1,4 +1,4 @@
-"""The fuzz targets in Python can be imported, and accept the files that they begin with and broken ones."""
+"""The fuzz targets in Python accept whole and broken files; those in Rust have files to begin with."""
 
 import random
 
@@ -8,16 +8,26 @@ pytest.importorskip("h5py")
 pytest.importorskip("pyarrow")
 pytest.importorskip("zarr")
 
+import polhode as ph
+import seeds
 from readers import TARGETS
 
 
 @pytest.mark.parametrize("name", TARGETS)
 def test_files_to_begin_with_and_broken_ones(name):
     target, numbers = TARGETS[name], random.Random(1)
-    for content in target.corpus()[:4]:
+    for content in target.corpus()[:6]:
         target.check(content)
         broken = bytearray(content)
         for _ in range(4):
             broken[numbers.randrange(len(broken))] ^= 1 << numbers.randrange(8)
             target.check(bytes(broken))
         target.check(content[: len(content) // 2])
+
+
+def test_the_targets_in_rust_have_files_to_begin_with(tmp_path):
+    assert all(len(contents) > 5 for contents in seeds.corpora().values())
+    for content in seeds.meshes():
+        path = tmp_path / f"part.{('stl', 'obj', 'ply')[content[0]]}"
+        path.write_bytes(content[1:])
+        assert ph.Body.from_mesh(path, density=1).mass == 36_000

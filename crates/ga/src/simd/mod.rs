@@ -43,16 +43,21 @@ pub(crate) const LANES: usize = 64;
 pub struct Lane<const W: usize = LANES>(pub [f64; W]);
 
 impl<const W: usize> Lane<W> {
+    /// Whether lanes are whole registers; false does not compile.
+    const WHOLE: () = assert!(W.is_multiple_of(8), "lanes are whole registers");
+
     /// The same number in every row.
     pub const fn filled(x: f64) -> Lane<W> {
-        const { assert!(W.is_multiple_of(8), "lanes are whole registers") };
+        let () = Self::WHOLE;
         Lane([x; W])
     }
 
     /// The lanes as a flat slice of numbers.
     pub fn flat<T: Element>(lanes: &mut [Lane<W>]) -> &mut [T] {
+        let () = Self::WHOLE;
         let count = lanes.len() * W;
-        // SAFETY: a lane is an array of `W` numbers; a `T` is not larger, and any bits are valid.
+        // SAFETY: whole registers fill a lane without padding, so the lanes are `count` initialized `f64`. A `T` is `f64`
+        // or `f32` (others lack the private `Registers`): not larger, not more aligned, and any bits are valid.
         unsafe { std::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), count) }
     }
 }
@@ -179,19 +184,19 @@ enum Level {
     Neon,
 }
 
-/// Calls a function of the module of a path, or does without. It must suit the arguments; its instructions were
-/// detected.
+/// Calls a function of the module of a path, or does without. The caller ensures what the function demands of its
+/// arguments.
 macro_rules! by_path {
     ($path:expr, $function:ident($($argument:expr),*), $portable:expr) => {
         match $path.0 {
             Level::Portable => $portable,
-            // SAFETY: the instructions were detected.
+            // SAFETY: a `Path` has instructions that were detected; the caller ensures the rest.
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 => unsafe { x86::avx2::$function($($argument),*) },
-            // SAFETY: the instructions were detected.
+            // SAFETY: a `Path` has instructions that were detected; the caller ensures the rest.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { x86::avx512::$function($($argument),*) },
-            // SAFETY: the instructions were detected.
+            // SAFETY: a `Path` has instructions that were detected; the caller ensures the rest.
             #[cfg(target_arch = "aarch64")]
             Level::Neon => unsafe { neon::$function($($argument),*) },
         }
@@ -253,7 +258,7 @@ impl Path {
     /// Transposes at most `W` rows of `lanes.len()` numbers into lanes; places beyond the rows are unchanged.
     pub fn gather<T: Element, const W: usize>(self, rows: &[T], lanes: &mut [Lane<W>]) {
         assert!(!lanes.is_empty() && rows.len() <= lanes.len() * W);
-        // The numbers fit the lanes.
+        // Safe: there is a lane, and the numbers fit the lanes.
         let done = by_path!(self, gather(rows, lanes), 0);
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact(size).enumerate() {
@@ -275,7 +280,7 @@ impl Path {
     /// Turns lanes into rows: the inverse of [`Path::gather`].
     pub fn scatter<T: Element, const W: usize>(self, lanes: &[Lane<W>], rows: &mut [T]) {
         assert!(!lanes.is_empty() && rows.len() <= lanes.len() * W);
-        // The numbers fit the lanes.
+        // Safe: there is a lane, and the numbers fit the lanes.
         let done = by_path!(self, scatter(lanes, rows), 0);
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact_mut(size).enumerate() {
@@ -300,12 +305,11 @@ impl Path {
         assert!((one[0] || a.len() == total * A) && (one[1] || b.len() == total * B), "rows fit together");
         #[cfg(not(target_arch = "x86_64"))]
         let _ = streamed;
-        // The numbers of rows fit.
         match self.0 {
-            // SAFETY: the instructions were detected.
+            // SAFETY: the instructions were detected, and the numbers of rows fit.
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 => unsafe { x86::avx2::short::<T, K, A, B, OUT>(a, b, one, out, streamed) },
-            // SAFETY: the instructions were detected.
+            // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { x86::avx512::short::<T, K, A, B, OUT>(a, b, one, out, streamed) },
             _ => 0,
@@ -316,7 +320,7 @@ impl Path {
     /// [`Path::fence`] completes it.
     pub fn stream<T: Element>(self, from: &[T], to: &mut [T]) {
         assert!(from.len() == to.len() && to.len().is_multiple_of(in_line::<T>()) && to_next_line(to) == 0);
-        // Lengths and alignment are as they must be.
+        // Safe: the lengths and the alignment are asserted above.
         by_path!(self, stream(from, to), to.copy_from_slice(from));
     }
 

@@ -1,9 +1,14 @@
 use super::*;
 
 fn round_trip<T: Element + PartialEq + std::fmt::Debug, const W: usize>() {
+    // Miri interprets, a thousand times slower.
+    let longest = if cfg!(miri) { 9 } else { 64 };
     for path in Path::available() {
-        for size in (1..=20).chain([32, 64]) {
+        for size in (1..=20).chain([32, 64]).filter(|&size| size <= longest) {
             for rows in (0..20).chain([31, 32, 33, 56, 57, 63, 64]).filter(|&rows| rows <= W) {
+                if cfg!(miri) && !matches!(rows % 8, 0 | 1 | 7) {
+                    continue;
+                }
                 let numbers: Vec<T> = (0..rows * size).map(|i| T::nearest(i as f64)).collect();
                 let mut lanes = vec![Lane::<W>::filled(-1.0); size];
                 path.gather(&numbers, &mut lanes);

@@ -16,7 +16,8 @@ use std::thread;
 use std::time::Duration;
 
 /// Checks for new work before a worker sleeps, for the end of work before a call does: some 20 µs, what waking takes.
-const WATCHED: usize = 1000;
+/// Fewer under Miri, which interprets them.
+const WATCHED: usize = if cfg!(miri) { 10 } else { 1000 };
 
 /// A worker ends after this time without work, so that a process soon has one thread again.
 const IDLE: Duration = Duration::from_millis(50);
@@ -48,7 +49,8 @@ struct Job {
     ended: Condvar,
 }
 
-// SAFETY: the work may be called by any thread, and is only called while it is valid.
+// SAFETY: only the pointer keeps a job from being `Send` and `Sync`. What it points to is `Sync`, so any thread may call
+// it, and `Job::work` does so only while the call that lent it waits.
 unsafe impl Send for Job {}
 // SAFETY: as above.
 unsafe impl Sync for Job {}
@@ -69,7 +71,7 @@ impl Workers {
         let process = process::id();
         loop {
             let current = CURRENT.load(Ordering::Acquire);
-            // SAFETY: it is null, or a leaked box.
+            // SAFETY: it is null, or a box that is never freed, for only the loser of the exchange below frees its own.
             if let Some(workers) = unsafe { current.as_ref() }
                 && workers.process == process
             {
@@ -82,7 +84,7 @@ impl Workers {
                 more: Condvar::new(),
             }));
             if CURRENT.compare_exchange(current, new, Ordering::AcqRel, Ordering::Acquire).is_err() {
-                // SAFETY: nobody else has it.
+                // SAFETY: it is the box from above, which the failed exchange gave to nobody.
                 drop(unsafe { Box::from_raw(new) });
             }
         }
@@ -163,7 +165,8 @@ impl Job {
         }
         self.working.fetch_add(1, Ordering::Relaxed);
         drop(progress);
-        // SAFETY: the call waits while somebody works.
+        // SAFETY: the job was open while `working` was raised, under one lock; so `end`, and with it the call that lent the
+        // work, waits until it is lowered below.
         let done = catch_unwind(AssertUnwindSafe(|| unsafe { (*self.work)() }));
         let mut progress = lock(&self.progress);
         progress.panic = progress.panic.take().or(done.err());
@@ -193,7 +196,8 @@ impl Job {
 /// here. All have returned when this does; a panic of any is passed on.
 pub(super) fn together(count: usize, work: &(dyn Fn() + Sync)) {
     let borrowed: *const (dyn Fn() + Sync) = work;
-    // SAFETY: only the lifetime changes. After `end`, before this returns, nobody calls the work.
+    // SAFETY: only the lifetime changes. Nobody calls the work after `end`, which runs before this returns or unwinds:
+    // nothing between here and there panics but the work, which is caught.
     let lasting =
         unsafe { std::mem::transmute::<*const (dyn Fn() + Sync), *const (dyn Fn() + Sync)>(borrowed) };
     let progress = Mutex::new(Progress { open: true, panic: None });

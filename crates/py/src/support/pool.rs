@@ -7,7 +7,7 @@
 #![allow(unsafe_code)]
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyBufferError;
+use pyo3::exceptions::{PyBufferError, PyMemoryError};
 use pyo3::ffi;
 use pyo3::prelude::*;
 use std::ffi::{c_int, c_void};
@@ -58,7 +58,10 @@ pub(crate) fn array<'py>(py: Python<'py>, shape: &[usize]) -> Out<'py> {
 /// Uninitialized memory of `bytes` bytes.
 #[pyfunction]
 pub(crate) fn buffer(py: Python<'_>, bytes: usize) -> PyResult<Buffer> {
-    let size = bytes.saturating_add(LINE).next_multiple_of(STEP);
+    let size = bytes.checked_add(LINE).and_then(|size| size.checked_next_multiple_of(STEP));
+    let size = size.filter(|&size| isize::try_from(size).is_ok());
+    let size =
+        size.ok_or_else(|| PyMemoryError::new_err(format!("{bytes} bytes exceed the address space")))?;
     let kept = FREE.lock().ok().and_then(|mut free| {
         let place = free.iter().rposition(|(s, _)| *s == size)?;
         Some(free.remove(place).1)
@@ -78,9 +81,10 @@ impl Buffer {
         let buffer = slf.get();
         let memory = buffer.memory.as_ref().ok_or_else(|| PyBufferError::new_err("no memory"))?;
         let array = memory.bind(slf.py());
-        debug_assert!(array.len() >= buffer.bytes + LINE);
+        assert!(array.len() >= buffer.bytes + LINE, "the memory is too small");
         let offset = (array.data().addr()).wrapping_neg() % LINE;
-        // SAFETY: `bytes` bytes lie after the offset, and live as long as `slf`, to which the view refers.
+        // SAFETY: the memory has `LINE` bytes more than `bytes`, so `bytes` of them lie after the offset, which is smaller
+        // than `LINE`; they live as long as `slf`, to which the view refers. Python passes a valid `view`.
         let status = unsafe {
             let start: *mut c_void = array.data().add(offset).cast();
             let length = buffer.bytes as ffi::Py_ssize_t;

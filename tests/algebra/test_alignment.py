@@ -131,6 +131,10 @@ def test_wrong_vectors_and_weights_raise():
         ph.align(np.ones((2, 4, 3)), np.ones((3, 4, 3)))
     with pytest.raises(ValueError, match="a vector is not finite"):
         ph.align(np.eye(3), np.diag([1, np.nan, 1]))
+    batch = np.broadcast_to(np.eye(3), (4, 3, 3)).copy()
+    batch[3, 0, 2] = np.inf
+    with pytest.raises(ValueError, match=r"at index \(3, 0\): a vector is not finite"):
+        ph.align(np.eye(3), batch)
     with pytest.raises(ValueError, match=r"weights must be finite numbers >= 0.* got \[ *1. -1. *1.\]"):
         ph.align(np.eye(3), np.eye(3), [1.0, -1.0, 1.0])
     with pytest.raises(TypeError, match="a must be a vector"):

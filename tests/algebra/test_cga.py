@@ -221,6 +221,13 @@ def test_flats_and_rounds_are_told_apart():
         C.normal_and_distance(C.sphere([0.0, 0, 0], 1))
     with pytest.raises(ValueError, match="einf"):
         C.point_and_direction(C.circle([1.0, 0, 0], [0, 0, 1], 1))
+    # Neither answer depends on the weight of the element.
+    plane, sphere = C.plane([0.6, 0, 0.8], 2.0), C.sphere([1.0, 2, 3], 1)
+    for weight in (1e-12, 1e12):
+        normal, distance = C.normal_and_distance(weight * plane)
+        np.testing.assert_allclose([*normal.components, distance], [0.6, 0, 0.8, 2], rtol=0, atol=16 * EPS)
+        with pytest.raises(ValueError, match="einf"):
+            C.normal_and_distance(weight * sphere)
     with pytest.raises(ValueError, match="the way to the point through"):
         C.line([1.0, 0, 0], [1.0, 0, 0])
 

@@ -127,6 +127,9 @@ def test_symbols_and_exact_numbers():
         list(floats.dense()), abs=1e-14
     )
     assert ph.vector([0, 0, 0], dtype=object).cos() == 1
+    assert (Fraction(1, 2) * e1).sinh()["e1"] == math.sinh(0.5)
+    # A vector of any algebra squares to a number, here to t².
+    assert (t * ph.algebra(4).basis_vectors[2]).cosh() == sympy.cosh(t)
     assert (Fraction(1, 2) * e1).sin()["e1"] == math.sin(0.5)
     A = ph.algebra(4)
     with pytest.raises(TypeError, match=r"squares to a number.*astype\(float\)"):

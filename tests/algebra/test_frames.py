@@ -59,6 +59,18 @@ def test_factors_of_basis_blades_are_basis_vectors():
                 assert functools.reduce(operator.mul, blade.factor()) == blade
 
 
+def test_the_first_factors_are_projections_of_the_basis():
+    B = ph.bivector([[1.0, 2, 3], [-5, 1, 2], [1, 4, -2]])
+    axes = [(e1, e2), (e2, e3), (e3, e1)]  # of the largest component of each
+    for row, (x, y) in zip(B, axes, strict=True):
+        a, b = row.factor()
+        # The projections of both axes on the plane, the second one perpendicular to the first.
+        first = x.project(row)
+        second = y.project(row) - y.project(row).project(first)
+        assert (a.normalized() ^ first).norm() <= 8 * EPS
+        assert b.is_close(second.normalized(), atol=8 * EPS)
+
+
 def test_single_precision_and_values_of_one_grade():
     B = ph.bivector(np.float32([0.1, 0.2, 0.3]))
     a, b = B.factor()
@@ -114,6 +126,8 @@ def test_reciprocal_frames_of_other_coefficients():
 
 
 def test_errors_of_reciprocal_frames():
+    with pytest.raises(ValueError, match="linearly dependent"):
+        ph.reciprocal_frame([0 * e1])
     with pytest.raises(ValueError, match="linearly dependent"):
         ph.reciprocal_frame([e1, e2, e1 + 2 * e2])
     with pytest.raises(ValueError, match=r"vectors at index \(1,\) are linearly dependent"):

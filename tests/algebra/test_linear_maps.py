@@ -99,6 +99,11 @@ def test_singular_maps_have_no_inverse():
         ph.LinearMap.from_function(lambda a: a.project(e1 ^ e2)).inverse()
     with pytest.raises(ValueError, match="no inverse"):
         ph.LinearMap.from_matrix(np.zeros((3, 3))).inverse()
+    # The size of a map does not make it singular, and that of a singular one does not hide it.
+    for size in (1e-30, 1e30):
+        assert same(ph.LinearMap.from_matrix(size * np.eye(3)).inverse().matrix, np.eye(3) / size)
+        with pytest.raises(ValueError, match="no inverse"):
+            ph.LinearMap.from_matrix(size * np.array([[1, 2, 3], [4, 5, 6], [7, 8, 9]])).inverse()
 
 
 @pytest.mark.parametrize("of_map", SHAPES)

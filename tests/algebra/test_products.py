@@ -58,6 +58,11 @@ def test_anticommutators_of_vectors_and_planes():
     assert a.anticommutator(b) == a.dot(b)
     assert e1.anticommutator(ph.I) == ph.bivector([1, 0, 0])
     assert a.astype(object).anticommutator(b.astype(object)) == 5
+    # In the plane I anticommutes with vectors: no grade is left, and the result is the number 0.
+    plane = ph.algebra(2)
+    none = plane.vector([3, 4]).anticommutator(plane.I)
+    assert none.grades == (0,)
+    assert none == 0
     with pytest.raises(TypeError, match="anticommutator needs a multivector"):
         a.anticommutator("b")
 

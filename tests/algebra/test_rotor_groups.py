@@ -77,6 +77,8 @@ def test_signs_of_other_coefficients():
         np.array([[sympy.Rational(-3, 5), 0, 0, sympy.Rational(4, 5)], [1, 0, 0, 0]])
     )
     assert (exact.canonical().components[0] == [sympy.Rational(3, 5), 0, 0, -sympy.Rational(4, 5)]).all()
+    half_turn = Rotor.from_components(np.array([0, 0, sympy.Rational(3, 5), sympy.Rational(-4, 5)]))
+    assert (half_turn.canonical() == -half_turn).all() if half_turn.shape else half_turn.canonical() == -half_turn
     assert (exact.continuous() == ph.stack([exact[0], -exact[1]])).all()
     t = sympy.Symbol("t", real=True)
     unknown = Rotor.from_axis_angle(e3, t)
@@ -157,6 +159,9 @@ def test_wrong_groups_raise():
             Rotor.group(bad)
     with pytest.raises(ValueError, match='axis must be "x", "y" or "z", got \'w\''):
         Rotor.group("C2", axis="w")
+    for axis in ("xy", "", 1):
+        with pytest.raises(ValueError, match=f'axis must be "x", "y" or "z", got {axis!r}'):
+            Rotor.group("C2", axis=axis)
     with pytest.raises(ValueError, match=r"left must be rotors .* got Multivector"):
         Rotor.identity().reduce(e1)
     with pytest.raises(ValueError, match=r"right must be rotors .* batch shape \(0,\)"):

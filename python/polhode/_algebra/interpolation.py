@@ -285,9 +285,7 @@ def spline_slopes(x: Array, y: Array) -> Array:
         diagonal[[0, -1]] -= both[[0, -1]]
         right[0] -= first
         right[-1] -= last
-        lower, upper = after.copy(), before.copy()
-        lower[0] = upper[-1] = 0
-        inner = _tridiagonal(lower, diagonal, upper, right)
+        inner = _tridiagonal(after, diagonal, before, right)
     d_first = (_edge(h[0], h[1], c[0], c[1]) - both[0] * inner[0]) / h[1]
     d_last = (_edge(h[-1], h[-2], c[-1], c[-2]) - both[-1] * inner[-1]) / h[-2]
     return np.concatenate([d_first[np.newaxis], inner, d_last[np.newaxis]])
@@ -302,7 +300,7 @@ def _edge(h0: Array, h1: Array, c0: Array, c1: Array) -> Array:
 def _tridiagonal(lower: Array, diagonal: Array, upper: Array, right: Array) -> Array:
     """Solve ``lower x_{k-1} + diagonal x_k + upper x_{k+1} = right`` by cyclic reduction.
 
-    The even equations eliminate the neighbours of each odd one, which leaves half as many; stable for
+    The first number of `lower` and the last of `upper` are not used. The even equations eliminate the neighbours of each odd one, which leaves half as many; stable for
     diagonally dominant rows.
     """
     n = len(diagonal)

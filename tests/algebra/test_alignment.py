@@ -198,6 +198,18 @@ def test_a_large_weight_is_almost_infinite():
     assert ph.align(a[3], b[3], [np.inf, 1, 1, 2, 1]).rotor.distance(exact.rotor[3]) <= 16 * EPS
 
 
+def test_rows_of_a_batch_count_by_themselves():
+    a, _, b = noisy(4, 0.1, seed=11)
+    w = [np.inf, 1, 1, 1]
+    sizes = np.array([1.0, 1e-9])[:, None, None]
+    for weights in (None, w):
+        small, alone = ph.align(sizes * a, sizes * b, weights), ph.align(a, b, weights)
+        assert small.rotor.distance(alone.rotor).max() <= 64 * EPS
+        np.testing.assert_allclose(small.residual, [alone.residual, 1e-9 * alone.residual], rtol=64 * EPS)
+        # A single alignment has a number, not an array, as its residual.
+        assert isinstance(alone.residual, float)
+
+
 def test_opposite_directions_and_two_pairs():
     rotor, residual, _ = ph.align([e1, e2], [-e1, e3], [np.inf, 1])
     assert rotor(e1).is_close(-e1, atol=4 * EPS)

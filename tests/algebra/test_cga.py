@@ -228,6 +228,8 @@ def test_flats_and_rounds_are_told_apart():
         np.testing.assert_allclose([*normal.components, distance], [0.6, 0, 0.8, 2], rtol=0, atol=16 * EPS)
         with pytest.raises(ValueError, match="einf"):
             C.normal_and_distance(weight * sphere)
+    with pytest.raises(TypeError, match=r"the value must be a value of cga\(3\), got float"):
+        C.center(1.0)
     with pytest.raises(ValueError, match="the way to the point through"):
         C.line([1.0, 0, 0], [1.0, 0, 0])
 

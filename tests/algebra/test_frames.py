@@ -71,6 +71,15 @@ def test_the_first_factors_are_projections_of_the_basis():
         assert b.is_close(second.normalized(), atol=8 * EPS)
 
 
+@pytest.mark.parametrize("signature", [(3,), (1, 3), (3, 0, 1)])
+def test_blades_of_a_batch_are_factored_by_themselves(signature):
+    A = ph.algebra(*signature)
+    e, rng = A.basis_vectors, np.random.default_rng(61)
+    blades = [e[0] ^ e[1], A.vector(rng.normal(size=A.dimension)) ^ A.vector(rng.normal(size=A.dimension))]
+    for together, *alone in zip(ph.stack(blades).factor(), *(B.factor() for B in blades), strict=True):
+        assert together.is_close(ph.stack(alone), atol=4 * EPS).all()
+
+
 def test_single_precision_and_values_of_one_grade():
     B = ph.bivector(np.float32([0.1, 0.2, 0.3]))
     a, b = B.factor()
@@ -120,6 +129,11 @@ def test_reciprocal_frames_of_other_coefficients():
     assert first.map(sympy.simplify) == e1 - x * e2
     assert second.map(sympy.simplify) == e2
     assert ph.reciprocal_frame([ph.vector(jnp.array([2.0, 0, 0]))])[0]["e1"] == 0.5
+    # Vectors at a small angle span a plane, however small.
+    narrow = [e1, e1 + 1e-9 * e2]
+    first, second = ph.reciprocal_frame(narrow)
+    assert second.is_close(1e9 * e2, rtol=8 * EPS)
+    assert (first | narrow[1]).is_close(0, atol=8 * EPS)
     # The lattice of a crystal in metres.
     cell = [3e-10 * e1, 4e-10 * e2, 5e-10 * e3 + 1e-10 * e1]
     assert (ph.reciprocal_frame(cell)[2] | cell[2]).is_close(1, rtol=8 * EPS)

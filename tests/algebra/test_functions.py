@@ -193,6 +193,8 @@ def test_powers_of_batches():
     assert np.all(A**3 == A * A * A)
     assert (A**0).shape == (2, 3)
     assert np.all(A**0 == 1)
+    assert np.all(A.astype(complex) ** 0 == 1)
+    assert np.all(A.map(lambda c: c.astype(int).astype(object)) ** 0 == 1)
 
 
 def test_negative_powers_use_the_inverse():

@@ -183,6 +183,13 @@ def test_nonlinear_functions_raise():
         ph.LinearMap.from_function(lambda a: a * I)
     with pytest.raises(TypeError, match="the image must be a vector"):
         ph.LinearMap.from_function(lambda a: a.components)
+    # At any size of the function, beside which rounding and a square count alike.
+    R = ph.Rotor.random(rng=3)
+    for size in (1e-12, 1e12):
+        F = ph.LinearMap.from_function(lambda a, k=size: k * R(a))
+        np.testing.assert_allclose(F.matrix / size, R.to_matrix(), rtol=0, atol=8 * EPS)
+        with pytest.raises(ValueError, match="not linear"):
+            ph.LinearMap.from_function(lambda a, k=size: k * (a.norm() * a + R(a)))
 
 
 # --- parts, eigenvectors, eigenplanes

@@ -202,8 +202,9 @@ def test_a_map_of_vectors_times_one_of_bivectors():
     assert same(J.svd()[1], [3, 2, 1])
     with pytest.raises(TypeError, match=r"from_principal_moments\(1, 1, 1\)"):
         ph.Inertia.identity()
-    with pytest.raises(TypeError, match="no sum; add their bivector_matrix"):
-        F + J
+    for operate in (lambda: F + J, lambda: F - J):
+        with pytest.raises(TypeError, match="no sum; add their bivector_matrix"):
+            operate()
 
 
 def test_operands_that_maps_do_not_take():

@@ -52,6 +52,7 @@ CASES = {
     "tanh": (lambda x, **k: x.tanh(**k), multivectors(np.pi / 4 * np.eye(8)[[4, 7]].sum(axis=0))),
     "from_components": (Rotor.from_components, batch(4)),
     "from_plane_angle": (lambda x, **k: Rotor.from_plane_angle(ph.bivector(x), 0.5, **k), batch(3)),
+    "from_plane_angle of arrays": (lambda x, **k: Rotor.from_plane_angle(x, 0.5, **k), batch(3)),
     "from_vectors": (lambda x, **k: Rotor.from_vectors(x, [0, 0, 1], **k), batch(3)),
     "from_matrix": (Rotor.from_matrix, matrices()),
     "nearest": (lambda x, **k: Rotor.from_matrix(x, nearest=True, **k), batch(9).reshape(8, 3, 3)),

@@ -251,6 +251,24 @@ def test_adjoint_matrices_move_twists():
     np.testing.assert_array_equal(ph.adjoint_matrix(M), T.adjoint())
 
 
+def test_screws_of_single_precision():
+    T, eps = transforms((50,), seed=0), float(np.finfo(np.float32).eps)
+    M, expected = T.to_motor().astype(np.float32), ph.screw_parameters(T)
+    found = ph.screw_parameters(M)
+    assert found.point.dtype == found.angle.dtype == found.distance.dtype == np.float32
+    # A motor rounded by eps is off by some eps over its angle, here 0.1 or more.
+    assert expected.angle.min() > 0.1
+    np.testing.assert_allclose(found.angle, expected.angle, rtol=0, atol=16 * eps)
+    for ours, exact in ((found.point, expected.point), (found.distance, expected.distance)):
+        ours, exact = (np.asarray(x) for x in (ours, exact))
+        np.testing.assert_allclose(ours, exact, rtol=0, atol=160 * eps * (1 + np.abs(exact).max()))
+    matrices = ph.adjoint_matrix(M)
+    assert matrices.dtype == np.float32
+    np.testing.assert_allclose(matrices, T.adjoint(), rtol=0, atol=64 * eps)
+    with pytest.raises(ValueError, match="not a motor"):
+        ph.adjoint_matrix(M + np.float32(0.01) * M.algebra.I)
+
+
 def test_velocities_in_space_are_those_of_the_body_moved():
     """The twist of M(t) in space is the adjoint of that in the body, by differences."""
     T, h = transforms((), seed=11), 1e-5

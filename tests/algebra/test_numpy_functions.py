@@ -89,6 +89,12 @@ def test_other_functions_name_the_remedy(call):
             call(VALUES[name])
 
 
+def test_errors_name_the_function():
+    for call, name in ((lambda: np.sign(e1), "np.sign"), (lambda: np.add.reduce(e1), "np.add.reduce")):
+        with pytest.raises(TypeError, match=f"^{name} does not accept"):
+            call()
+
+
 def test_other_libraries_leave_operators_to_values():
     # They ask the value, and defer to None.
     assert e1.__array_ufunc__ is None

@@ -113,6 +113,14 @@ def test_products_of_other_coefficients(n, kind):
     assert np.array_equal(np.asarray(got, dtype=float), want)
 
 
+@pytest.mark.parametrize("dtype", [float, np.float32, object, complex])
+def test_null_components_do_not_count_in_norms(dtype):
+    space = ph.pga(3)
+    plane = space.multivector([0, 12, 3, 4, 0, *[0] * 11], dtype=dtype)
+    assert plane.norm() == 5
+    assert plane.norm_squared() == 25
+
+
 @SPACES
 def test_functions_are_those_with_the_null_generator_last(n):
     first, last, T = ph.pga(n), ph.algebra(n, 0, 1), matrix(n)

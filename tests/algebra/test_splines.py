@@ -152,6 +152,9 @@ def test_invalid_times_and_rotors_raise():
     to_and_fro = ph.Rotor.from_euler("z", [[180], [-90], [0], [90], [0]], degrees=True)
     with pytest.raises(ValueError, match="from 7 to 14 a smooth path would swing far"):
         ph.RotorSpline([0, 2, 3, 7, 14], to_and_fro)
+    # The same path, backwards.
+    with pytest.raises(ValueError, match="from 0 to 7 a smooth path would swing far"):
+        ph.RotorSpline([0, 7, 11, 12, 14], to_and_fro[::-1])
     spline = ph.RotorSpline([0, 1, 2], three)
     with pytest.raises(ValueError, match=r"the time at index \(1,\) is 2\.1; the spline goes from 0 to 2"):
         spline([1, 2.1])

@@ -64,10 +64,14 @@ def test_batches(transforms):
     assert joined.shape == (7,)
     assert joined[6] == transforms[0]
     assert RigidTransform(ph.Rotor.identity(4), [1, 2, 3]).translation.shape == (4,)
+    assert RigidTransform(ph.Rotor.identity((2, 1)), np.ones((1, 5, 3))).shape == (2, 5)
     with pytest.raises(ValueError, match=r"the rotor has \(2,\), the translation \(3,\)"):
         RigidTransform(ph.Rotor.identity(2), np.zeros((3, 3)))
     with pytest.raises(TypeError, match="no length"):
         len(transforms[0])
+    # Like rotors, transforms are not empty containers.
+    assert transforms[0]
+    assert transforms[:0]
 
 
 def test_values_are_kept(transforms):
@@ -188,6 +192,9 @@ def test_dual_quaternions(transforms):
         ValueError, match=r"at index \(2,\): the real part of a dual quaternion must be finite"
     ):
         RigidTransform.from_dual_quat(q)
+    for wrong in (np.ones(7), np.ones((8, 2)), 1.0):
+        with pytest.raises(ValueError, match="a dual quaternion needs 8 components, got shape"):
+            RigidTransform.from_dual_quat(wrong)
 
 
 def test_means_over_axes():

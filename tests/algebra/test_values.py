@@ -376,3 +376,15 @@ def test_fortran_ordered_and_strided_arrays():
         assert np.array_equal(value.components, array)
         assert np.array_equal((value * 1).components, array)
         assert np.array_equal(value.norm(), np.sqrt(np.sum(array**2, axis=-1)))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, object, complex])
+def test_constructors_take_a_type(dtype):
+    space = ph.algebra(3)
+    for name, given in {"scalar": 2, "vector": [1, 2, 3], "bivector": [1, 2, 3], "trivector": 2}.items():
+        value = getattr(ph, name)(given, dtype=dtype)
+        assert value.dtype == dtype, name
+        assert value == getattr(ph, name)(given)
+    assert ph.multivector(range(8), dtype=dtype).dtype == dtype
+    assert space.multivector(range(8), dtype=dtype).dtype == dtype
+    assert space.pseudoscalar(1, dtype=dtype).dtype == dtype

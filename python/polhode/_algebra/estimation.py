@@ -214,7 +214,7 @@ def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> A
         _require_unique(kind, values, sizes[0] * sizes[1])
 
     rows = _largest_eigenvector(kind, _davenport_matrix(kind, _profile(xp, weights, x, y)), check)
-    rotor = Rotor.from_components(kind.where(rows[..., :1] < 0, -rows, rows))
+    rotor = Rotor.from_components(rows)
     # The matrix holds squares of small angles between directions; differences recover what these lose.
     for _ in range(3 if kind.native else 0):
         covariance, off = _linearized(kind, rotor, x, y, weights)

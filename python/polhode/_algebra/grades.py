@@ -234,7 +234,7 @@ def _unified(
         raise ValueError(f"{name} needs at least one value")
     algebra, mask = items[0].algebra, 0
     for item in items:
-        algebra = common_algebra(items[0], item)
+        common_algebra(items[0], item)
         mask |= item._mask
     parts = list(common(*(over_grades(item, mask) for item in items)))
     if all(isinstance(item, _native.Rotor) for item in items):

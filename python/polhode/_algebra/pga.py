@@ -217,7 +217,7 @@ class PGA(Algebra):
         """Return planes and lines of norm 1."""
         square = X.norm_squared()
         require(square != 0, X, "the value has the norm 0: it is at infinity")
-        if X._mask == 0b100 and self.dimension > 3:
+        if X._mask == 0b100:
             blade = small(X.wedge(X)._data, X)
             require(blade, X, "X∧X is not 0: the bivector is not an intersection of two planes, but a screw")
         return X / self.scalar(kind_of(X._data).sqrt(square))

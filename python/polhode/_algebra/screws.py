@@ -140,4 +140,6 @@ def _rows(M: Any, name: str) -> tuple[Any, Any, Any]:
             + (f"{value!r}" if isinstance(value, Multivector) and not value.shape else type(value).__name__)
         )
     kind = kind_of(value._data)
+    if kind.native and value.dtype == np.float32:
+        kind = _generic.numeric.Numeric(np, np.float32)  # whose rounding M ~M may show
     return kind, kind.asarray(rows(value)), value

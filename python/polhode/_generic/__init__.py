@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from polhode._generic import jacobians as jacobians
     from polhode._generic import layout as layout
     from polhode._generic import motors as motors
+    from polhode._generic import numeric as numeric
     from polhode._generic import products as products
     from polhode._generic import rotors as rotors
 

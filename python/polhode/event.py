@@ -21,6 +21,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.laws import function_of, law_of_formula, number, shown
 from polhode._mechanics.parameters import check_finite
+from polhode._support.arrays import power_of_two
 
 __all__ = ["Event", "angle", "formula", "function", "plane", "position", "spin"]
 
@@ -213,10 +214,10 @@ def _direction(value: Any, name: str) -> tuple[float, ...]:
 
 
 def _unit(components: Any, name: str) -> tuple[float, ...]:
-    size = np.linalg.norm(components)
-    if not (np.isfinite(size) and size > 0):
+    if not (np.isfinite(components).all() and components.any()):
         raise ValueError(f"{name} is {components.tolist()}; it must be finite and not zero")
-    return tuple((components / size).tolist())
+    scaled = components / power_of_two(components, -1)
+    return tuple((scaled / np.linalg.norm(scaled)).tolist())
 
 
 def _shown(name: str, arguments: Iterable[Any], named: Mapping[str, Any]) -> str:

@@ -1,7 +1,6 @@
 """The reference shows every public name once, with an example that runs."""
 
 import doctest
-import importlib
 import inspect
 import re
 from pathlib import Path
@@ -10,10 +9,9 @@ import numpy as np
 import pytest
 
 import polhode as ph
-from polhode._algebra.foreign_names import ForeignName
+from public_names import MODULES, methods, public
 
 PAGES = Path(__file__).parents[2] / "docs" / "reference"
-MODULES = ("torque", "force", "event", "io")
 # The optional libraries that examples of methods need, which take seconds to import.
 NEEDED = {
     "Fit.plot": "matplotlib",
@@ -43,16 +41,6 @@ def shown(directive):
     return [word for lines in found for line in lines for word in line.split()]
 
 
-def public():
-    """All public functions and classes by their names."""
-    owners = [("", ph, ph.__all__)]
-    for module in MODULES:
-        owner = importlib.import_module(f"polhode.{module}")
-        owners.append((f"{module}.", owner, [name for name in dir(owner) if not name.startswith("_")]))
-    named = ((prefix + name, getattr(owner, name)) for prefix, owner, names in owners for name in names)
-    return {name: found for name, found in named if inspect.isclass(found) or inspect.isroutine(found)}
-
-
 def test_every_public_name_is_on_one_page():
     names = shown("api")
     assert len(names) == len(set(names))
@@ -69,15 +57,6 @@ def test_modules_of_the_crates_exist():
         assert f"pub mod {module};" in source, module
     series = ph.__version__.rpartition(".")[0]
     assert re.findall(r'^polhode-\w+ = "(.*)"$', page, re.M) == [series, series]
-
-
-def methods(found):
-    """The public methods and properties that a class defines itself, by name; no names of other libraries."""
-    return {
-        name: member
-        for name, member in vars(found).items()
-        if not name.startswith("_") and not isinstance(member, ForeignName)
-    }
 
 
 def is_method(member):

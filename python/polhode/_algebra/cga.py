@@ -5,6 +5,8 @@ from __future__ import annotations
 import functools
 from typing import Any
 
+import numpy as np
+
 from polhode._algebra.algebra import Algebra, algebra
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.euclidean import (
@@ -22,6 +24,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
+from polhode._support.arrays import is_float, power_of_two
 
 
 class CGA(Algebra):
@@ -131,7 +134,7 @@ class CGA(Algebra):
         >>> A.down(2 * A.up([1, 2, 3]))
         e1 + 2 e2 + 3 e3
         """
-        P = require_value(self, X, "a point", (1,))
+        P = _scaled(require_value(self, X, "a point", (1,)))
         square, kind = P.norm_squared(), kind_of(P._data)
         if kind.exact:
             ok = square == 0
@@ -240,7 +243,9 @@ class CGA(Algebra):
         kind = kind_of(r)
         if not kind.exact:
             kind.require(r > 0, "a radius must be positive; a sphere of radius 0 is a point, up(x)")
-        core = self._eo_like(r) + self.scalar(kind.divide(r * r, 2)) * as_precise(self.einf, place)
+        with np.errstate(over="ignore"):  # IEEE, as in the products
+            square = r * r
+        core = self._eo_like(r) + self.scalar(kind.divide(square, 2)) * as_precise(self.einf, place)
         shift = self.translator(place)
         moved: Multivector = shift * core.wedge(as_precise(self.embed(blade), place)) * ~shift
         return moved._part(1 << blade.grades[-1] + 1)
@@ -362,7 +367,7 @@ class CGA(Algebra):
         held = X._held() or X._mask
         if held.bit_count() > 1:
             raise TypeError(f"a round has one grade, got the grades {X.grades}")
-        X = X._part(held)
+        X = _scaled(X._part(held))
         inside = as_precise(self.einf, X).left_contraction(X)
         square, kind = (inside * inside).grade(0)._data[..., 0], kind_of(X._data)
         if kind.exact:
@@ -456,6 +461,14 @@ class CGA(Algebra):
     def _restricted(self, value: Multivector) -> Multivector:
         """Return the Euclidean part of a value."""
         return relabelled(value, self._space, [*range(self._n), None, None])
+
+
+def _scaled(X: Multivector) -> Multivector:
+    """Return a value of floats divided by a power of two, with which squares neither overflow nor vanish."""
+    if not is_float(X._data):
+        return X
+    require(np.isfinite(X._data).all(axis=-1), X, "a component is NaN or infinite; scale the numbers down")
+    return X._like(X._data / power_of_two(X._data, -1))
 
 
 def cga(n: int = 3) -> CGA:

@@ -13,7 +13,7 @@ from polhode._algebra.coefficients import kind_of
 from polhode._algebra.functions import require_in_range
 from polhode._algebra.grades import over_grades
 from polhode._algebra.masking import Errors, masked
-from polhode._support.arrays import is_complex
+from polhode._support.arrays import is_complex, is_float
 
 if TYPE_CHECKING:
     from polhode._algebra.algebra import Algebra
@@ -122,7 +122,9 @@ def outer_exp(value: Multivector) -> Multivector:
 
 def _one(value: Multivector) -> Multivector:
     """Return the scalar 1 in the algebra, batch shape and coefficients of a value."""
-    return _native.Multivector._of(value._data[..., :1] * 0 + 1, 1, value.algebra)
+    first = value._data[..., :1]
+    one = np.ones_like(first) if is_float(first) else first * 0 + 1
+    return _native.Multivector._of(one, 1, value.algebra)
 
 
 def _ratio(name: str, value: Multivector, sign: int, errors: Errors) -> Multivector:

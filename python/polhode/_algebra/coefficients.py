@@ -9,7 +9,15 @@ from typing import Any
 import numpy as np
 
 from polhode import _generic, _native
-from polhode._support.arrays import as_floats, is_complex, is_float, leaves, refuse_multivectors
+from polhode._support.arrays import (
+    aligned,
+    as_floats,
+    is_complex,
+    is_float,
+    leaves,
+    refuse_masked,
+    refuse_multivectors,
+)
 from polhode._support.extras import register_pytree
 
 _COMPLEX = (np.dtype(np.complex128), np.dtype(np.complex64))
@@ -28,10 +36,9 @@ def as_coefficients(values: Any, what: str, dtype: Any = None, *, complex_too: b
         raise TypeError(f"{what} must be real numbers, got a multivector; pass its .components")
     if dtype is not None:
         return _converted(values, what, dtype, complex_too)
-    if isinstance(values, np.ndarray) and hasattr(values, "mask"):
-        raise TypeError(f"{what} is a masked array; fill it or pass its compressed values")
+    refuse_masked(values, what)
     if is_float(values):
-        return values
+        return aligned(values)
     if isinstance(values, list | tuple):
         strange = [leaf for leaf in leaves(values) if type(leaf) not in _PLAIN]
         if strange:
@@ -203,7 +210,8 @@ def _converted(values: Any, what: str, dtype: Any, complex_too: bool) -> Any:
     if wanted not in (np.float64, np.float32) and not (complex_too and wanted in _COMPLEX):
         raise TypeError(f"coefficients are float64, float32, complex128, complex64 or object, got {wanted}")
     try:
-        return given.astype(wanted, copy=False)
+        with np.errstate(over="ignore"):  # IEEE, as in the products
+            return given.astype(wanted, copy=False)
     except (TypeError, OverflowError) as error:
         raise TypeError(f"{what} cannot be converted to {wanted}: {error}") from error
 

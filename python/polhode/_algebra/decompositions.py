@@ -59,7 +59,8 @@ def eigenplanes(F: LinearMap) -> tuple[Multivector, Array]:
         return F.algebra.bivector(axes), stretch
     n = F.algebra.dimension
     pairs = _PAIRS_OF_THREE if n == 3 else tuple(combinations(range(n), 2))
-    factors = np.stack([stretch[..., i] * stretch[..., j] for i, j in pairs], axis=-1)
+    with np.errstate(over="ignore"):  # IEEE, as in the products
+        factors = np.stack([stretch[..., i] * stretch[..., j] for i, j in pairs], axis=-1)
     order = np.argsort(factors, axis=-1, kind="stable")
     planes = np.take_along_axis(axes if n == 3 else _planes(F, axes), order[..., np.newaxis], axis=-2)
     return F.algebra.bivector(planes), np.take_along_axis(factors, order, axis=-1)

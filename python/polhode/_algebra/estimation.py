@@ -15,7 +15,7 @@ from polhode._algebra.grades import stack
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._support.arrays import Shape, is_float
+from polhode._support.arrays import Shape, is_float, lengths, power_of_two
 
 _NO_MEAN = "the rotors have no mean: two attitudes are equally close to all of them"
 _PARALLEL = (
@@ -25,6 +25,10 @@ _PARALLEL = (
 _MIRRORED = "b is a mirror image of a, and two rotations fit it equally well; check the signs of the vectors"
 
 # --- the mean
+
+
+# Bounds of the ratio of the lengths of a and b with which their differences are computed.
+_RATIOS = (2.0**-400, 2.0**400)
 
 
 def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None) -> Rotor:
@@ -208,6 +212,14 @@ def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> A
         return _aligned_exactly(kind, x, y, given[0])
     w = _usable_weights(kind, weights, batch)
     weights = kind.zeros(batch) + 1.0 if w is None else w
+    ratio = 1.0
+    if kind.native:
+        # By powers of two, which round nothing, so that no product overflows or vanishes.
+        units = [power_of_two(v, (-2, -1)) for v in (x, y)]
+        weight = power_of_two(weights, -1)
+        x, y, weights = x / units[0], y / units[1], weights / weight
+        with np.errstate(over="ignore", under="ignore"):
+            ratio = np.clip(units[0] / units[1], *_RATIOS)
     sizes = [xp.sqrt(xp.sum(xp.sum(weights[..., None] * v * v, axis=-1), axis=-1)) for v in (x, y)]
 
     def check(values: Any) -> None:
@@ -217,12 +229,22 @@ def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> A
     rotor = Rotor.from_components(rows)
     # The matrix holds squares of small angles between directions; differences recover what these lose.
     for _ in range(3 if kind.native else 0):
-        covariance, off = _linearized(kind, rotor, x, y, weights)
-        slope = xp.sum(weights[..., None] * xp.linalg.cross(y - off, off), axis=-2)
+        covariance, turned = _linearized(kind, rotor, x, y, weights)
+        slope = xp.sum(weights[..., None] * xp.linalg.cross(turned, y - ratio * turned), axis=-2)
         rotor = Rotor.from_rotation_vector(xp.matmul(covariance, slope[..., None])[..., 0]) * rotor
-    covariance, off = _linearized(kind, rotor, x, y, weights)
-    residual = xp.sqrt(xp.sum(weights * xp.sum(off * off, axis=-1), axis=-1))
-    return Alignment(rotor.canonical(), residual[()] if kind.native else residual, covariance)
+    covariance, turned = _linearized(kind, rotor, x, y, weights)
+    if not kind.native:
+        off = y - turned
+        residual = xp.sqrt(xp.sum(weights * xp.sum(off * off, axis=-1), axis=-1))
+        return Alignment(rotor.canonical(), residual, covariance)
+    with np.errstate(over="ignore"):
+        unit = np.maximum(*units)
+        off = y * (units[1] / unit) - turned * (units[0] / unit)
+        residual = np.sqrt((weights * (off * off).sum(axis=-1)).sum(axis=-1))
+        residual = residual * np.sqrt(weight[..., 0]) * unit[..., 0, 0]
+        for size in (*units, weight[..., None]):
+            covariance = covariance / size
+    return Alignment(rotor.canonical(), residual[()], covariance)
 
 
 def _aligned_exactly(kind: Any, x: Any, y: Any, weights: Any) -> Alignment:
@@ -241,7 +263,7 @@ def _aligned_exactly(kind: Any, x: Any, y: Any, weights: Any) -> Alignment:
     kind.require(exact.sum(axis=-1) == 1, "if weights are infinite, one of each row must be")
     others = np.where(exact, 0.0, checked)
     first, target = ((v * exact[..., np.newaxis]).sum(axis=-2) for v in (x, y))
-    sizes = np.linalg.norm([first, target], axis=-1)
+    sizes = lengths(np.stack([first, target]))
     kind.require((sizes > 0).all(axis=0), "a vector with an infinite weight is 0 and has no direction")
     axis = target / sizes[1][..., np.newaxis]
     shortest = Rotor.from_vectors(vector(first), vector(target))
@@ -296,14 +318,14 @@ def _davenport_matrix(kind: Any, profile: Any) -> Any:
 
 
 def _linearized(kind: Any, rotor: Rotor, x: Any, y: Any, weights: Any) -> tuple[Any, Any]:
-    """Return the inverse second derivative of ``½ Σ w |b − exp(ε) R a|²``, and the differences, at ε = 0."""
+    """Return the inverse second derivative of ``½ Σ w |b − exp(ε) R a|²`` at ε = 0, and ``R a``."""
     xp = kind.xp
     turned = xp.matmul(x, xp.matrix_transpose(rotor.to_matrix()))
     gain = _profile(xp, weights, turned, y)
     symmetric = 0.5 * (gain + xp.matrix_transpose(gain))
     identity = xp.eye(3, dtype=kind.dtype, **kind.placed)
     trace = xp.sum(xp.sum(symmetric * identity, axis=-1), axis=-1)
-    return xp.linalg.inv(trace[..., None, None] * identity - symmetric), y - turned
+    return xp.linalg.inv(trace[..., None, None] * identity - symmetric), turned
 
 
 def _require_unique(kind: Any, values: Any, size: Any) -> None:

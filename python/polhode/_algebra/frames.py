@@ -14,7 +14,7 @@ from polhode._algebra.blade_names import generators_of
 from polhode._algebra.coefficients import kind_of
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.products import common_algebra
-from polhode._support.arrays import Array, at_index, first_index, is_float
+from polhode._support.arrays import Array, at_index, first_index, is_float, power_of_two
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -135,6 +135,9 @@ def reciprocal_frame(vectors: Sequence[Multivector]) -> tuple[Multivector, ...]:
     if not frame:
         raise ValueError("a frame needs at least one vector")
     frame = [b.grade(1) for b in frame]
+    # By powers of two, which round nothing, so that the volume neither overflows nor vanishes.
+    sizes = [power_of_two(b._data, -1)[..., 0] if is_float(b._data) else 1 for b in frame]
+    frame = [b / size if is_float(b._data) else b for b, size in zip(frame, sizes, strict=True)]
     if len(frame) > frame[0].algebra.dimension:
         raise ValueError(
             f"{len(frame)} vectors of {frame[0].algebra} are linearly dependent; a frame has at most "
@@ -148,7 +151,8 @@ def reciprocal_frame(vectors: Sequence[Multivector]) -> tuple[Multivector, ...]:
     found = []
     for i in range(len(frame)):
         rest = functools.reduce(operator.xor, frame[:i] + frame[i + 1 :], one)
-        found.append(((-1) ** i * rest * inverse).grade(1))
+        reciprocal = ((-1) ** i * rest * inverse).grade(1)
+        found.append(reciprocal / sizes[i] if is_float(reciprocal._data) else reciprocal)
     return tuple(found)
 
 

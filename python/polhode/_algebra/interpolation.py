@@ -14,7 +14,7 @@ from polhode._algebra.grades import stack
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.signs import half_turn
-from polhode._support.arrays import Array, as_floats, at_index, first_index, frozen, is_float
+from polhode._support.arrays import Array, as_floats, at_index, first_index, frozen, is_float, power_of_two
 
 
 @overload
@@ -215,7 +215,8 @@ class RotorSpline:
         p, q = step * self._slopes[k] - (b - a), step * self._slopes[k + 1] - (b - a)
         s = (1 - u) * a + u * b + u * (1 - u) * ((1 - u) * p - u * q)
         rate = (b - a + (1 - u) * (1 - 3 * u) * p + u * (3 * u - 2) * q) / step
-        bend = ((6 * u - 4) * p + (6 * u - 2) * q) / step**2
+        with np.errstate(over="ignore"):
+            bend = ((6 * u - 4) * p + (6 * u - 2) * q) / step / step
         return s, rate, bend, given - when
 
 
@@ -269,14 +270,22 @@ def spline_slopes(x: Array, y: Array) -> Array:
     at x_1 if ``h_1 d_0 + (h_0 + h_1) d_1`` has the value of `_edge`. This eliminates d_0 from the first
     equation, which remains diagonally dominant; likewise at the other end.
     """
-    h = np.diff(x)[:, np.newaxis]
+    # By a power of two, which rounds nothing: products of steps neither overflow nor vanish.
+    scale = power_of_two(np.diff(x), -1)
+    slopes = _scaled_slopes(np.diff(x)[:, np.newaxis] / scale, y)
+    with np.errstate(over="ignore"):
+        return slopes / scale
+
+
+def _scaled_slopes(h: Array, y: Array) -> Array:
+    """Return the slopes for steps h (n − 1, 1) of size 1."""
     c = np.diff(y, axis=0) / h
-    if len(x) == 2:
+    if len(y) == 2:
         return np.concatenate([c, c])
     before, after = h[:-1], h[1:]
     both = before + after
     right = 3 * (after * c[:-1] + before * c[1:])
-    if len(x) == 3:
+    if len(y) == 3:
         inner = right / (3 * both)
     else:
         diagonal = 2 * both

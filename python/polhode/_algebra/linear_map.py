@@ -16,7 +16,16 @@ from polhode._algebra.constructors import e1, pure
 from polhode._algebra.grades import with_grades
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.outermorphism import compound, outermorphism, times
-from polhode._support.arrays import Array, Shape, as_floats, at_index, batch_shape, first_index, frozen
+from polhode._support.arrays import (
+    Array,
+    Shape,
+    as_floats,
+    at_index,
+    batch_shape,
+    first_index,
+    frozen,
+    lengths,
+)
 
 _NAMES = {1: "vectors", 2: "bivectors"}
 _G3 = e1.algebra
@@ -110,7 +119,7 @@ class LinearMap:
         F = LinearMap.from_matrix(np.stack(np.broadcast_arrays(*images), axis=-1), grade, algebra=own)
         numbers = np.array([(-1.0) ** k * (0.6 + 0.85 * k) for k in range(size)])
         probe = own.k_vector(grade, numbers)
-        bound = 1e-9 * np.linalg.norm(numbers) * np.linalg.norm(F.matrix, axis=(-2, -1))
+        bound = 1e-9 * np.linalg.norm(numbers) * lengths(F.matrix, (-2, -1))
         image = f(probe)
         if not np.all(image.is_close(F(probe), rtol=0, atol=bound)):
             raise ValueError(
@@ -412,8 +421,9 @@ class LinearMap:
             raise TypeError(f"is_close needs another map of {_NAMES[self.grade]}, got {other!r}")
         self._require_algebra(other)
         a, b = np.broadcast_arrays(self.matrix, other.matrix)
-        distance, p, q = (np.linalg.norm(m, axis=(-2, -1)) for m in (a - b, a, b))
-        return (distance <= np.maximum(rtol * np.maximum(p, q), atol))[()]
+        # A quarter, so that the difference of the largest numbers does not overflow.
+        distance, p, q = (lengths(m, (-2, -1)) for m in (0.25 * a - 0.25 * b, 0.25 * a, 0.25 * b))
+        return (distance <= np.maximum(rtol * np.maximum(p, q), 0.25 * atol))[()]
 
     def _described(self) -> str:
         of = "" if self.algebra is _G3 else f" of {self.algebra}"

@@ -12,7 +12,7 @@ from polhode._algebra.constructors import from_axial, one_grade, vector
 from polhode._algebra.grades import held, with_grades
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
-from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float
+from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float, power_of_two
 
 if TYPE_CHECKING:
     from polhode._algebra.rotor import Rotor
@@ -242,13 +242,13 @@ def _davenport_axes(axes: Any, lengths: tuple[int, ...]) -> Array:
     count = "three" if lengths == (3,) else "one to three"
     if array.shape[-1] != 3 or array.shape[-2] not in lengths:
         raise ValueError(f"Davenport angles need {count} axes, an array (..., n, 3), got shape {array.shape}")
-    sizes = np.linalg.norm(array, axis=-1)
-    usable = np.isfinite(sizes) & (sizes > 0)
+    usable = np.isfinite(array).all(axis=-1) & array.any(axis=-1)
     if not usable.all():
         *batch, k = first_index(~usable)
         found = array[(*batch, k)].tolist()
         raise ValueError(f"axis {k}{at_index(tuple(batch))} is {found}; it must be finite and not zero")
-    unit: Array = array / sizes[..., np.newaxis]
+    scaled = array / power_of_two(array, -1)
+    unit: Array = scaled / np.linalg.norm(scaled, axis=-1, keepdims=True)
     cosines = (unit[..., :-1, :] * unit[..., 1:, :]).sum(axis=-1)
     oblique = np.abs(cosines) > _RIGHT_ANGLE
     if oblique.any():

@@ -79,8 +79,8 @@ def _steps(t: Array, rates: Array) -> Rotor:
     bends = np.moveaxis(slopes[:-1] - slopes[1:], 0, -2)
     before, after = bivector(rates[..., :-1, :]), bivector(rates[..., 1:, :])
     # The integral of the cubic of these end values and slopes.
-    turn = (before + after) * (h / 2) + bivector(bends) * (h**2 / 12)
-    steps: Rotor = (turn * -0.5 + before.commutator(after) * (h**2 / 24)).exp()
+    turn = (before + after) * (h / 2) + bivector(bends) * h * (h / 12)
+    steps: Rotor = (turn * -0.5 + (before * h).commutator(after * h) / 24).exp()
     return steps
 
 

@@ -10,7 +10,7 @@ from polhode import _native
 from polhode._algebra.coefficients import taken
 from polhode._algebra.grades import over_grades, with_signs
 from polhode._algebra.products import coerced, common_algebra
-from polhode._support.arrays import common_batch, is_float
+from polhode._support.arrays import common_batch, is_float, power_of_two
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -179,6 +179,8 @@ def reflect(value: Multivector, n: Multivector) -> Multivector:
     if not isinstance(n, _native.Multivector) or any(np.any(n.grade(k) != 0) for k in n.grades if k != 1):
         raise TypeError(f"a mirror is given by its normal, a vector; for a plane B use B.dual(); got {n!r}")
     normal = n.grade(1)
+    if is_float(normal._data):  # so that nothing overflows
+        normal = normal._like(normal._data / power_of_two(normal._data, -1))
     # n⁻¹∧(n⌋X) is the part of X that contains n, and the one that changes sign.
     mirrored = value - 2 * normal.inverse().wedge(normal.left_contraction(value))
     first, *others = [mirrored.grade(k) for k in value.grades]

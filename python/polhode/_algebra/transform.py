@@ -23,7 +23,7 @@ from polhode._algebra.motors import columns, is_motor, of_columns, places
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.screws import adjoint_matrix, screw_parameters
-from polhode._support.arrays import Array, Shape, is_float
+from polhode._support.arrays import Array, Shape, is_float, power_of_two
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
@@ -454,7 +454,8 @@ class RigidTransform:
         coords = self.as_exp_coords()
         if not is_float(coords):
             coords, powers = common(coords, powers)
-        return RigidTransform.from_exp_coords(coords * powers[..., None])
+        with np.errstate(invalid="ignore"):  # infinite powers of 0: from_exp_coords reports them
+            return RigidTransform.from_exp_coords(coords * powers[..., None])
 
     def interpolate(self, other: RigidTransform, t: Any) -> RigidTransform:
         """Return the transforms on the screw from this one (t = 0) to another (t = 1), the short way.
@@ -483,6 +484,8 @@ class RigidTransform:
         if weights is None:
             return RigidTransform(turn, self.translation.mean(axis))
         given = as_coefficients(weights, "weights")
+        if is_float(given):  # so that no product overflows
+            given = given / power_of_two(given, tuple(range(given.ndim)))
         w = scalar(namespace(given).broadcast_to(given, self.shape))
         return RigidTransform(turn, (self.translation * w).sum(axis) / w.sum(axis))
 

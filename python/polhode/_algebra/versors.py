@@ -80,5 +80,6 @@ def small(data: Any, V: Multivector, digits: float = 0.5) -> Any:
     kind = kind_of(data, V._data)
     if kind.exact:
         return np.frompyfunc(_generic.exact.is_zero, 1, 1)(data).astype(bool).all(axis=-1)
-    bound = kind.eps**digits * kind.xp.sum(kind.squared(V._data), axis=-1)
+    with np.errstate(over="ignore"):
+        bound = kind.eps**digits * kind.xp.sum(kind.squared(V._data), axis=-1)
     return kind.xp.all(kind.xp.abs(data) <= bound[..., None], axis=-1)

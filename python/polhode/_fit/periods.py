@@ -11,7 +11,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.free_motion import FreeMotion
-from polhode._support.arrays import Array, as_components, as_float, at_index
+from polhode._support.arrays import Array, as_components, as_float, at_index, first_index, power_of_two
 
 Mode = Literal["long", "short"]
 # Halvings of the interval of the wobble: its angle to rounding.
@@ -71,7 +71,10 @@ def omega_from_periods(
     if mode not in ("long", "short"):
         raise ValueError(f"mode must be 'long' or 'short', got {mode!r}")
     flat = rows.reshape(-1, 3)
+    _require_positive(rows)
     bodies = _bodies(flat, rows.shape[:-1])
+    # Only ratios matter from here; divided by powers of two, reciprocals do not overflow.
+    flat = flat / power_of_two(flat, -1)
     order = np.argsort(flat, axis=1)
     order = order if mode == "long" else order[:, ::-1]
     near, middle, far = np.take_along_axis(flat, order, axis=1).T
@@ -90,6 +93,13 @@ def omega_from_periods(
     omega *= (_periods(bodies, omega)[0] / rotation_period)[:, np.newaxis]
     omega[outside] = np.nan
     return bivector(omega.reshape(rows.shape))
+
+
+def _require_positive(rows: Array) -> None:
+    """Raise a ValueError for a moment 0: a rod or a point has no motion with these periods."""
+    if (rows == 0).any():
+        *batch, k = first_index(rows == 0)
+        raise ValueError(f"moments{at_index(tuple(batch))}: i{k + 1} is 0; all three must be positive")
 
 
 def _bodies(flat: Array, shape: tuple[int, ...]) -> Any:

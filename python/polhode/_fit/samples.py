@@ -16,6 +16,7 @@ from polhode._support.arrays import Array, as_floats, at_index, first_index
 # Variance of a third difference of white noise, relative to that of the noise.
 _THIRD = 20.0
 # Least noise that is assumed, relative to the values: far above the rounding of the model.
+_LARGEST = 1e75  # whose fourth powers floating point still holds
 _LEAST = 1e-10
 
 
@@ -70,6 +71,7 @@ def attitudes_of(given: Any, sigma: Any) -> Samples | None:
         raise ValueError(f"attitude needs rotors (n,), n >= 3, got shape {rotors.shape}")
     components = _finite(rotors.astype(float).components, "attitude")
     knots = increasing_times(times, len(components), "attitude")
+    _in_range(knots, "times")
     rates = rates_from_attitude(knots, rotors).components
     steps = (rotors[1:] * ~rotors[:-1]).to_rotation_vector()
     return Samples(knots, rotors, rates, *_deviations(sigma, "sigma_attitude", steps, len(knots), 0.5))
@@ -84,6 +86,8 @@ def rates_of(given: Any, sigma: Any) -> Samples | None:
     if values.ndim != 2 or len(values) < 3:
         raise ValueError(f"rates needs angular velocities (n, 3), n >= 3, got shape {values.shape}")
     knots = increasing_times(times, len(values), "rate")
+    _in_range(knots, "times")
+    _in_range(values, "rates")
     return Samples(knots, values, values, *_deviations(sigma, "sigma_rates", values, len(knots), 1.0))
 
 
@@ -99,6 +103,13 @@ def _finite(values: Array, name: str) -> Array:
         place = first_index(wrong)[:-1]
         raise ValueError(f"{name}{at_index(place)} is {values[place].tolist()}; remove samples not finite")
     return values
+
+
+def _in_range(values: Array, name: str) -> None:
+    """Raise a ValueError for numbers whose squares floating point cannot hold."""
+    largest = np.abs(values).max(initial=0.0)
+    if largest > _LARGEST or 0 < largest < 1 / _LARGEST:
+        raise ValueError(f"{name} are as large as {largest:.3g}, beyond the range of a fit; check the units")
 
 
 def _deviations(sigma: Any, name: str, values: Array, count: int, share: float) -> tuple[Array, bool, float]:

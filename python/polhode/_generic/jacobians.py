@@ -31,32 +31,36 @@ _FULL_TURN = "the inverse Jacobian does not exist at a full turn; reduce the ang
 @compiled
 def left(d: Coefficients, v: Array, inverse: bool) -> Array:
     """Return the left Jacobians (..., 3, 3) of rotation vectors (..., 3), or their inverses."""
-    s, rest = _factors(d, v)
+    s, rest, scaled = _factors(d, v)
     if inverse:
         nonzero = d.abs(s) > 2 * d.eps if isinstance(d, Numeric) else _nonzero(s)
         d.require(nonzero[..., 0], _FULL_TURN)
         s, rest = d.divide(1, s), d.divide(-rest, s)
     half = rotors.from_rotation_vector(d, d.divide(-v if inverse else v, 2))
     turn = rotors.to_matrix(d, half)
-    dyad = v[..., :, None] * v[..., None, :]
+    dyad = scaled[..., :, None] * scaled[..., None, :]
     return s[..., None] * turn + rest[..., None] * dyad
 
 
-def _factors(d: Coefficients, v: Array) -> tuple[Array, Array]:
-    """Return ``s = sin(θ/2)/(θ/2)`` and ``(1 − s)/θ²``, of shape (..., 1)."""
+def _factors(d: Coefficients, v: Array) -> tuple[Array, Array, Array]:
+    """Return ``s = sin(θ/2)/(θ/2)`` and ``(1 − s)/θ²``, of shape (..., 1), and v.
+
+    From θ = 1 on, ``1 − s`` and ``v/θ`` instead, so that large angles do not overflow.
+    """
     if not isinstance(d, Numeric):
         pairs = by_rows(_exact_factors, v, range(2))
-        return pairs[..., :1], pairs[..., 1:]
+        return pairs[..., :1], pairs[..., 1:], v
     parts = components(v)
     d.require_finite(parts)
     with np.errstate(all="ignore"):
         square = squares(d, parts)
         near = square < 1
         quarter = d.where(near, 0.25 * square, 0.0)
-        half = 0.5 * d.sqrt(d.where(near, 1.0, square))
+        angle = d.where(near, 1.0, d.length(parts))
+        half = 0.5 * angle
         sine = d.where(near, horner(_SINE, quarter), d.sin(half) / half)
-        rest = d.where(near, horner(_REST, quarter), (1 - sine) / d.where(near, 1.0, square))
-    return sine[..., None], rest[..., None]
+        rest = d.where(near, horner(_REST, quarter), 1 - sine)
+    return sine[..., None], rest[..., None], v / angle[..., None]
 
 
 def _exact_factors(v: Parts) -> Parts:

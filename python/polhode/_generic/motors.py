@@ -326,6 +326,7 @@ def _size(d: Numeric, rotor: Parts) -> Array:
 
 def _excess(d: Numeric, s: Array, b: Parts, m: Parts, p: Array) -> Array:
     """Return δ, which of a motor is rounding."""
+    d.require_finite([*m, p])
     excess = d.once(_dot(b, m) - s * p)
     d.require(d.abs(excess) <= d.eps**0.5 * (1 + d.length([*m, p])), _NO_MOTOR)
     return excess

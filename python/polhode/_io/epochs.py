@@ -82,6 +82,9 @@ def elapsed(start: Epoch, end: Epoch, system: str) -> float:
 
 def later(start: Epoch, seconds: float, system: str) -> Epoch:
     """Return the epoch some SI seconds after another, to 18 decimals; `elapsed` inverts it."""
+    last = datetime.date.max.toordinal()
+    if not 1 <= start.day + seconds / 86400 < last:
+        raise ValueError(f"{seconds:g} s after {start} is outside of the calendar, years 1 to 9999")
     with localcontext(prec=60):
         count = (_count(start, system) + Decimal(repr(seconds))).quantize(_DECIMALS)
         day = int(count // 86400)

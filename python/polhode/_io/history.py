@@ -13,7 +13,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body, Inertia
 from polhode._mechanics.result import Certificate
 from polhode._mechanics.trajectory import Trajectory
-from polhode._support.arrays import Array
+from polhode._support.arrays import Array, as_floats
 
 
 class FileError(ValueError):
@@ -92,7 +92,7 @@ class AttitudeHistory:
     inertia: Inertia | None = None
 
     def __post_init__(self) -> None:
-        time = np.array(self.time, float)
+        time = np.array(as_floats(self.time, "time"))
         object.__setattr__(self, "time", time)
         if time.ndim != 1 or not np.isfinite(time).all():
             raise ValueError(f"time must be finite numbers of shape (n,), got shape {time.shape}")

@@ -51,7 +51,11 @@ class KeplerOrbit:
     def __post_init__(self) -> None:
         for name in ("semi_major_axis", "eccentricity", "mean_anomaly", "mu"):
             object.__setattr__(self, name, number(getattr(self, name), name))
-        _native.orbit_positions(self._numbers, np.zeros(0))
+        if not 0 < self.rate < np.inf:
+            raise ValueError(
+                f"the mean motion of a semi-major axis of {self.semi_major_axis:g} m is {self.rate:g} rad/s, "
+                "beyond the range of floating point; check the units"
+            )
 
     @property
     def rate(self) -> float:

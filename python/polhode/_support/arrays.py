@@ -27,6 +27,7 @@ _LARGE = 1 << 20  # bytes; the allocator reuses smaller blocks itself
 def as_floats(values: Any, what: str) -> Array:
     """Convert real numbers of any kind to float64; a TypeError for anything else."""
     refuse_multivectors(values, what)
+    refuse_masked(values, what)
     try:
         array = np.asarray(values)
     except ValueError as error:
@@ -38,7 +39,18 @@ def as_floats(values: Any, what: str) -> Array:
             raise ValueError(f"{what} has an integer beyond the range of float64 (1.8e308)") from error
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}")
-    return array.astype(np.float64, copy=False)
+    return aligned(array.astype(np.float64, copy=False))
+
+
+def refuse_masked(values: Any, what: str) -> None:
+    """Raise a TypeError for a masked array, of which NumPy would take the masked values, too."""
+    if isinstance(values, np.ndarray) and hasattr(values, "mask"):
+        raise TypeError(f"{what} is a masked array; fill it or pass its compressed values")
+
+
+def aligned(array: Array) -> Array:
+    """Return the array, or a copy if its memory is not aligned, as of a field of a packed record."""
+    return array if array.flags.aligned else array.copy()
 
 
 def refuse_multivectors(values: Any, what: str) -> None:
@@ -115,6 +127,23 @@ def mapped(f: Callable[[Array], Array], data: Any) -> Any:
     result = f(np.ascontiguousarray(data, dtype=np.float64))
     with np.errstate(over="ignore"):
         return result.astype(data.dtype, copy=False)
+
+
+def power_of_two(array: Array, axis: int | tuple[int, ...]) -> Array:
+    """Return the power of two below the largest magnitude, with the axes kept; 1 if that is 0 or not finite.
+
+    A division by it rounds nothing, and sums of squares of the quotients neither overflow nor vanish.
+    """
+    largest = np.abs(array).max(axis=axis, keepdims=True, initial=0.0)
+    exponents = np.frexp(np.where((largest > 0) & np.isfinite(largest), largest, 1.0))[1] - 1
+    return np.ldexp(1.0, exponents)
+
+
+def lengths(array: Array, axis: int | tuple[int, ...] = -1) -> Array:
+    """Return ``√Σx²`` over some axes, without overflow or underflow on the way."""
+    scale = power_of_two(array, axis)
+    with np.errstate(over="ignore"):
+        return np.asarray(np.sqrt(np.square(array / scale).sum(axis=axis)) * scale.squeeze(axis))
 
 
 def new(shape: Shape, dtype: Any) -> Array:

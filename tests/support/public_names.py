@@ -1,0 +1,28 @@
+"""All public names: of the package, of its public modules, and of its classes."""
+
+import importlib
+import inspect
+
+import polhode as ph
+from polhode._algebra.foreign_names import ForeignName
+
+MODULES = ("torque", "force", "event", "io")
+
+
+def public():
+    """All public functions and classes by their names."""
+    owners = [("", ph, ph.__all__)]
+    for module in MODULES:
+        owner = importlib.import_module(f"polhode.{module}")
+        owners.append((f"{module}.", owner, [name for name in dir(owner) if not name.startswith("_")]))
+    named = ((prefix + name, getattr(owner, name)) for prefix, owner, names in owners for name in names)
+    return {name: found for name, found in named if inspect.isclass(found) or inspect.isroutine(found)}
+
+
+def methods(found):
+    """The public methods and properties that a class defines itself, by name; no names of other libraries."""
+    return {
+        name: member
+        for name, member in vars(found).items()
+        if not name.startswith("_") and not isinstance(member, ForeignName)
+    }

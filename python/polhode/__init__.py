@@ -3,6 +3,10 @@
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from polhode import _start as _start  # first, for Ctrl-C during the imports below
+
+# isort: split
+
 from polhode._algebra.algebra import Algebra, algebra
 from polhode._algebra.constructors import (
     I,

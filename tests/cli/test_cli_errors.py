@@ -10,6 +10,7 @@ import time
 
 import pytest
 
+import polhode as ph
 import processes
 from command_line import SCENE, polhode
 from viewers import needs_bundle
@@ -298,3 +299,16 @@ def test_an_interrupted_run_leaves_no_file(tmp_path):
     assert output == ""
     assert (tmp_path / "out.nc").read_bytes() == b"older"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["long.toml", "out.nc"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no signal for another process")
+def test_ctrl_c_while_the_command_starts(tmp_path):
+    """It comes while NumPy is imported, of which a traceback would tell nothing."""
+    (tmp_path / "numpy").mkdir()
+    (tmp_path / "numpy" / "__init__.py").write_text(
+        "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(60)\n"
+    )
+    paths = [str(tmp_path), os.path.dirname(os.path.dirname(ph.__file__))]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+    done = processes.run([sys.executable, "-m", "polhode", "list"], env=environment)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")

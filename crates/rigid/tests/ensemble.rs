@@ -7,7 +7,9 @@ use polhode_rigid::laws::torque::Torque;
 use polhode_rigid::methods::Method;
 use polhode_rigid::run::Options;
 use polhode_rigid::state::center::Center;
+use polhode_rigid::state::point::Function;
 use polhode_rigid::{Inertia, SimulateError};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Bodies of every order of moments, symmetric ones and a sphere among them, in axes of their own.
 fn bodies(count: usize) -> Vec<Inertia> {
@@ -227,4 +229,21 @@ fn certificates_have_the_bits_of_single_runs() {
             assert_eq!(known.filter(|[start, _]| !start.is_nan()).count(), named);
         }
     }
+}
+
+/// A panic of one thread is passed on, and no thread waits for it.
+#[test]
+fn a_panic_ends_the_run() {
+    let count = 40;
+    let law = Torque::Function(Function::new(|seen| {
+        assert!(seen.omega.norm() < 1e-3, "too fast");
+        Ok(Bivector([0.0, 0.0, 1.0]))
+    }));
+    let all = ensemble(count, vec![Rows::new(vec![law])]);
+    let [mut a, mut b, mut c, mut d] = [4, 3, 3, 1].map(|n| vec![0.0; n * count]);
+    let outputs =
+        Outputs { rotors: &mut a, omegas: &mut b, momenta: &mut c, energies: &mut d, centers: None };
+    let run =
+        AssertUnwindSafe(|| all.run(&[1.0], &Options::default(), Threads::new(3), outputs, &mut |_| true));
+    assert!(catch_unwind(run).is_err());
 }

@@ -16,7 +16,7 @@ from polhode._algebra.coefficients import as_coefficients, duplicate
 from polhode._algebra.grades import mask_of
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
-from polhode._support.arrays import Shape, batch_shape
+from polhode._support.arrays import Shape, batch_shape, normal_numbers
 
 
 @joins(_native.Algebra)
@@ -210,7 +210,7 @@ class Algebra(_native.Algebra):
         """
         wanted = range(self.dimension + 1) if grades is None else grades
         mask = mask_of(self, tuple(wanted) if isinstance(wanted, Iterable) else (wanted,))
-        numbers = np.random.default_rng(rng).standard_normal((*batch_shape(shape), len(self._indices(mask))))
+        numbers = normal_numbers((*batch_shape(shape), len(self._indices(mask))), rng, "values")
         return Multivector._of(numbers, mask, self)
 
     def _single(self, x: Any, what: str, grade: int, dtype: Any) -> Multivector:

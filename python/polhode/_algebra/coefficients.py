@@ -17,6 +17,7 @@ from polhode._support.arrays import (
     leaves,
     refuse_masked,
     refuse_multivectors,
+    require_broadcast,
 )
 from polhode._support.extras import register_pytree
 
@@ -38,6 +39,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None, *, complex_too: b
         return _converted(values, what, dtype, complex_too)
     refuse_masked(values, what)
     if is_float(values):
+        require_broadcast(values, what)
         return aligned(values)
     if isinstance(values, list | tuple):
         strange = [leaf for leaf in leaves(values) if type(leaf) not in _PLAIN]

@@ -14,6 +14,7 @@ from polhode._algebra.coefficients import as_coefficients, common, duplicate, ki
 from polhode._algebra.coefficients import reshaped as coefficients_reshaped
 from polhode._algebra.products import coerced, common_algebra
 from polhode._support.arrays import Shape, is_float
+from polhode._support.memory import require_array
 
 if TYPE_CHECKING:
     from polhode._algebra.algebra import Algebra
@@ -45,7 +46,9 @@ def with_grades(value: Multivector, mask: int) -> Any:
     algebra = value.algebra
     held, wanted = algebra._indices(value._mask), algebra._indices(mask)
     if is_float(data):
-        full = np.zeros((*data.shape[:-1], algebra.size), dtype=data.dtype)
+        shape = (*data.shape[:-1], algebra.size)
+        require_array(shape, "values", data.itemsize)
+        full = np.zeros(shape, dtype=data.dtype)
         full[..., held] = data
         return np.ascontiguousarray(full[..., wanted])
     place = {index: k for k, index in enumerate(held)}

@@ -28,8 +28,10 @@ from polhode._support.arrays import (
     joined,
     mapped,
     new,
+    normal_numbers,
 )
 from polhode._support.extras import optional
+from polhode._support.memory import require_array
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -118,7 +120,9 @@ class Rotor(_native.Rotor, Multivector):
         >>> ph.Rotor.identity()(ph.e1)
         e1
         """
-        return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*batch_shape(shape), 4)).copy())
+        rows = (*batch_shape(shape), 4)
+        require_array(rows, "rotors")
+        return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], rows).copy())
 
     @staticmethod
     def from_components(c4: Any, *, errors: Errors = "raise") -> Rotor:
@@ -332,7 +336,7 @@ class Rotor(_native.Rotor, Multivector):
         >>> bool((np.abs(R.norm() - 1) < 1e-12).all())
         True
         """
-        return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch_shape(shape), 4)))
+        return Rotor.from_components(normal_numbers((*batch_shape(shape), 4), rng, "rotors"))
 
     from_axis_angle = staticmethod(_parameters.from_axis_angle)
     from_mrp = staticmethod(_parameters.from_mrp)

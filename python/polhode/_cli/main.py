@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from polhode import _start
 from polhode._cli import check, common, store
 from polhode._cli.common import (
     add_amount,
@@ -38,8 +39,8 @@ def main(arguments: list[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
-    _restore_ctrl_c()
     try:
+        _restore_ctrl_c()
         options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
         with _printed_warnings():
             code = int(options.command(options))
@@ -61,7 +62,7 @@ def _restore_ctrl_c() -> None:
 
     So ``kill -INT`` always stops a long run and keeps the complete bodies.
     """
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    if signal.getsignal(signal.SIGINT) in (signal.SIG_IGN, _start.stop):
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 

@@ -14,7 +14,7 @@ from polhode._algebra.transform import RigidTransform
 from polhode._mechanics.bodies import Body
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array, as_float, as_floats
-from polhode._support.files import write_atomically
+from polhode._support.files import loadable, write_atomically
 
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
@@ -56,7 +56,7 @@ def read_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> tuple[Arra
     """
     if not os.path.lexists(path):
         raise FileNotFoundError(f"{os.fspath(path)}: no such file")
-    vertices, triangles = _native.read_mesh(os.fspath(path), as_float(scale, "the scale"))
+    vertices, triangles = _native.read_mesh(loadable(path), as_float(scale, "the scale"))
     return vertices, np.array(triangles, int)
 
 

@@ -218,7 +218,9 @@ def read_ck(
         raise FileNotFoundError(f"{name}: no such file")
     if not os.path.isfile(path):
         raise FileError(f"{name}: error: not a regular file; give the path of a file")
-    if not Path(path).read_bytes()[:7] == b"DAF/CK ":
+    with open(path, "rb") as file:
+        first = file.read(7)
+    if first != b"DAF/CK ":
         raise FileError(f"{name}: error: not a binary SPICE CK, which begins with DAF/CK")
     with _loaded(kernels) as spice:
         handle = spice.dafopr(name)

@@ -19,6 +19,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.parameters import common
 from polhode._support.arrays import Array, Shape, as_components, as_float, as_floats
+from polhode._support.files import loadable
 
 _G3 = algebra_of(3)
 
@@ -459,7 +460,7 @@ class Body:
         if not os.path.lexists(path):
             raise FileNotFoundError(f"{os.fspath(path)}: no such file")
         return Body._of(
-            _native.Body.from_mesh(os.fspath(path), as_float(scale, "the scale"), *_amount(mass, density))
+            _native.Body.from_mesh(loadable(path), as_float(scale, "the scale"), *_amount(mass, density))
         )
 
     # --- properties

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from polhode._support.extras import optional
+from polhode._support.files import read
 
 
 class TableReader:
@@ -44,7 +45,7 @@ class TableReader:
 def _csv(file: Path) -> bytes:
     if file.suffix.lower() != ".csv":
         raise ValueError(f"{file}: expected a table in a file .csv or .parquet")
-    return file.read_bytes()
+    return read(file)
 
 
 def _parquet(file: Path) -> bytes:
@@ -53,7 +54,7 @@ def _parquet(file: Path) -> bytes:
     library: Any = optional("pyarrow", "parquet", what)
     reader: Any = optional("pyarrow.parquet", "parquet", what)
     csv: Any = optional("pyarrow.csv", "parquet", what)
-    content = io.BytesIO(file.read_bytes())
+    content = io.BytesIO(read(file))
     text = io.BytesIO()
     try:
         table = reader.read_table(content)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from polhode import _native
+from polhode._support.memory import require_array
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,6 +22,7 @@ Shape = tuple[int, ...]
 T = TypeVar("T")
 
 _FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
+_DRAWN = 1 << 20  # random numbers: some 10 ms
 _LARGE = 1 << 20  # bytes; the allocator reuses smaller blocks itself
 
 
@@ -39,7 +41,14 @@ def as_floats(values: Any, what: str) -> Array:
             raise ValueError(f"{what} has an integer beyond the range of float64 (1.8e308)") from error
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}")
+    require_broadcast(array, what)
     return aligned(array.astype(np.float64, copy=False))
+
+
+def require_broadcast(array: Array, what: str) -> None:
+    """Raise a MemoryError if the rows of a broadcast array, which share memory, would not fit into memory."""
+    if 0 in array.strides:
+        require_array(array.shape, f"the numbers of {what}")
 
 
 def refuse_masked(values: Any, what: str) -> None:
@@ -109,6 +118,7 @@ def as_components(values: Any, size: int, what: str) -> Array:
     array = as_floats(values, what)
     if array.ndim == 0 or array.shape[-1] != size:
         raise ValueError(f"{what} needs {size} components in the last axis, got shape {array.shape}")
+    require_array(array.shape, f"the numbers of {what}")
     return frozen(np.array(array, order="C"))
 
 
@@ -154,6 +164,16 @@ def new(shape: Shape, dtype: Any) -> Array:
         return np.empty(shape, wanted)
     memory = _native.buffer(size * wanted.itemsize)
     return np.frombuffer(memory, wanted, size).reshape(shape)
+
+
+def normal_numbers(shape: Shape, rng: np.random.Generator | int | None, what: str) -> Array:
+    """Return random numbers of the standard normal distribution; `what` has them, for errors."""
+    require_array(shape, what)
+    generator, numbers = np.random.default_rng(rng), np.empty(shape)
+    line = numbers.reshape(-1)
+    for first in range(0, line.size, _DRAWN):  # Ctrl-C stops between them
+        generator.standard_normal(out=line[first : first + _DRAWN])
+    return numbers
 
 
 def frozen(array: Array) -> Array:
@@ -206,6 +226,7 @@ def rows(data: Array, batch: Shape) -> Array:
     """Return data in C order: one row of components, or one for each value of the batch."""
     size = data.shape[-1]
     if data.size != size and data.shape[:-1] != batch:
+        require_array((*batch, size), "operands")
         data = np.broadcast_to(data, (*batch, size))
     return np.ascontiguousarray(data)
 
@@ -242,5 +263,6 @@ def joined(*parts: Array) -> Array:
     if len(parts) == 1:
         return np.ascontiguousarray(parts[0])
     batch = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
+    require_array((*batch, sum(part.shape[-1] for part in parts)), "operands")
     wide = [np.broadcast_to(part, (*batch, part.shape[-1])) for part in parts]
     return np.ascontiguousarray(np.concatenate(wide, axis=-1))

@@ -8,6 +8,21 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from polhode._support.memory import require
+
+
+def read(path: str | os.PathLike[str], copies: int = 1) -> bytes:
+    """Return the content of a file; a MemoryError first if so many copies would not fit into memory."""
+    return Path(loadable(path, copies)).read_bytes()
+
+
+def loadable(path: str | os.PathLike[str], copies: int = 1) -> str:
+    """Return the path as text; a MemoryError if so many copies of the file would not fit into memory."""
+    name = os.fsdecode(path)
+    with contextlib.suppress(OSError):  # reading reports it
+        require(copies * os.path.getsize(path), f"the contents of {name}", "split the file")
+    return name
+
 
 class UnreadableError(Exception):
     """A file given to the command cannot be read or shown; the message gives the reason."""

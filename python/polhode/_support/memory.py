@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
+
+from polhode import _native
 
 _PROC = Path("/proc")
 _CGROUP = Path("/sys/fs/cgroup")
@@ -26,6 +29,13 @@ def require(bytes_wanted: int, what: str, remedy: str = "ask for fewer at a time
     free = available()
     if free is not None and bytes_wanted > free:
         raise MemoryError(f"{what} take {size(bytes_wanted)}; {size(free)} are free: {remedy}")
+
+
+def require_array(shape: tuple[int, ...], what: str, itemsize: int = 8) -> None:
+    """Raise a MemoryError if an array of numbers of this shape would not fit into memory."""
+    bytes_wanted = itemsize * math.prod(shape)
+    if bytes_wanted >= _SMALL:
+        require(bytes_wanted, f"{what} of shape {shape}")
 
 
 def size(count: int) -> str:
@@ -77,3 +87,6 @@ def _lines(path: Path) -> list[str]:
         return path.read_text().splitlines()
     except OSError:
         return []
+
+
+_native.register("require_memory", require)

@@ -5,7 +5,8 @@ use super::value::Any;
 use crate::support::arrays::{
     Out, Rows, RowsToFill, bad, map_long_rows, map_rows, numbers, numbers_to_fill, place, threads,
 };
-use numpy::{PyArrayDyn, PyUntypedArrayMethods};
+use crate::support::interrupts::in_pieces;
+use numpy::{PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use polhode_ga::g3::functions::Function;
 use polhode_ga::g3::pauli;
 use polhode_ga::product::Grades;
@@ -17,6 +18,7 @@ use polhode_ga::table::G3;
 use polhode_ga::{Bivector, MathError, Multivector, Rotor, Vector};
 use pyo3::prelude::*;
 use std::array::from_fn;
+use std::ops::Range;
 
 /// The value of an expression with `T` the type of the numbers of an array: `f32`, or else `f64`.
 macro_rules! by_type {
@@ -72,8 +74,21 @@ fn fill<T: Element + numpy::Element>(
         check_rows(length, size, rows)?;
     }
     let threads = threads(out.len())?;
-    py.detach(|| work(threads, a, b, out));
-    Ok(())
+    // A number of a result takes as many operations as the smaller factor has numbers, or fewer.
+    let first = (WORK / (nout * na.min(nb)).max(1)).max(1);
+    in_pieces(py, rows, first, |piece| {
+        let (a, b) = (part(a, na, rows, &piece), part(b, nb, rows, &piece));
+        py.detach(|| work(threads, a, b, &mut out[nout * piece.start..nout * piece.end]));
+        Ok(())
+    })
+}
+
+/// Operations of some milliseconds.
+const WORK: usize = 1 << 23;
+
+/// Some rows of an operand of `rows` rows; all of one that has a single row.
+fn part<'a, T>(data: &'a [T], size: usize, rows: usize, piece: &Range<usize>) -> &'a [T] {
+    if data.len() == rows * size { &data[size * piece.start..size * piece.end] } else { data }
 }
 
 /// `inverse`, `exp`, `log` or `sqrt` of rows of all components of an algebra, `single` if they were float32.
@@ -204,13 +219,13 @@ row_functions! {
 /// Fills `out` with the rotors `exp B` of rows of bivectors; both hold float64, or float32.
 #[pyfunction]
 pub(crate) fn rotor_exp(b: Any<'_, '_>, out: Any<'_, '_>) -> PyResult<()> {
-    by_type!(out, T => map_to::<T>((3, 4), b, out, rotor_functions::exp))
+    by_type!(out, T => map_to::<T>((3, 4), b, out, |t, b, out, _| rotor_functions::exp(t, b, out)))
 }
 
 /// Fills `out` with the bivectors −Bθ/2 of rows of rotors; both hold float64, or float32.
 #[pyfunction]
 pub(crate) fn rotor_log(r: Any<'_, '_>, out: Any<'_, '_>) -> PyResult<()> {
-    by_type!(out, T => map_to::<T>((4, 3), r, out, rotor_functions::log))
+    by_type!(out, T => map_to::<T>((4, 3), r, out, |t, r, out, _| rotor_functions::log(t, r, out)))
 }
 
 /// Fills `out` with `exp(n log R)` of rows of rotors and of one number n each; all hold float64, or float32.
@@ -219,7 +234,8 @@ pub(crate) fn rotor_power<'py>(r: Any<'_, 'py>, n: Any<'_, 'py>, out: Any<'_, 'p
     by_type!(out, T => {
         let n: Rows<'_, T> = n.extract()?;
         let n = numbers(&n)?;
-        map_to::<T>((4, 4), r, out, |t, r, out| rotor_functions::power(t, r, n, out))
+        check_rows(4 * n.len(), 4, r.cast::<PyUntypedArray>()?.len() / 4)?;
+        map_to::<T>((4, 4), r, out, |t, r, out, rows| rotor_functions::power(t, r, &n[rows], out))
     })
 }
 
@@ -229,16 +245,24 @@ fn map_to<T: Element + numpy::Element>(
     (size, filled): (usize, usize),
     input: Any<'_, '_>,
     out: Any<'_, '_>,
-    work: impl Fn(Threads, &[T], &mut [T]) -> Result<(), usize> + Sync,
+    work: impl Fn(Threads, &[T], &mut [T], Range<usize>) -> Result<(), usize> + Sync,
 ) -> PyResult<()> {
     let input: Rows<'_, T> = input.extract()?;
     let batch = input.shape().split_last().map_or(&[][..], |(_, batch)| batch);
     let mut to: RowsToFill<'_, T> = out.extract()?;
     let (from, to) = (numbers(&input)?, numbers_to_fill(&mut to)?);
-    check_rows(from.len(), size, to.len() / filled)?;
+    let rows = to.len() / filled;
+    if from.len() != rows * size {
+        return Err(bad(format!("the operand has {} numbers, expected {}", from.len(), rows * size)));
+    }
     let threads = threads(to.len())?;
-    let failed = |row| bad(format!("{}{}", place(row, batch), MathError::NotFinite));
-    out.py().detach(|| work(threads, from, to)).map_err(failed)
+    let py = out.py();
+    in_pieces(py, rows, 1 << 17, |piece| {
+        let first = piece.start;
+        let (from, to) = (&from[size * first..size * piece.end], &mut to[filled * first..filled * piece.end]);
+        let failed = |row| bad(format!("{}{}", place(first + row, batch), MathError::NotFinite));
+        py.detach(|| work(threads, from, to, piece)).map_err(failed)
+    })
 }
 
 /// Fills `out` with `R X ~R` for rows of rotors (n, 4) and of values of these grades; one row of either meets

@@ -1,6 +1,7 @@
 //! Inertia and bodies.
 
 use crate::support::arrays::{Array, Out, Rows, bad, line, map_rows, numbers, one, place, table, threads};
+use crate::support::interrupts::{in_background, in_pieces};
 use numpy::PyUntypedArrayMethods;
 use polhode_ga::simd::threads::for_each;
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -35,17 +36,23 @@ fn of_rows<const N: usize>(
     let batch = rows.shape().split_last().map_or(&[][..], |(_, batch)| batch);
     let all = numbers(rows)?.as_chunks::<N>().0;
     let threads = threads(all.len() * N)?;
-    let mut pieces: Vec<_> = threads.ranges(all.len(), LEAST).map(|rows| (rows, Ok(Vec::new()))).collect();
-    py.detach(|| {
-        for_each(pieces.iter_mut(), |(rows, made)| {
-            let row = |row: usize| inertia(all[row]).map(Inertia).map_err(|error| (row, error));
-            *made = rows.clone().map(row).collect::<Result<Vec<Inertia>, _>>();
-        });
-    });
     let mut inertias = Vec::with_capacity(all.len());
-    for (_, made) in pieces {
-        inertias.extend(made.map_err(|(row, error)| bad(format!("{}{error}", place(row, batch))))?);
-    }
+    in_pieces(py, all.len(), 16 * LEAST, |piece| {
+        let first = piece.start;
+        let ranges = threads.ranges(piece.len(), LEAST);
+        let mut shares: Vec<_> = ranges.map(|rows| (rows, Ok(Vec::new()))).collect();
+        py.detach(|| {
+            for_each(shares.iter_mut(), |(rows, made)| {
+                let row = |row: usize| inertia(all[first + row]).map(Inertia).map_err(|error| (row, error));
+                *made = rows.clone().map(row).collect::<Result<Vec<Inertia>, _>>();
+            });
+        });
+        for (_, made) in shares {
+            let failed = |(row, error)| bad(format!("{}{error}", place(first + row, batch)));
+            inertias.extend(made.map_err(failed)?);
+        }
+        Ok(())
+    })?;
     Ok(inertias)
 }
 
@@ -170,7 +177,9 @@ impl Body {
         if !(scale > 0.0 && scale.is_finite()) {
             return Err(bad(format!("scale is {scale}; it must be positive and finite")));
         }
-        py.detach(|| TriangleMesh::read(&path)?.scaled(scale)?.body(amount)).map(Body).map_err(bad)
+        in_background(py, move || TriangleMesh::read(&path)?.scaled(scale)?.body(amount))?
+            .map(Body)
+            .map_err(bad)
     }
 
     fn mass(&self) -> f64 {

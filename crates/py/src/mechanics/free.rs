@@ -169,7 +169,7 @@ impl FreeMotion {
         work: impl Fn(free::FreeMotion) -> Result<T, String> + Sync,
     ) -> PyResult<Vec<T>> {
         if let Some(one) = &this.one {
-            return Ok(vec![work(**one).map_err(bad)?]);
+            return Ok(vec![py.detach(|| work(**one)).map_err(bad)?]);
         }
         let motions: &ClosedForm = this.as_super();
         let found = pieces(py, rows.len(), 1, |row| again(motions, rows.start + row).and_then(&work))?;

@@ -17,6 +17,7 @@ use polhode_rigid::SimulateError;
 use polhode_rigid::laws::torque::Axes;
 use polhode_rigid::stepper::{self, Failed, Held};
 use pyo3::prelude::*;
+use std::time::{Duration, Instant};
 
 /// Bodies of a batch shape with their states at a common time.
 #[pyclass(module = "polhode._native")]
@@ -155,11 +156,22 @@ impl Stepper {
     fn advance(&mut self, py: Python<'_>, dt: f64, torques: &[[f64; 3]], in_space: bool) -> PyResult<()> {
         let held = Held { torques, axes: if in_space { Axes::Space } else { Axes::Body } };
         let stepper = &mut self.stepper;
-        let done = if self.callbacks.is_empty() && stepper.count() < LARGE {
-            stepper.step(dt, held)
-        } else {
-            py.detach(|| stepper.step(dt, held))
+        let (mut last, mut raised) = (Instant::now(), None);
+        let mut go_on = || {
+            if last.elapsed() >= BETWEEN_SIGNALS {
+                raised = Python::attach(|py| py.check_signals()).err();
+                last = Instant::now();
+            }
+            raised.is_none()
         };
+        let done = if self.callbacks.is_empty() && stepper.count() < LARGE {
+            stepper.step_while(dt, held, &mut go_on)
+        } else {
+            py.detach(|| stepper.step_while(dt, held, &mut go_on))
+        };
+        if let Some(error) = raised {
+            return Err(error);
+        }
         let bound = || self.callbacks.iter().map(|one| one.bind(py));
         done.map_err(|(body, error): Failed| match error {
             SimulateError::Torque { .. } => failed(bound(), format!("{}{error}", place(body, &self.shape))),
@@ -173,6 +185,9 @@ impl Stepper {
         pool::array(py, &shape)
     }
 }
+
+/// Interval between checks for Ctrl-C within a step.
+const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
 
 /// Number of bodies from which other Python threads may run during a step.
 const LARGE: usize = 256;

@@ -1,6 +1,7 @@
 //! Triangle meshes of files, and surfaces of solids.
 
 use crate::support::arrays::{Array, bad, table};
+use crate::support::interrupts::in_background;
 use polhode_ga::Vector;
 use polhode_rigid::{Amount, Solid, Surface, TriangleMesh};
 use pyo3::prelude::*;
@@ -20,11 +21,11 @@ pub(crate) fn triangles<'py>(
 /// The mesh in a file whose unit of length is `scale` metres. Only a mesh that encloses a body is returned.
 #[pyfunction]
 pub(crate) fn read_mesh(py: Python<'_>, path: PathBuf, scale: f64) -> PyResult<Triangles<'_>> {
-    let read = || -> Result<TriangleMesh, _> {
+    let read = move || -> Result<TriangleMesh, _> {
         let mesh = TriangleMesh::read(&path)?.scaled(scale)?;
         mesh.body(Amount::Mass(1.0)).map(|_| mesh)
     };
-    let mesh = py.detach(read).map_err(bad)?;
+    let mesh = in_background(py, read)?.map_err(bad)?;
     triangles(py, mesh.vertices(), mesh.faces().to_vec())
 }
 

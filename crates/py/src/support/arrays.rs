@@ -1,5 +1,6 @@
 //! Conversions between NumPy arrays and fixed-size rows.
 
+use super::interrupts::in_pieces;
 use super::pool;
 pub(crate) use super::pool::{Array, Out};
 use numpy::{
@@ -69,13 +70,24 @@ pub(crate) fn line<'py>(py: Python<'py>, numbers: Vec<f64>) -> Array<'py> {
     PyArray1::from_vec(py, numbers).to_dyn().clone()
 }
 
+/// A row takes up to a microsecond.
+const ROWS_BETWEEN_CHECKS: usize = 1 << 14;
+
 /// Rows of N numbers as an array of shape (rows, N).
 pub(crate) fn table<'py, const N: usize>(
     py: Python<'py>,
     rows: impl ExactSizeIterator<Item = [f64; N]>,
 ) -> Out<'py> {
-    let shape = vec![rows.len(), N];
-    PyArray1::from_vec(py, rows.flatten().collect()).reshape(shape)
+    let array = pool::array(py, &[rows.len(), N])?;
+    let mut target = array.readwrite();
+    for (number, (row, out)) in rows.zip(target.as_slice_mut()?.as_chunks_mut().0).enumerate() {
+        *out = row;
+        if number % ROWS_BETWEEN_CHECKS == 0 {
+            py.check_signals()?;
+        }
+    }
+    drop(target);
+    Ok(array)
 }
 
 /// `at index (2, 0): ` for row 4 of shape (…, 2); nothing for a single value.
@@ -128,15 +140,16 @@ pub(crate) fn map_long_rows<'py, const N: usize, E: std::fmt::Display + Send>(
     for (slot, input) in data.iter_mut().zip(inputs) {
         *slot = numbers(input)?;
     }
-    fill_rows(py, (batch, size), 1 << 6, |row, out: &mut [f64]| {
+    // In the largest algebras a row takes milliseconds.
+    let least = ((1 << 14) / (size * size)).clamp(1, 1 << 6);
+    fill_rows(py, (batch, size), least, |row, out: &mut [f64]| {
         out.copy_from_slice(&f(data.map(|numbers| &numbers[row * size..(row + 1) * size]))?);
         Ok::<(), E>(())
     })
 }
 
 /// A new array of a batch of rows of `size` numbers, each row filled by a function of its number. Threads take
-/// at least `least` rows; signals are checked after a multiple of that. An error names the batch index of
-/// the first failing row.
+/// at least `least` rows, and Python may interrupt. An error names the batch index of the first failing row.
 fn fill_rows<'py, E: std::fmt::Display + Send>(
     py: Python<'py>,
     (batch, size): (&[usize], usize),
@@ -148,8 +161,9 @@ fn fill_rows<'py, E: std::fmt::Display + Send>(
     let mut target = array.readwrite();
     let out = target.as_slice_mut()?;
     let threads = threads(out.len())?;
-    for (part, piece) in out.chunks_mut(16 * least * size).enumerate() {
-        let first = part * 16 * least;
+    in_pieces(py, out.len() / size, 16 * least, |rows| {
+        let first = rows.start;
+        let piece = &mut out[size * rows.start..size * rows.end];
         let failure: Mutex<Option<(usize, E)>> = Mutex::new(None);
         py.detach(|| {
             threads.for_each_piece(least, size, piece, |rows, piece| {
@@ -167,8 +181,8 @@ fn fill_rows<'py, E: std::fmt::Display + Send>(
         if let Some((row, error)) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
             return Err(bad(format!("{}{error}", place(first + row, batch))));
         }
-        py.check_signals()?;
-    }
+        Ok(())
+    })?;
     drop(target);
     Ok(array)
 }

@@ -22,6 +22,8 @@ pub(crate) static BATCH: Slot = Slot::new("Batch");
 pub(crate) static AS_VECTORS: Slot = Slot::new("as_vectors");
 /// Converts any value that `bivector` takes to three components.
 pub(crate) static AS_BIVECTORS: Slot = Slot::new("as_bivectors");
+/// Raises a MemoryError unless a number of bytes is free.
+pub(crate) static REQUIRE_MEMORY: Slot = Slot::new("require_memory");
 
 impl Slot {
     const fn new(name: &'static str) -> Slot {
@@ -45,7 +47,8 @@ impl Slot {
 /// Registers an object under its name; later registrations are ignored.
 #[pyfunction]
 pub(crate) fn register(py: Python<'_>, name: &str, object: Py<PyAny>) -> PyResult<()> {
-    let slots = [&FORMULA_ERROR, &CALL_FORMULA, &LINEAR_MAP, &BATCH, &AS_VECTORS, &AS_BIVECTORS];
+    let slots =
+        [&FORMULA_ERROR, &CALL_FORMULA, &LINEAR_MAP, &BATCH, &AS_VECTORS, &AS_BIVECTORS, &REQUIRE_MEMORY];
     let unknown = || PyValueError::new_err(format!("the binding does not use {name:?}"));
     let slot = slots.into_iter().find(|slot| slot.name == name).ok_or_else(unknown)?;
     slot.object.get_or_init(py, || object);

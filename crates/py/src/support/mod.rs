@@ -3,5 +3,6 @@
 pub(crate) mod arrays;
 pub(crate) mod face;
 pub(crate) mod facts;
+pub(crate) mod interrupts;
 pub(crate) mod pool;
 pub(crate) mod text;

@@ -6,6 +6,7 @@
 //! This module contains all unsafe code of the crate: a buffer exposes its memory.
 #![allow(unsafe_code)]
 
+use super::face::REQUIRE_MEMORY;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyBufferError, PyMemoryError};
 use pyo3::ffi;
@@ -44,13 +45,16 @@ pub(crate) struct Buffer {
 /// Smaller arrays use the allocator, which reuses memory itself.
 const LARGE: usize = 1 << 20;
 
+/// For smaller results, asking for the free memory would take as long as computing them.
+const CHECKED: usize = 1 << 26;
+
 /// A new array of unspecified numbers; a large one in memory of the pool.
 pub(crate) fn array<'py>(py: Python<'py>, shape: &[usize]) -> Out<'py> {
-    let count = shape.iter().product::<usize>();
-    if count * 8 < LARGE {
+    let bytes = shape.iter().fold(8_usize, |bytes, length| bytes.saturating_mul(*length));
+    if bytes < LARGE {
         return Ok(PyArrayDyn::zeros(py, shape, false));
     }
-    let memory = Bound::new(py, buffer(py, count * 8)?)?;
+    let memory = Bound::new(py, buffer(py, bytes)?)?;
     let line: Array<'py> = py.import("numpy")?.getattr("frombuffer")?.call1((memory,))?.extract()?;
     line.reshape(shape)
 }
@@ -68,8 +72,14 @@ pub(crate) fn buffer(py: Python<'_>, bytes: usize) -> PyResult<Buffer> {
     });
     let memory = match kept {
         Some(memory) => memory,
-        // NumPy requests huge pages.
-        None => py.import("numpy")?.getattr("empty")?.call1((size, "u1"))?.extract()?,
+        None => {
+            // The system may promise more memory than there is.
+            if size >= CHECKED {
+                REQUIRE_MEMORY.get(py)?.call1((size, "results"))?;
+            }
+            // NumPy requests huge pages.
+            py.import("numpy")?.getattr("empty")?.call1((size, "u1"))?.extract()?
+        }
     };
     Ok(Buffer { memory: Some(memory), bytes, size })
 }

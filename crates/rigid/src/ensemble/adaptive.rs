@@ -23,7 +23,7 @@ use std::{array, mem};
 const LAST: usize = 8;
 
 /// Rounds between calls of `progress`.
-const BETWEEN_CHECKS: u32 = 256;
+const BETWEEN_CHECKS: u32 = 64;
 
 /// Integration of all bodies not yet assigned to a thread.
 pub(super) struct AdaptedSteps<'a, 'b> {
@@ -198,7 +198,8 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
                 }
             }
         }
-        true
+        // Where bodies are done after a few rounds each, too.
+        scheduler.report(progress)
     }
 
     fn occupied(&self) -> usize {

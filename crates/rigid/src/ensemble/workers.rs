@@ -20,6 +20,20 @@ const BETWEEN_REPORTS: Duration = Duration::from_millis(20);
 /// Maximum number of incomplete groups of bodies with the same plan.
 const MOST_WAITING: usize = 64;
 
+/// A thread that works; dropped when it ends, also by a panic, so that nobody waits for it.
+struct Running<'a, 'b>(&'a Scheduler<'b>);
+
+impl Drop for Running<'_, '_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            // The panic is passed on at the end; the other bodies would be solved in vain.
+            self.0.stopped.store(true, Ordering::Relaxed);
+        }
+        *lock(&self.0.running) -= 1;
+        self.0.ended.notify_all();
+    }
+}
+
 impl Scheduler<'_> {
     /// Solves all bodies.
     pub fn work(
@@ -51,14 +65,13 @@ impl Scheduler<'_> {
 
     /// Solves bodies until none is left.
     fn work_loop(&self, threads: usize, progress: &mut dyn FnMut(Progress) -> bool) {
+        let _running = Running(self);
         match self.options.step {
             Some(step) => {
                 self.equal_steps(step.min(self.options.max_step.unwrap_or(step)), threads, progress)
             }
             None => fastest(AdaptedSteps { scheduler: self, progress }),
         }
-        *lock(&self.running) -= 1;
-        self.ended.notify_all();
     }
 
     /// Waits for the other threads and reports their progress.

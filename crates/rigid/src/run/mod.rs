@@ -239,7 +239,7 @@ impl Problem {
             options.events.iter().map(|event| event.clone().in_axes(self.frame)).collect();
         let (rule, sweep, error) = match (&engine, options.step) {
             (Engine::ClosedForm(closed), _) if events.is_empty() => {
-                (long(1.0), self.sampled(closed, times)?, neglected)
+                (long(1.0), self.sampled(closed, times, progress)?, neglected)
             }
             (Engine::ClosedForm(_), _) => {
                 let plan = SweepPlan::only(long(1.0));
@@ -354,10 +354,24 @@ impl Problem {
     }
 
     /// The closed form at all times, as a sweep without steps. An error if it drifts in a conserved quantity.
-    fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Sweep, SimulateError> {
-        let states = closed.at_many(times);
+    fn sampled(
+        &self,
+        closed: &ClosedForm,
+        times: &[f64],
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Sweep, SimulateError> {
+        /// Times between calls of `progress`.
+        const TOGETHER: usize = 1 << 14;
+        let mut states = Vec::with_capacity(times.len());
         let mut monitor = DriftMonitor::new(self.body, &self.torques, self.start().phase);
-        states.iter().for_each(|state| monitor.record(&state.phase));
+        for some in times.chunks(TOGETHER) {
+            states.extend(closed.at_many(some));
+            states[states.len() - some.len()..].iter().for_each(|state| monitor.record(&state.phase));
+            let fraction = states.len() as f64 / times.len() as f64;
+            if !progress(Progress { pass: 1, fraction }) {
+                return Err(SimulateError::Interrupted);
+            }
+        }
         let drifts = monitor.finish();
         check_kept(&drifts)?;
         Ok(Sweep { states, drifts, ..Sweep::default() })

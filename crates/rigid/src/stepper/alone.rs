@@ -53,7 +53,10 @@ impl Alone {
         member: &Member,
         held: Option<Torque>,
         pieces: &[Steps],
+        go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Alone, SimulateError> {
+        /// Steps between calls of `go_on`.
+        const BETWEEN_CHECKS: u64 = 256;
         let mut torques = member.torques.clone();
         torques.extend(held);
         let translation = member.translation.clone();
@@ -68,6 +71,9 @@ impl Alone {
                     return Err(SimulateError::Diverged { time: from + h });
                 }
                 at = next;
+                if k % BETWEEN_CHECKS == BETWEEN_CHECKS - 1 && !go_on() {
+                    return Err(SimulateError::Interrupted);
+                }
             }
             at.phase.time = steps.to;
         }

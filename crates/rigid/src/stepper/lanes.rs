@@ -10,6 +10,7 @@ use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::simd::lanes::{Lanes, Work, fastest};
 use polhode_ga::{Bivector, Rotor};
 use std::array;
+use std::ops::Range;
 
 /// Bodies of a group: a cache line of each number.
 const W: usize = 8;
@@ -17,7 +18,11 @@ const W: usize = 8;
 /// Groups of bodies, with the arithmetic of the machine's best instructions.
 pub(super) trait Groups: Send + Sync {
     fn reset(&mut self, body: usize, phase: &Phase);
-    fn step(&mut self, members: &[Member], held: Held<'_>, steps: &Steps);
+    /// Some of the equal steps, by their numbers.
+    fn step(&mut self, members: &[Member], held: Held<'_>, steps: &Steps, some: Range<u64>);
+    /// The states of all bodies, for `restore`.
+    fn states(&self) -> Vec<[f64; 7 * W]>;
+    fn restore(&mut self, states: &[[f64; 7 * W]]);
     /// Writes rotors (body axes to space) and angular velocities in body axes.
     fn write(&self, rotors: &mut [[f64; 4]], omegas: &mut [[f64; 3]]);
     /// The first body that turns faster than a rate, and its rate, in rad/s.
@@ -132,7 +137,7 @@ struct Go<'a, const F: bool> {
     groups: &'a mut [Group<F>],
     members: &'a [Member],
     held: Held<'a>,
-    steps: &'a Steps,
+    steps: (&'a Steps, Range<u64>),
 }
 
 impl<const F: bool> Work for Go<'_, F> {
@@ -148,13 +153,13 @@ impl<const F: bool> Work for Go<'_, F> {
                 let held = (group.held(first, held), held.axes == Axes::Space);
                 let (bodies, state) = (&group.bodies, &mut group.state);
                 if group.free {
-                    march(bodies, state, &mut NoForcing, held, steps);
+                    march(bodies, state, &mut NoForcing, held, &steps);
                 } else if let Some(laws) = &mut group.laws {
-                    march(bodies, state, laws, held, steps);
+                    march(bodies, state, laws, held, &steps);
                 } else {
                     let member = |l: usize| &members[first + if l < group.count { l } else { 0 }];
                     let torques = array::from_fn(|l| &member(l).torques[..]);
-                    march(bodies, state, &mut Laws::new(group.gyrostats, torques), held, steps);
+                    march(bodies, state, &mut Laws::new(group.gyrostats, torques), held, &steps);
                 }
             }
         }
@@ -168,12 +173,12 @@ fn march<E: Forcing<W, F>, const F: bool>(
     state: &mut State<7, W, F>,
     laws: &mut E,
     (held, in_space): (Three<W, F>, bool),
-    steps: &Steps,
+    (steps, some): &(&Steps, Range<u64>),
 ) {
     let mut forcing = Holding { laws, held, in_space };
     // Copies, which the compiler may keep in registers.
     let (bodies, mut now) = (*bodies, classical::halved(state));
-    for k in 0..steps.count {
+    for k in some.clone() {
         let (time, h) = steps.nth(k);
         classical::step(&bodies, &mut forcing, &mut now, time, [h, h / 6.0]);
     }
@@ -192,8 +197,20 @@ impl<const F: bool> Groups for All<F> {
         }
     }
 
-    fn step(&mut self, members: &[Member], held: Held<'_>, steps: &Steps) {
-        fastest(Go { groups: &mut self.0, members, held, steps });
+    fn step(&mut self, members: &[Member], held: Held<'_>, steps: &Steps, some: Range<u64>) {
+        fastest(Go { groups: &mut self.0, members, held, steps: (steps, some) });
+    }
+
+    fn states(&self) -> Vec<[f64; 7 * W]> {
+        self.0.iter().map(|group| array::from_fn(|k| group.state[k / W].0[k % W])).collect()
+    }
+
+    fn restore(&mut self, states: &[[f64; 7 * W]]) {
+        for (group, state) in self.0.iter_mut().zip(states) {
+            for (k, x) in state.iter().enumerate() {
+                group.state[k / W].0[k % W] = *x;
+            }
+        }
     }
 
     fn write(&self, rotors: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {

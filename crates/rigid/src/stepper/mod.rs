@@ -181,6 +181,17 @@ impl Stepper {
 
     /// One step of length `dt` in s, which may be negative. On an error no state has changed.
     pub fn step(&mut self, dt: f64, held: Held<'_>) -> Result<(), Failed> {
+        self.step_while(dt, held, &mut || true)
+    }
+
+    /// As [`Stepper::step`]; if `go_on`, called every few milliseconds, returns false, the step ends with
+    /// [`SimulateError::Interrupted`].
+    pub fn step_while(
+        &mut self,
+        dt: f64,
+        held: Held<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Failed> {
         let pieces = self.pieces(dt);
         for piece in &pieces {
             self.check_turns(piece.dt / piece.count as f64)?;
@@ -190,12 +201,28 @@ impl Stepper {
                 let mut after = Vec::with_capacity(bodies.len());
                 for (number, (body, member)) in bodies.iter().zip(&self.members).enumerate() {
                     let torque = member.held(held, number);
-                    let next = body.stepped(self.method, member, torque, &pieces);
+                    let next = body.stepped(self.method, member, torque, &pieces, go_on);
                     after.push(next.map_err(|error| (number, error))?);
                 }
                 *bodies = after;
             }
-            Bodies::Lanes(groups) => pieces.iter().for_each(|steps| groups.step(&self.members, held, steps)),
+            Bodies::Lanes(groups) => {
+                let count: u64 = pieces.iter().map(|steps| steps.count).sum();
+                let together = (TOGETHER / self.members.len() as u64).max(1);
+                let before = (count > together).then(|| groups.states());
+                for steps in &pieces {
+                    for first in (0..steps.count).step_by(together as usize) {
+                        let last = steps.count.min(first + together);
+                        groups.step(&self.members, held, steps, first..last);
+                        if let Some(before) = &before
+                            && !go_on()
+                        {
+                            groups.restore(before);
+                            return Err((0, SimulateError::Interrupted));
+                        }
+                    }
+                }
+            }
         }
         let moving = if self.moves { &mut self.members[..] } else { &mut [] };
         for (number, member) in moving.iter_mut().enumerate() {
@@ -262,6 +289,9 @@ impl Stepper {
         }
     }
 }
+
+/// Steps of bodies in lanes that take some milliseconds.
+const TOGETHER: u64 = 1 << 15;
 
 /// Equal steps from one time to another, dt later.
 #[derive(Clone, Copy, Debug)]

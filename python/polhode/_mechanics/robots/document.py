@@ -7,7 +7,6 @@ import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 from xml.parsers import expat
 
 _LARGEST, _DEEPEST = 50_000_000, 200
@@ -126,7 +125,7 @@ def read(path: str | os.PathLike[str]) -> Node:
     if os.path.getsize(path) > _LARGEST:
         raise DocumentError(f"{name}: error: larger than {_LARGEST // 1_000_000} MB; split the file")
     try:
-        content = Path(path).read_bytes()
+        content = read(path)
     except OSError as error:
         raise DocumentError(f"{name}: error: cannot be read: {error.strerror}") from None
     return parse(content, name)

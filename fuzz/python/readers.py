@@ -124,6 +124,15 @@ def _motions(suffix: str) -> Callable[[Path], Iterator[bytes]]:
     return seeds
 
 
+_LEAPSECONDS = r"""KPL/LSK
+\begindata
+DELTET/DELTA_T_A = 32.184
+DELTET/K         = 1.657D-3
+DELTET/EB        = 1.671D-2
+DELTET/M         = ( 6.239996D0  1.99096871D-7 )
+DELTET/DELTA_AT  = ( 37, @2017-JAN-1 )
+\begintext
+"""
 _SDF = """<sdf version="1.9"><model name="m"><link name="arm"><inertial>
 <pose degrees="true">1 2 3 90 0 0</pose>
 <mass>4</mass><inertia><ixx>1</ixx><iyy>2</iyy><izz>3</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia>
@@ -180,6 +189,33 @@ def _store(folder: Path) -> Iterator[bytes]:
             yield path.relative_to(store).as_posix().encode() + b"\n" + path.read_bytes()
 
 
+@functools.cache
+def _kernels() -> list[str]:
+    """Return the paths of leapseconds, clock and frames of a spacecraft."""
+    paths = [f"{_FOLDER.name}/spacecraft.{suffix}" for suffix in ("tls", "tsc", "tf")]
+    Path(paths[0]).write_text(_LEAPSECONDS)
+    ph.io.write_sclk(paths[1], clock=-999, epoch=_EPOCH)
+    ph.io.write_fk(paths[2], [ph.io.CkFrame("BODY", number=-999000, clock=-999, center=-999)])
+    return paths
+
+
+def _read_ck(path: Path) -> Any:
+    try:
+        return ph.io.read_ck(path, kernels=_kernels())
+    except ValueError as error:
+        # The messages of SPICE name kernels.
+        if not str(error).startswith("SPICE: "):
+            raise
+
+
+def _ck(folder: Path) -> Iterator[bytes]:
+    inertia, path = ph.Inertia.from_principal_moments(1, 2, 3), folder / "motion.bc"
+    motion = ph.simulate(inertia, ph.State(ph.Rotor.identity(), [0.1, 2, 0.3]), [0, 1, 2])
+    frames = {"reference_frame": "J2000", "body_frame": "BODY"}
+    ph.io.write_ck(motion, path, kernels=_kernels(), epoch=_EPOCH, **frames)
+    yield path.read_bytes()
+
+
 def _read_aem_as_stated(path: Path) -> Any:
     return ph.io.read_aem(path, segment=1, epoch=_EPOCH, quaternion_type="LAST", attitude_dir="A2B")
 
@@ -190,6 +226,7 @@ def _of_body(read: Callable[..., Any]) -> tuple[Callable[[Path], Any], ...]:
 
 TARGETS = {
     "aem": Target("aem", (ph.io.read_aem, _read_aem_as_stated), _motions("aem")),
+    "ck": Target("bc", (_read_ck,), _ck),
     "robots": Target("xml", (bodies_of,), _robots),
     "csv": Target("csv", _of_body(ph.io.read_csv), _motions("csv")),
     "parquet": Target("parquet", _of_body(ph.io.read_parquet), _motions("parquet")),

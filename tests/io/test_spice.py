@@ -192,3 +192,30 @@ def test_kernels_that_do_not_fit(kernels, tmp_path):
         ph.io.read_ck(kernels[0], kernels=kernels)
     with pytest.raises(ValueError, match="segment must be from 1 to 1, got 2"):
         ph.io.read_ck(tmp_path / "a.bc", kernels=kernels, segment=2)
+
+
+# The segment begins at the third record. For each time it has seven numbers and the ticks; then follow
+# the start and the number of intervals, and the number of times.
+SEGMENT = 3 * 1024
+COUNT = SEGMENT + 8 * (8 * len(TIMES) + 2)
+
+
+@pytest.mark.parametrize(
+    ("at", "number", "expected"),
+    [
+        # The numbers of doubles and integers that describe a segment: SPICE writes as many to memory.
+        (8, np.int32(100), "the first record is not that of a CK"),
+        (12, np.int32(60), "the first record is not that of a CK"),
+        (COUNT, 1e9, "the segment has 1000000000 records"),
+        (COUNT, 0.0, "the segment has 0 records"),
+        (SEGMENT, 1e300, "numbers that are not those of attitudes"),
+        (SEGMENT, np.zeros(4), "the segment is damaged: .* not a rotor"),
+    ],
+)
+def test_damaged_files(at, number, expected, kernels, tmp_path):
+    path = tmp_path / "a.bc"
+    ph.io.write_ck(MOTION, path, kernels=kernels, **NAMES)
+    content, damage = path.read_bytes(), np.asarray(number).tobytes()
+    path.write_bytes(content[:at] + damage + content[at + len(damage) :])
+    with pytest.raises(ph.io.FileError, match=rf"a\.bc: error: .*{expected}"):
+        ph.io.read_ck(path, kernels=kernels)

@@ -6,6 +6,7 @@ import pytest
 
 pytest.importorskip("h5py")
 pytest.importorskip("pyarrow")
+pytest.importorskip("spiceypy")
 pytest.importorskip("zarr")
 
 import polhode as ph

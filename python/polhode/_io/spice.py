@@ -12,7 +12,7 @@ import os
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -30,6 +30,8 @@ _Paths = Sequence[str | os.PathLike[str]]
 
 # Class of frames whose attitude is in a CK, and the number of such records.
 _CK_CLASS, _TYPE = 3, 3
+# Bytes of the first record of a CK, and the numbers of doubles and integers that describe its segments.
+_FILE_RECORD, _SUMMARY = 1024, (2, 6)
 # Names of time systems in epochs of SPICE.
 _SYSTEMS = {"UTC": "UTC", "TT": "TDT", "TDB": "TDB"}
 
@@ -219,9 +221,14 @@ def read_ck(
     if not os.path.isfile(path):
         raise FileError(f"{name}: error: not a regular file; give the path of a file")
     with open(path, "rb") as file:
-        first = file.read(7)
-    if first != b"DAF/CK ":
+        head = file.read(_FILE_RECORD)
+    if not head.startswith(b"DAF/CK "):
         raise FileError(f"{name}: error: not a binary SPICE CK, which begins with DAF/CK")
+    order: Literal["big", "little"] = "big" if head[88:96] == b"BIG-IEEE" else "little"
+    # SPICE writes as many numbers to memory as the file states.
+    stated = tuple(int.from_bytes(head[at : at + 4], order) for at in (8, 12))
+    if len(head) < _FILE_RECORD or stated != _SUMMARY:
+        raise FileError(f"{name}: error: the first record is not that of a CK; the file may be damaged")
     with _loaded(kernels) as spice:
         handle = spice.dafopr(name)
         try:
@@ -229,6 +236,9 @@ def read_ck(
             facts = spice.dafus(descriptor, 2, 6)[1]
             number, reference, rated = int(facts[0]), int(facts[1]), bool(facts[3])
             count = int(spice.cknr03(handle, descriptor))
+            # A record has a quaternion at least.
+            if not 0 < count <= os.path.getsize(path) // 32:
+                raise FileError(f"{name}: error: the segment has {count} records; the file may be damaged")
             records = np.array([spice.ckgr03(handle, descriptor, k + 1) for k in range(count)])
         finally:
             spice.dafcls(handle)
@@ -240,11 +250,18 @@ def read_ck(
         start = spice.unitim(_of_epoch(spice, epoch, system), "ET", "TDT")
         times = np.array([spice.unitim(x, "ET", "TDT") - start for x in seconds])
         space, body = str(spice.frmnam(reference)), _frame_name(spice, number, name)
-    quaternions: Array = records[:, 1:5] / np.linalg.norm(records[:, 1:5], axis=1, keepdims=True)
-    rotor = Rotor.from_quaternion(continuous(quaternions * [1.0, -1.0, -1.0, -1.0]), order="wxyz")
-    omega = (~rotor)(bivector(np.ascontiguousarray(records[:, 5:8]))) if rated else None
+    if not (np.isfinite(records).all() and (np.abs(records[:, 1:5]) <= 2).all()):
+        raise FileError(
+            f"{name}: error: the segment has numbers that are not those of attitudes; it is damaged"
+        )
     attributes = {"epoch": epoch, "time_system": system, "reference_frame": space, "body_frame": body}
-    return AttitudeHistory(times, rotor, omega, attributes=attributes)
+    try:
+        quaternions = continuous(records[:, 1:5] * [1.0, -1.0, -1.0, -1.0])
+        rotor = Rotor.from_quaternion(quaternions, order="wxyz")
+        omega = (~rotor)(bivector(np.ascontiguousarray(records[:, 5:8]))) if rated else None
+        return AttitudeHistory(times, rotor, omega, attributes=attributes)
+    except ValueError as error:
+        raise FileError(f"{name}: error: the segment is damaged: {error}") from None
 
 
 @contextlib.contextmanager

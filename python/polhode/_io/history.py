@@ -133,7 +133,15 @@ class AttitudeHistory:
 
     @staticmethod
     def of(motion: Trajectory | AttitudeHistory) -> AttitudeHistory:
-        """Return the history of the motion of one body; a ValueError for a batch."""
+        """Return the history of the motion of one body; a ValueError for a batch.
+
+        Examples
+        --------
+        >>> ball = ph.Inertia.from_principal_moments(2, 2, 2)
+        >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 1, 2])
+        >>> ph.io.AttitudeHistory.of(motion)
+        AttitudeHistory(3 times, t = 0 … 2 s, rotor, omega_body, momentum_space, position, velocity, energy)
+        """
         if isinstance(motion, AttitudeHistory):
             return motion
         if not isinstance(motion, Trajectory):
@@ -165,6 +173,13 @@ class AttitudeHistory:
         ------
         ValueError
             Without angular velocities; `polhode.rates_from_attitude` estimates them from the attitudes.
+
+        Examples
+        --------
+        >>> ball = ph.Inertia.from_principal_moments(2, 2, 2)
+        >>> motion = ph.simulate(ball, ph.State(ph.Rotor.identity(), [0, 0, 1]), [0, 1, 2])
+        >>> ph.io.AttitudeHistory.of(motion).trajectory(ball).energy
+        array([1., 1., 1.])
         """
         inertia = body.inertia if isinstance(body, Body) else body
         if not isinstance(inertia, Inertia):

@@ -66,6 +66,11 @@ class FrameVector:
         """Return the direction from an observer to a target, names or numbers of SPICE.
 
         `aberration` is the correction, as in SPICE: ``"NONE"``, ``"LT"``, ``"CN+S"`` and so on.
+
+        Examples
+        --------
+        >>> ph.io.FrameVector.position("Z", -999, "EARTH").axis
+        'Z'
         """
         return FrameVector(axis, _seen("POSITION", observer, target, aberration))
 
@@ -73,13 +78,25 @@ class FrameVector:
     def velocity(
         axis: str, observer: str | int, target: str | int, frame: str, *, aberration: str = "NONE"
     ) -> FrameVector:
-        """Return the direction of the velocity of a target relative to an observer, in a frame of SPICE."""
+        """Return the direction of the velocity of a target relative to an observer, in a frame of SPICE.
+
+        Examples
+        --------
+        >>> ph.io.FrameVector.velocity("X", "EARTH", -999, "J2000").axis
+        'X'
+        """
         seen = _seen("VELOCITY", observer, target, aberration)
         return FrameVector(axis, (*seen, ("FRAME", _quoted(frame))))
 
     @staticmethod
     def fixed(axis: str, vector: object, frame: str) -> FrameVector:
-        """Return the direction of a vector (3,) that is constant in a frame of SPICE, such as ``"J2000"``."""
+        """Return the direction of a vector (3,) that is constant in a frame of SPICE, such as ``"J2000"``.
+
+        Examples
+        --------
+        >>> ph.io.FrameVector.fixed("-Y", [0, 0, 1], "J2000").axis
+        '-Y'
+        """
         numbers = as_components(vector, 3, "the vector")
         if not numbers.any():
             raise ValueError("a constant vector must have a direction, got 0, 0, 0")

@@ -68,7 +68,14 @@ class KeplerOrbit:
         return 2 * np.pi / self.rate
 
     def position(self, t: Any) -> Multivector:
-        """Return the position relative to the planet at times (...), vectors in m."""
+        """Return the position relative to the planet at times (...), vectors in m.
+
+        Examples
+        --------
+        >>> orbit = ph.torque.KeplerOrbit(1e7)
+        >>> print(f"{orbit.position(orbit.period / 4).norm():.0f}")
+        10000000
+        """
         times = as_floats(t, "t")
         _, rows = _native.orbit_positions(self._numbers, np.ascontiguousarray(times.ravel()))
         return vector(rows.reshape(*times.shape, 3))

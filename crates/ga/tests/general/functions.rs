@@ -242,3 +242,24 @@ fn scalars_become_factors() {
         spacetime.calculus.exp(&spacetime.sum(&[(-720.0, &[]), (710.0, &[1, 2]), (1.0, &[3, 4])])).unwrap();
     assert!((exp[0] / (0.5 * f64::exp(-10.0) * f64::cos(1.0)) - 1.0).abs() <= 2.0 * EPS * 710.0, "{exp:?}");
 }
+
+/// Vectors, their complements and pseudoscalars square to numbers in any metric, and planes generate the even elements; so
+/// their exponentials have no other grades. These sets are the smallest, for each grade occurs.
+#[test]
+fn exponentials_of_blades_have_two_grades() {
+    for (p, q, r) in signatures(6).filter(|(p, q, r)| p + q + r > 2) {
+        let (calculus, n) = (Space::new(p, q, r).calculus, p + q + r);
+        let set = |grades: &[usize]| Grades(grades.iter().fold(0, |set, k| set | 1 << k));
+        for k in [1, n - 1, n] {
+            assert_eq!(calculus.grades(Function::Exp, set(&[k])), set(&[0, k]), "grade {k} of {p}, {q}, {r}");
+        }
+        let even: Vec<usize> = (0..=n).step_by(2).collect();
+        let odd: Vec<usize> = (1..=n).step_by(2).collect();
+        assert_eq!(calculus.grades(Function::Sqrt, set(&[0, 2])), set(&even));
+        assert_eq!(calculus.grades(Function::Exp, set(&[0, 2])), set(if n == 3 { &[0, 2] } else { &even }));
+        assert_eq!(calculus.grades(Function::Log, set(&[0, 2])), set(&[0, 2]));
+        if n > 3 {
+            assert_eq!(calculus.grades(Function::Inverse, set(&[1, 3])), set(&odd));
+        }
+    }
+}

@@ -86,6 +86,7 @@ pub fn norm(m: &[f64]) -> f64 {
 }
 
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len(), "values of one algebra");
     norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
 }
 

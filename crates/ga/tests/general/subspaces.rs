@@ -22,6 +22,22 @@ fn complements_fill_the_space() {
     }
 }
 
+/// De Morgan's law defines the regressive product: `rc(A ∨ B) = rc(A) ∧ rc(B)`. The pseudoscalar is its unit.
+#[test]
+fn the_regressive_product_is_the_wedge_of_complements() {
+    for (p, q, r) in signatures(5) {
+        let space = Space::new(p, q, r);
+        let numbers = |seed: usize| (0..space.size()).map(|i| (7 * i + seed) as f64 % 11.0 - 5.0).collect();
+        let (a, b): (Vec<f64>, Vec<f64>) = (numbers(1), numbers(4));
+        let complement = |m: &[f64]| space.calculus.right_complement(m);
+        let vee = space.calculus.vee(&a, &b);
+        assert_eq!(complement(&vee), space.wedge(&complement(&a), &complement(&b)));
+        let mut pseudoscalar = space.scalar(0.0);
+        pseudoscalar[space.size() - 1] = 1.0;
+        assert_eq!(space.calculus.vee(&pseudoscalar, &a), a);
+    }
+}
+
 #[test]
 fn join_and_meet_of_subspaces() {
     let g3 = Space::new(3, 0, 0);

@@ -250,6 +250,13 @@ def test_a_failure_does_not_stop_the_others(how):
     assert [f.index for f in motion[motion.ok == False].failures] == [(0,)]  # noqa: E712
 
 
+def test_failures_have_the_index_of_their_body():
+    law = ph.torque.constant_body(np.array([[0.1, 0.1, 1e308], [1e308, 0.1, 0.1]])[..., None] * [1, 1, 0])
+    motion = ph.simulate(ASYMMETRIC, START, [0.0, 1.0], law, method="rk4", step=0.1)
+    assert [failure.index for failure in motion.failures] == [(0, 2), (1, 0)]
+    assert [failure.index for failure in motion[1].failures] == [(0,)]
+
+
 def test_overflow_is_a_failure():
     law = ph.torque.constant_body([[1e308, 1e308, 0], [0.1, 0, 0]])
     motion = ph.simulate(ASYMMETRIC, START, [0.0, 1.0], law, method="rk4", step=0.1)

@@ -109,6 +109,8 @@ def test_laws_are_values():
         (lambda: T.KeplerOrbit(-1.0), ValueError, "semi_major_axis is -1; it must be positive"),
         (lambda: T.KeplerOrbit(7e6, 1.0), ValueError, "eccentricity is 1"),
         (lambda: T.KeplerOrbit(7e6, mu=np.inf), ValueError, "mu is inf"),
+        (lambda: T.KeplerOrbit([7e6, 8e6]), TypeError, "semi_major_axis"),
+        (lambda: T.KeplerOrbit(7e6, 0.1, "pi"), TypeError, "mean_anomaly"),
         (lambda: T.magnetic([1, 0, 0], T.dipole_field(MOMENT)), TypeError, "needs an orbit"),
         (lambda: T.magnetic([1, 0, 0], lambda t, x: x), TypeError, "needs an orbit"),
         (lambda: T.magnetic([1, 0, 0], [0, 0, 1], ORBIT), TypeError, "function of t and position"),

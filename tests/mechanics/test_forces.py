@@ -203,6 +203,18 @@ def test_an_off_centre_thrust_turns_the_body():
     assert motion.omega_body[0] != ph.simulate(body, start(), [4.0], force=F.thrust(push)).omega_body[0]
 
 
+def test_two_opposite_thrusters_are_a_couple():
+    """They turn the body with ``2 r∧F``, wherever its centre is, and do not move it."""
+    r, push = ph.vector([0.5, -0.25, 1.0]), ph.vector([0.25, 0.5, -0.125])
+    body = ph.Body(M, BODY.inertia, center_of_mass=[0.125, 0, 0.25])
+    thrusts = F.thrust(push, at=r) + F.thrust(-push, at=-r)
+    motion = ph.simulate(body, start(), [4.0], force=thrusts, rtol=1e-10)
+    couple = ph.simulate(body, start(), [4.0], ph.torque.constant_body(2 * (r ^ push)), rtol=1e-10)
+    assert motion.rotor[0].distance(couple.rotor[0]) <= 1e-9
+    assert motion.omega_body[0].is_close(couple.omega_body[0], rtol=1e-9)
+    assert motion.position[0].is_close(couple.position[0], atol=1e-9)
+
+
 @pytest.mark.parametrize(
     "force",
     [

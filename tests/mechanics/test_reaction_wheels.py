@@ -227,6 +227,10 @@ def test_wheels_bring_a_body_to_rest():
         (lambda: T.reaction_wheels(np.eye(3), 1, np.nan), "row of torques is"),
         (lambda: T.reaction_wheels(np.eye(3), 1, speeds=9, max_speed=5), "wheel 0 starts at 9 rad/s"),
         (lambda: T.reaction_wheels(np.eye(3), 1, max_torque=0), "max_torque is 0.0; it must be positive"),
+        (
+            lambda: T.reaction_wheels(np.eye(3), 1, max_speed=[5, -1, 5]),
+            r"max_speed\[1\] is -1.0; it must be positive",
+        ),
     ],
 )
 def test_invalid_wheels_raise(make, message):

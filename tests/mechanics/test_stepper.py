@@ -139,6 +139,8 @@ def test_reset_sets_state_and_time():
     assert str(stepper) == "Stepper(t = 5.5 s)"
     with pytest.raises(ValueError, match=r"batch shape \(2,\), but the stepper \(\)"):
         stepper.reset(ph.State(ph.Rotor.identity(2), [0, 0, 1]))
+    with pytest.raises(TypeError, match="State"):
+        stepper.reset(START.rotor)
 
 
 def test_steps_back_return():

@@ -212,6 +212,11 @@ def test_control_is_a_spring_and_a_damper():
     np.testing.assert_allclose(found, [1, 2, 4] * spring - [0.5, 0.25, 2] * OMEGA, rtol=4 * EPS)
     alike = ph.torque.pd_control(1.5, 0, REST).at(BODY, START)
     assert alike.is_close(LAWS["torsion_spring"].at(BODY, START), rtol=4 * EPS)
+    # A column holds one number for each body.
+    column = ph.torque.pd_control([[1.5], [3.0]], [[0.25], [0.5]], REST)
+    rows = ph.torque.pd_control([[1.5] * 3, [3.0] * 3], [[0.25] * 3, [0.5] * 3], REST)
+    motions = [ph.simulate(BODY, START, [1.0], law) for law in (column, rows)]
+    assert (motions[0].rotor == motions[1].rotor).all()
 
 
 def test_tables_are_interpolated():
@@ -346,6 +351,7 @@ def test_repr_of_laws():
         (lambda T: T.radiation_pressure(1, ph.e1, [0, 0, 0]), ["sun is [0.0, 0.0, 0.0]", "must not be zero"]),
         (lambda T: T.viscous_damping([1, -2, 3]), ["d", "-2", "negative"]),
         (lambda T: T.viscous_damping([1, 2]), ["(2,)", "three"]),
+        (lambda T: T.viscous_damping([1]), ["(1,)", "three"]),
         (lambda T: T.pd_control(np.nan, 1), ["kp", "nan"]),
         (lambda T: T.torsion_spring([1, 2, 3], ph.Rotor.identity(2)), ["torsion_spring", "(3,)", "(2,)"]),
         (lambda T: T.larmor([[1, 0]]), ["b", "(1, 2)"]),

@@ -309,8 +309,8 @@ def _edge(h0: Array, h1: Array, c0: Array, c1: Array) -> Array:
 def _tridiagonal(lower: Array, diagonal: Array, upper: Array, right: Array) -> Array:
     """Solve ``lower x_{k-1} + diagonal x_k + upper x_{k+1} = right`` by cyclic reduction.
 
-    The first number of `lower` and the last of `upper` are not used. The even equations eliminate the neighbours
-    of each odd one, which leaves half as many; stable for diagonally dominant rows.
+    The first number of `lower` and the last of `upper` are not used. The even equations eliminate the
+    neighbours of each odd one, which leaves half as many; stable for diagonally dominant rows.
     """
     n = len(diagonal)
     if n == 1:

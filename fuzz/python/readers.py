@@ -111,8 +111,12 @@ def _motions(suffix: str) -> Callable[[Path], Iterator[bytes]]:
 
     def seeds(folder: Path) -> Iterator[bytes]:
         inertia, path = ph.Inertia.from_principal_moments(1, 2, 3), folder / f"motion.{suffix}"
-        for omega in ([0.1, 2, 0.3], [[0.1, 2, 0.3], [0, 0, 1]]):
-            motion = ph.simulate(inertia, ph.State(ph.Rotor.identity(), omega), np.linspace(0, 1, 3))
+        for omega, events in (
+            ([0.1, 2, 0.3], [ph.event.plane(ph.e1, ph.e1)]),
+            ([[0.1, 2, 0.3], [0, 0, 1]], ()),
+        ):
+            start = ph.State(ph.Rotor.identity(), omega)
+            motion = ph.simulate(inertia, start, np.linspace(0, 3, 3), events=events)
             if suffix != "aem":
                 motion.save(path)
                 yield path.read_bytes()

@@ -228,3 +228,15 @@ def test_attributes_that_are_not_those_of_a_motion(drift, tmp_path):
     with pytest.raises(ValueError, match="the attribute 'drift' must be numbers by name"):
         ph.Trajectory.read(path)
     assert len(ph.io.read(path)) == 2
+
+
+def test_events_that_are_not_those_of_a_motion(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "a.nc"
+    crossing = ph.event.plane(ph.e1, ph.e1)
+    ph.simulate(ASYMMETRIC, START, np.linspace(0, 9, 3), events=[crossing]).save(path)
+    with h5py.File(path, "r+") as file:
+        del file["event_time"]
+        file["event_time"] = 1.0
+    with pytest.raises(ValueError, match=r"a\.nc is not a motion that polhode wrote"):
+        ph.Trajectory.read(path)

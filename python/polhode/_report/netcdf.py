@@ -270,7 +270,7 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
         )
     except KeyError as error:
         raise ValueError(f"{path} is not a motion that polhode wrote: {error} is missing") from None
-    except (TypeError, ValueError) as error:
+    except (IndexError, TypeError, ValueError) as error:
         raise ValueError(f"{path} is not a motion that polhode wrote: {error}") from error
 
 

@@ -219,6 +219,8 @@ LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
     [
         (LINES + "2, 1,x2,3\n", ":4:6: error: 'x2' is not a finite number"),
         (LINES + "2,1,2,  nan\n", ":4:9: error: 'nan' is not a finite number"),
+        (LINES + "2,1,2,1_0\n", ":4:7: error: '1_0' is not a finite number; remove the row"),
+        (150_000 * "t" + "\n", ":1:1: error: not names of columns: field larger than field limit"),
         (LINES + "# a comment\n\n2,1,2\n", ":6:1: error: 3 fields, but 4 columns are named"),
         (LINES + "2,,2,3\n", ":4:3: error: the field is empty; remove the row"),
         (

@@ -113,10 +113,7 @@ def _numbers(path: Path, line: int, fields: list[str], places: list[int]) -> lis
     numbers = []
     for place in places:
         field = fields[place].strip()
-        try:
-            value = float(field)
-        except ValueError:
-            value = math.nan
+        value = _number(field)
         if not math.isfinite(value):
             problem = f"{field!r} is not a finite number" if field else "the field is empty"
             remedy = "write a decimal point" if _is_number(field.replace(",", ".")) else "remove the row"
@@ -131,10 +128,15 @@ def _numbers(path: Path, line: int, fields: list[str], places: list[int]) -> lis
 
 
 def _is_number(text: str) -> bool:
+    return math.isfinite(_number(text))
+
+
+def _number(text: str) -> float:
+    """Return the number that a text is; NaN for other text, and for 1_000, as Python writes it."""
     try:
-        return math.isfinite(float(text))
+        return float(text) if text.isascii() and "_" not in text else math.nan
     except ValueError:
-        return False
+        return math.nan
 
 
 def _column(fields: list[str], place: int) -> int:

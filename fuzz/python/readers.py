@@ -69,20 +69,30 @@ class Fields(Target):
 
 
 class Store(Target):
-    """A folder, of which one file at a time is replaced: its name, a line feed, and its content."""
+    """A folder, of which one file at a time is replaced: its name, a line feed, and its content.
+
+    After a minus sign the folder is without the checksums that would reject most changes.
+    """
 
     @functools.cached_property
-    def files(self) -> dict[str, bytes]:
+    def files(self) -> dict[bytes, bytes]:
         """The files of the store."""
-        return dict(seed.split(b"\n", 1) for seed in self.corpus())
+        return dict(seed.split(b"\n", 1) for seed in super().corpus())
+
+    def corpus(self) -> list[bytes]:
+        """Return the files with and without checksums of the others."""
+        files = [name + b"\n" + content for name, content in self.files.items()]
+        return [*files, *(b"-" + content for content in files)]
 
     def check(self, content: bytes) -> None:
         """As for other targets."""
-        name, _, content = content.partition(b"\n")
+        name, _, new = content.removeprefix(b"-").partition(b"\n")
         if name not in self.files:
             return
         with tempfile.TemporaryDirectory(suffix=f".{self.suffix}") as folder:
-            for other, own in (self.files | {name: content}).items():
+            for other, own in (self.files | {name: new}).items():
+                if content.startswith(b"-") and other.startswith(b".polhode"):
+                    continue
                 path = Path(folder, other.decode())
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(own)

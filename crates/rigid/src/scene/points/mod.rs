@@ -29,7 +29,7 @@ use polhode_ga::diagnostic::quote;
 use std::ops::Range;
 use std::sync::OnceLock;
 use toml::de::DeValue;
-use values::{MOST_POINTS, Values};
+use values::{MOST_POINTS, MOST_TEXT, Values};
 
 /// Reads the text of a table of points by its path; relative paths start at the folder of the scene.
 pub type TableSource<'a> = &'a dyn Fn(&std::path::Path) -> Result<String, String>;
@@ -301,7 +301,8 @@ fn walk(reader: &mut Reader, table: &Table, above: &Path, columns: &mut Vec<Colu
             }
             DeValue::Array(items) => Some(Values::items(items)),
             DeValue::Table(fields) if fields.contains_key("from") || fields.contains_key("to") => {
-                values::range(reader, value)
+                let held: usize = columns.iter().map(|column| column.values.size()).sum();
+                values::range(reader, value, MOST_TEXT.saturating_sub(held))
             }
             DeValue::Table(fields) => {
                 let inner = Table { title: "the table".into(), span: value.span(), fields };

@@ -169,6 +169,14 @@ fn ranges_have_equal_steps_or_ratios() {
 }
 
 #[test]
+fn ranges_have_bounded_text() {
+    let unit = "s ".repeat(4000);
+    let range = format!("{{ from = '1 {unit}', to = '2 {unit}', number = 10_000_000 }}");
+    let errors = parse(&with(&format!("grid.torque.viscous_damping = {range}"))).unwrap_err();
+    assert!(errors[0].contains("more than 4 GB of text"), "{errors:?}");
+}
+
+#[test]
 fn defined_values_vary_in_formulas() {
     let crowd = scene(&with("grid.define.k = [1, '3']"));
     let drawn = bodies(&crowd, 0..2);

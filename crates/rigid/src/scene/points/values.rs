@@ -7,6 +7,10 @@ use toml::de::{DeArray, DeValue};
 
 /// Maximum number of points.
 pub const MOST_POINTS: usize = 100_000_000;
+/// Maximum number of bytes of values that the scene does not have.
+pub const MOST_TEXT: usize = u32::MAX as usize;
+/// Bytes of a number in a range, with quotes and a space.
+const LONGEST_NUMBER: usize = 28;
 
 /// The values of a column.
 #[derive(Clone, Debug)]
@@ -42,6 +46,11 @@ impl Values {
     /// Number of values.
     pub fn len(&self) -> usize {
         self.places.len()
+    }
+
+    /// Number of bytes of values that the scene does not have.
+    pub fn size(&self) -> usize {
+        self.own.as_ref().map_or(0, String::len)
     }
 
     /// Whether a place in the scene is in one of the values.
@@ -110,8 +119,9 @@ pub fn string(text: &str) -> String {
     quoted
 }
 
-/// The values of `{ from = a, to = b, number = n }`, in equal steps, or with `spacing = "log"` in equal ratios.
-pub fn range(reader: &mut Reader, value: &Value) -> Option<Values> {
+/// The values of `{ from = a, to = b, number = n }`, in equal steps, or with `spacing = "log"` in equal ratios; at most
+/// `most` bytes of text.
+pub fn range(reader: &mut Reader, value: &Value, most: usize) -> Option<Values> {
     let table = &reader.table(value, "of a range")?;
     reader.only(table, &["from", "to", "number", "spacing"]);
     let from = reader.field(table, "from", end);
@@ -137,6 +147,10 @@ pub fn range(reader: &mut Reader, value: &Value) -> Option<Values> {
     if log && a * b <= 0.0 {
         let message = format!("equal ratios need two numbers of one sign and not 0, found {a} and {b}");
         reader.report(value.span(), message);
+        return None;
+    }
+    if count.saturating_mul(LONGEST_NUMBER + unit.len()) > most {
+        reader.report(value.span(), "the values have more than 4 GB of text, give fewer or a shorter unit");
         return None;
     }
     let mut values = Values::new();

@@ -32,6 +32,7 @@ TOPS = (FREE, LAGRANGE, KOVALEVSKAYA)
 SHORT, LONG = 100.0, 10_000.0
 GOAL = 100
 RIVAL = "SciPy"
+OTHERS = ("black", "tab:green", "tab:cyan")  # colours of the other tools
 REFERENCES = machine.ROOT / "tests" / "reference" / "motion_cases.json"
 BITS = np.finfo(np.longdouble).nmant + 1
 LEGEND = f"""\
@@ -192,6 +193,16 @@ def data(found: list[Panel]) -> list[dict[str, Any]]:
     return [asdict(panel) for panel in found]
 
 
+def _colours(kinds: list[tuple[str, str]]) -> dict[tuple[str, str], Any]:
+    """Return a colour for each method of ours, from violet to orange, and one for each other tool."""
+    from matplotlib import colormaps
+
+    others = dict(zip((tool for tool in TOOLS if tool != OURS), OTHERS, strict=True))
+    ours = [kind for kind in kinds if kind[0] == OURS]
+    shades = dict(zip(ours, colormaps["plasma"](np.linspace(0.0, 0.85, len(ours))), strict=True))
+    return {kind: shades[kind] if kind in shades else others[kind[0]] for kind in kinds}
+
+
 def plot(found: list[Panel]) -> bytes | None:
     """Plot error against CPU time as a PNG, one plot for each panel; None without matplotlib."""
     try:
@@ -202,18 +213,20 @@ def plot(found: list[Panel]) -> bytes | None:
     columns = min(2, len(found))
     rows = -(-len(found) // columns)
     drawing = Figure(figsize=(6.5 * columns, 4.2 * rows), layout="constrained")
-    colours = dict(zip(TOOLS, ("tab:red", "tab:blue", "tab:green", "tab:orange"), strict=True))
     kinds = list(dict.fromkeys(mark.kind for panel in found for mark in panel.marks))
+    colours = _colours(kinds)
+    lines = {}
     for panel, axes in zip(found, drawing.subplots(rows, columns, squeeze=False).flat, strict=False):
         for kind, shape in zip(kinds, cycle("os^vD<>Pp*Xhd"), strict=False):
             marks = [mark for mark in panel.marks if mark.kind == kind]
             x, y = [mark.seconds for mark in marks], [max(mark.error, 1e-17) for mark in marks]
-            look = {"marker": shape, "ms": 5, "lw": 1, "color": colours[kind[0]], "alpha": 0.8}
+            look = {"marker": shape, "ms": 5, "lw": 1 if kind[0] == OURS else 2, "color": colours[kind]}
             if marks:
-                axes.loglog(x, y, label=" ".join(kind), **look)
+                (lines[kind],) = axes.loglog(x, y, label=" ".join(kind), alpha=0.8, **look)
         axes.set(title=panel.title, xlabel="CPU time in s", ylabel="|R − R_true|")
         axes.grid(alpha=0.3)
-        axes.legend(fontsize=6, loc="best")
+    shown = [lines[kind] for kind in kinds]
+    drawing.legend(handles=shown, loc="outside lower center", ncols=5, fontsize=8)
     file = BytesIO()
     drawing.savefig(file, format="png", dpi=110)
     return file.getvalue()

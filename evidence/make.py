@@ -129,7 +129,13 @@ def rotations(page: Page, effort: Effort) -> int:
     drawing = Figure(figsize=(9, 3.2))
     for axes, errors in zip(drawing.subplots(1, len(found), sharey=True), found, strict=True):
         axes.semilogx(errors.sizes, errors.ulps, ",", color="#1f5fa8", rasterized=True)
-        axes.set(title=errors.name, xlabel="size", ylabel="error, ulp", ylim=(0, None), xlim=(1e-8, 1e6))
+        axes.set(
+            title=errors.name,
+            xlabel="size",
+            ylabel="error, ulp",
+            ylim=(0, None),
+            xlim=(1e-8, 3 * errors.sizes.max()),
+        )
     page.plot(
         drawing,
         "Errors against 60 digits. " + "; ".join(f"{e.name}: {e.about}" for e in found) + ". ulp = 2⁻⁵².",

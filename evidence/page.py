@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 STYLE = """
 :root { color-scheme: light dark; }
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; display: block; overflow-x: auto; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; display: block; overflow-x: auto;
+  margin: 1rem 0; }
 th, td { padding: 0.15rem 0.7rem; text-align: right; border-bottom: 1px solid #8884; white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 td.words, th.words { white-space: normal; text-align: left; min-width: 12rem; overflow-wrap: anywhere; }

@@ -380,4 +380,4 @@ def allclose(a: Any, b: Any, rtol: float = 4 * np.finfo(float).eps, atol: float 
 def __getattr__(name: str) -> Any:
     if name.startswith("__"):
         raise AttributeError(name)
-    return lambda *_, **__: missing(name)
+    return lambda *_, **__: missing(f"the function {name}")

@@ -85,6 +85,19 @@ def test_signs_of_other_coefficients():
     assert unknown.canonical() == unknown
 
 
+def test_signs_of_exact_half_turns():
+    sympy = pytest.importorskip("sympy")
+    t = sympy.Symbol("t", positive=True)
+    given = Rotor.from_components(np.array([0, 0, sympy.Rational(3, 5), sympy.Rational(-4, 5)]))
+    wanted = Rotor.from_components([0, 0, 0.6, -0.8]).canonical()
+    assert given.canonical().astype(float) == wanted
+    assert (-given).canonical().astype(float) == wanted
+    unit = sympy.sqrt(1 + t**2)
+    symbolic = Rotor.from_components(np.array([0, 1 / unit, t / unit, 0]))
+    assert symbolic.canonical() == -symbolic
+    assert (-symbolic).canonical() == -symbolic
+
+
 # --- groups
 
 

@@ -78,6 +78,14 @@ def test_laws_add_up_and_are_values():
     assert (motion.rotor - expected.rotor).norm().max() < 1e-9  # both are stepped to 1e-10
 
 
+def test_weights_about_one_pivot_add_up():
+    half, whole = (ph.torque.gravity(TOP, g, PIVOT) for g in (G / 2, G))
+    twice, once = (ph.simulate(TOP, START, TIMES, law, rtol=1e-10) for law in (half + half, whole))
+    assert twice.rotor.distance(once.rotor).max() <= 1e-8
+    with pytest.raises(ValueError, match="hold the body at different points"):
+        ph.simulate(TOP, START, TIMES, half + ph.torque.gravity(TOP, G / 2))
+
+
 def test_batches_of_bodies_accelerations_and_pivots():
     bodies = [TOP, BENT, TOP + BENT]
     g = np.array([[G], [1.6]])

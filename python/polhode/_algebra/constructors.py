@@ -13,6 +13,7 @@ from polhode._algebra.grades import with_grades
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.products import coerced
 from polhode._support.arrays import Array, as_components, mapped
+from polhode._support.memory import require_array
 
 _G3 = algebra(3)
 _KINDS = ("scalar", "vector", "bivector", "trivector")
@@ -192,6 +193,7 @@ def from_pauli(matrices: Any) -> Multivector:
     p = np.asarray(matrices)
     if p.dtype.kind not in "iufc" or p.shape[-2:] != (2, 2):
         raise ValueError(f"from_pauli needs numeric matrices of shape (..., 2, 2), got {p.dtype} {p.shape}")
+    require_array(p.shape, "the matrices", 16)
     numbers = np.ascontiguousarray(p, dtype=np.complex128).view(np.float64).reshape(*p.shape[:-2], 8)
     return Multivector._of(_native.from_pauli(numbers), _ALL)
 

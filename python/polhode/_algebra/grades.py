@@ -78,6 +78,8 @@ def linear(left: Multivector, right: Any, combine: Callable[[Any, Any], Any]) ->
     algebra = common_algebra(left, other)
     mask = left._mask | other._mask
     a, b = common(over_grades(left, mask), over_grades(other, mask))
+    if is_float(a) and a.shape != b.shape:
+        require_array(np.broadcast_shapes(a.shape, b.shape), "values", a.itemsize)
     with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
         return _native.Multivector._of(combine(a, b), mask, algebra)
 

@@ -20,13 +20,17 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.parameters import common
 from polhode._support.arrays import Array, Shape, as_components, as_float, as_floats
 from polhode._support.files import loadable
+from polhode._support.memory import require_array
 
 _G3 = algebra_of(3)
+_BYTES = 800  # of an inertia, in Python and in the core
 
 
 def matrices(inertias: Iterable[Inertia]) -> Array:
     """Return the matrices (n, 3, 3) of inertias."""
     return _native.Inertia.matrices([inertia._core for inertia in inertias]).reshape(-1, 3, 3)
+
+
 
 
 class Inertia(LinearMap):
@@ -77,7 +81,8 @@ class Inertia(LinearMap):
         parts = [as_floats(x, f"moment i{k}") for k, x in enumerate((i1, i2, i3), 1)]
         if not any(part.ndim for part in parts):
             return Inertia(_native.Inertia.from_principal_moments(np.array(parts)))
-        common({f"i{k}": part.shape for k, part in enumerate(parts, 1)}, "the moments")
+        shape = common({f"i{k}": part.shape for k, part in enumerate(parts, 1)}, "the moments")
+        require_array(shape, "inertias", _BYTES)
         moments = np.stack(np.broadcast_arrays(*parts), axis=-1)
         # Typed as one inertia, which numbers give.
         many: Inertia = _many(_native.Inertia.all_from_principal_moments(moments), moments.shape[:-1])
@@ -103,6 +108,7 @@ class Inertia(LinearMap):
         if matrix.shape[-2:] != (3, 3):
             raise ValueError(f"inertia matrix must have shape (3, 3) or (..., 3, 3), got {matrix.shape}")
         batch = matrix.shape[:-2]
+        require_array(batch, "inertias", _BYTES)
         rows = matrix.reshape(*batch, 9)
         if not batch:
             return Inertia(_native.Inertia.from_matrix(rows))
@@ -275,7 +281,10 @@ class Body:
 
     @staticmethod
     def _solid(kind: str, sizes: Any, mass: float | None, density: float | None) -> Body:
-        lengths = np.ravel(as_floats(sizes, f"the sizes of a {kind}")).tolist()
+        given = as_floats(sizes, f"the sizes of a {kind}")
+        if given.size > 3:
+            raise ValueError(f"the sizes of a {kind} are at most three numbers, got shape {given.shape}")
+        lengths = np.ravel(given).tolist()
         return Body._of(_native.Body.solid(kind, lengths, *_amount(mass, density)))
 
     @staticmethod

@@ -19,6 +19,7 @@ from polhode._support.arrays import Array, as_count, as_float, as_floats, frozen
 from polhode._support.memory import require
 
 _DERIVATIVES = 2 * 64 * 8  # bytes, of the core's arrays and their copies
+_CURVE = 3 * 3 * 8  # bytes of a point, with the copies of the core
 _EQUAL = 8 * float(np.finfo(float).eps)  # relative difference of moments that count as equal
 
 
@@ -122,7 +123,7 @@ class FreeMotion(ClosedForm):
         >>> bool(np.allclose((i * w**2).sum(axis=1), 1.11))  # on the ellipsoid of the energy
         True
         """
-        return bivectors(self._core.polhode(_count(n)), (*self.shape, n))
+        return bivectors(self._core.polhode(self._counted(n)), (*self.shape, n))
 
     def herpolhode(self, n: int, periods: float = 1.0) -> Multivector:
         """Return n angular velocities in space axes over a number of periods, bivectors (..., n).
@@ -143,7 +144,13 @@ class FreeMotion(ClosedForm):
         length = as_float(periods, "periods")
         if not (length > 0 and np.isfinite(length)):
             raise ValueError(f"periods is {length}; it must be positive and finite")
-        return bivectors(self._core.herpolhode(_count(n), length), (*self.shape, n))
+        return bivectors(self._core.herpolhode(self._counted(n), length), (*self.shape, n))
+
+    def _counted(self, n: int) -> int:
+        count = _count(n)
+        shape = (*self.shape, count)
+        require(_CURVE * math.prod(shape), f"curves of batch shape {shape}")
+        return count
 
     def derivatives(self, t: Any) -> FlowDerivatives:
         """Return the derivatives of the state at time t by the start and the body.

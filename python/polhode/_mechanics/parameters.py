@@ -13,6 +13,9 @@ from polhode._algebra.constructors import as_bivectors, as_vectors
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._support.arrays import Array, Shape, as_floats, first_index, frozen
+from polhode._support.memory import require_array
+
+_BYTES = 400  # of the law of a body in the core
 
 
 class Batch:
@@ -24,6 +27,8 @@ class Batch:
     __slots__ = ("like", "rows")
 
     def __init__(self, rows: Array, like: Any = 1.0) -> None:
+        rows = np.asarray(rows)
+        require_array(rows.shape[:-1], "the parameters of a batch", _BYTES)
         self.rows, self.like = frozen(np.array(rows, dtype=float, order="C")), like
 
     @property

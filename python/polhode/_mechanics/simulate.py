@@ -18,8 +18,9 @@ from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, warn_
 from polhode._mechanics.parameters import common
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
-from polhode._mechanics.trajectory import Trajectory
+from polhode._mechanics.trajectory import BYTES_OF_POINT, Trajectory
 from polhode._support.arrays import as_count, as_float, as_floats, output_times
+from polhode._support.memory import require_array
 from polhode.event import Event
 from polhode.force import Force
 from polhode.torque import Torque, constant_body, function, settled
@@ -152,6 +153,7 @@ def simulate(
                 "simulate the bodies one by one"
             )
         return ensemble.run(count, progress)
+    require_array(ensemble.times.shape, "states at times", BYTES_OF_POINT)
     inertia = ensemble.inertias[()]
     motion = _native.simulate(
         inertia._core,

@@ -16,6 +16,7 @@ from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.result import Certificate, Crossings, Failure
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen, hands_out_copies
+from polhode._support.memory import require_array
 
 if TYPE_CHECKING:
     from polhode import _outputs
@@ -35,6 +36,9 @@ _HABITS = {
     "to_parquet": "save(path)",
     "to_netcdf": "save(path)",
 }
+
+# Bytes of a point of a single motion: in the core, and its copies.
+BYTES_OF_POINT = 400
 
 
 @hands_out_copies("time", "energy")
@@ -273,6 +277,7 @@ class Trajectory:
                 "simulate the body alone"
             )
         times = as_floats(t, "time")
+        require_array(times.shape, "states at times", BYTES_OF_POINT)
         found = _Points.of(self._motion.at(np.ascontiguousarray(times.ravel())))
         parts = found.omega_body, found.position, found.velocity
         return State(found.rotor.reshape(times.shape), *(x.reshape(times.shape) for x in parts), time=times)

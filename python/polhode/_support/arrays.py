@@ -30,6 +30,10 @@ def as_floats(values: Any, what: str) -> Array:
     """Convert real numbers of any kind to float64; a TypeError for anything else."""
     refuse_multivectors(values, what)
     refuse_masked(values, what)
+    if isinstance(values, list | tuple):
+        for item in values:
+            if isinstance(item, np.ndarray):
+                require_broadcast(item, what)
     try:
         array = np.asarray(values)
     except ValueError as error:

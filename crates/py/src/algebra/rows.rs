@@ -235,7 +235,7 @@ pub(crate) fn rotor_power<'py>(r: Any<'_, 'py>, n: Any<'_, 'py>, out: Any<'_, 'p
         let n: Rows<'_, T> = n.extract()?;
         let n = numbers(&n)?;
         check_rows(4 * n.len(), 4, r.cast::<PyUntypedArray>()?.len() / 4)?;
-        map_to::<T>((4, 4), r, out, |t, r, out, rows| rotor_functions::power(t, r, &n[rows], out))
+        map_to::<T>((4, 4), r, out, |t, r, out, rows| rotor_functions::power(t, r, if n.len() == 1 { n } else { &n[rows] }, out))
     })
 }
 

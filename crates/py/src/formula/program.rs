@@ -3,6 +3,7 @@
 use super::magnitude::PyMagnitude;
 use crate::support::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, threads};
 use crate::support::face::FORMULA_ERROR;
+use crate::support::interrupts::in_pieces;
 use crate::support::text::byte;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;
@@ -28,8 +29,8 @@ pub(crate) struct Program {
     pub(crate) rows: Option<RowRunner>,
 }
 
-/// Work between checks for signals, as weights of rows: some milliseconds.
-const PIECE: usize = 1 << 25;
+/// Work before the first check for signals, as weights of rows: a millisecond.
+const PIECE: usize = 1 << 22;
 
 /// An operation: name, operands, constant or input, grades of the value as bits, whether it is a rotor, and its place in
 /// the text.
@@ -161,14 +162,10 @@ impl Program {
             return Err(bad("the arrays do not fit the program"));
         }
         let threads = threads(rows.saturating_mul(runner.weight()) / 16)?;
-        let most = (PIECE / runner.weight()).max(1);
-        for first in (0..rows).step_by(most) {
-            let piece = first..rows.min(first + most);
+        in_pieces(py, rows, PIECE / runner.weight(), |piece| {
             let done = py.detach(|| runner.run(threads, data, &mut [&mut *out], piece));
-            done.map_err(|error| self.row_error(py, &error, batch))?;
-            py.check_signals()?;
-        }
-        Ok(())
+            done.map_err(|error| self.row_error(py, &error, batch))
+        })
     }
 
     /// Fills rows in another algebra than 3-d space, from inputs of one row or of all; false if some row may have no value.
@@ -186,15 +183,12 @@ impl Program {
             return Err(bad("the arrays do not fit the program"));
         }
         let threads = threads(count.saturating_mul(runner.weight()) / 16)?;
-        let most = (PIECE / runner.weight()).max(1);
-        for first in (0..count).step_by(most) {
-            let piece = first..count.min(first + most);
-            if !py.detach(|| runner.run(threads, data, &mut *out, piece)) {
-                return Ok(false);
-            }
-            py.check_signals()?;
-        }
-        Ok(true)
+        let mut all = true;
+        in_pieces(py, count, PIECE / runner.weight(), |piece| {
+            all = all && py.detach(|| runner.run(threads, data, &mut *out, piece));
+            Ok(())
+        })?;
+        Ok(all)
     }
 
     /// The type of the value; `None` of an equation.

@@ -126,7 +126,7 @@ def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> At
         if not isinstance(stated, dict):
             raise ValueError(f"PANDAS_ATTRS must be attributes by name, as JSON, got {kept[:40]!r}")
         attributes = {x: y for x, y in stated.items() if x not in _OWN}
-    except (OSError, KeyError, TypeError, ValueError, NotImplementedError) as error:
+    except netcdf.DAMAGED as error:
         raise FileError(f"{name}: error: cannot be read as a Parquet file of numbers: {error}") from None
     try:
         return _history(columns, body, attributes)

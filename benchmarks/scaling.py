@@ -114,6 +114,7 @@ def plot(found: list[Point]) -> bytes | None:
             )
         axes.set(xlabel=f"number of {what}", ylabel="ns per body-step", title=f"rk4, free bodies, by {what}")
         axes.grid(alpha=0.3, which="both")
+        axes.margins(x=0.2, y=0.15)  # for the labels of the points
         axes.label_outer()
     file = BytesIO()
     drawing.savefig(file, format="png", dpi=110)

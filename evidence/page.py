@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from html import escape
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 STYLE = """
 :root { color-scheme: light dark; }
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; display: block; overflow-x: auto;
   margin: 1rem 0; }
 th, td { padding: 0.15rem 0.7rem; text-align: right; border-bottom: 1px solid #8884; white-space: nowrap; }
@@ -27,9 +28,14 @@ figcaption { color: #555; font-size: 0.9rem; position: sticky; left: 0; }
 """
 
 
+def _marked(text: str) -> str:
+    """Return text as HTML; what stands in backticks is code."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
+
+
 def _cells(tag: str, cells: Sequence[str], wordy: Sequence[bool]) -> str:
     kinds = (' class="words"' if words else "" for words in wordy)
-    return "".join(f"<{tag}{kind}>{escape(cell)}</{tag}>" for kind, cell in zip(kinds, cells, strict=True))
+    return "".join(f"<{tag}{kind}>{_marked(cell)}</{tag}>" for kind, cell in zip(kinds, cells, strict=True))
 
 
 class Page:
@@ -44,11 +50,11 @@ class Page:
 
     def text(self, *paragraphs: str) -> None:
         """Add paragraphs."""
-        self.parts += [f"<p>{escape(text)}</p>" for text in paragraphs]
+        self.parts += [f"<p>{_marked(text)}</p>" for text in paragraphs]
 
     def facts(self, lines: Iterable[str]) -> None:
         """Add a list, a line each."""
-        self.parts.append(f"<ul>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</ul>")
+        self.parts.append(f"<ul>{''.join(f'<li>{_marked(line)}</li>' for line in lines)}</ul>")
 
     def table(self, header: Sequence[str], rows: Iterable[Sequence[str]], bad: Sequence[bool] = ()) -> None:
         """Add a table; bad rows stand out. Columns with long cells are set as words, others as numbers."""

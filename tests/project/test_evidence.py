@@ -85,10 +85,12 @@ def test_a_test_without_a_reason_fails():
 
 def test_reports_become_tables_and_lists():
     page = Page("a")
-    page.markdown("## One\n\nSome text.\n\n| x | y |\n| --- | --: |\n| 1 | 2 |\n\n### Two\n- first\n- second")
+    page.markdown(
+        "## One\n\nSome text.\n\n| x | y |\n| --- | --: |\n| `x < y` | 2 |\n\n### Two\n- first\n- second"
+    )
     text = page.html().decode()
     assert "<h2>One</h2><p>Some text.</p><table>" in text
-    assert "<tr><td>1</td><td>2</td></tr>" in text
+    assert "<tr><td><code>x &lt; y</code></td><td>2</td></tr>" in text
     assert "<h3>Two</h3><ul><li>first</li><li>second</li></ul>" in text
 
 

@@ -22,6 +22,7 @@ import faults
 import machine
 import peer_tests
 import references
+import report
 import rounding
 import throughput
 from page import Page
@@ -228,6 +229,7 @@ def speed(page: Page, effort: Effort, commit: str) -> None:
         if path.is_file():
             page.image(path, caption)
     _, _, text = target.with_name(f"{target.name}.md").read_text().partition("\n## ")
+    page.text("Libraries: " + ", ".join(map(" ".join, measured["versions"].items())) + ".", report.LEGEND)
     page.markdown(f"## {text}", deeper=1)
 
 

@@ -2,13 +2,10 @@ use super::*;
 
 fn round_trip<T: Element + PartialEq + std::fmt::Debug, const W: usize>() {
     // Miri interprets, a thousand times slower.
-    let longest = if cfg!(miri) { 9 } else { 64 };
+    let sizes: Vec<usize> = if cfg!(miri) { vec![1, 3, 4, 9] } else { (1..=20).chain([32, 64]).collect() };
     for path in Path::available() {
-        for size in (1..=20).chain([32, 64]).filter(|&size| size <= longest) {
+        for &size in &sizes {
             for rows in (0..20).chain([31, 32, 33, 56, 57, 63, 64]).filter(|&rows| rows <= W) {
-                if cfg!(miri) && !matches!(rows % 8, 0 | 1 | 7) {
-                    continue;
-                }
                 let numbers: Vec<T> = (0..rows * size).map(|i| T::nearest(i as f64)).collect();
                 let mut lanes = vec![Lane::<W>::filled(-1.0); size];
                 path.gather(&numbers, &mut lanes);
@@ -29,10 +26,12 @@ fn round_trip<T: Element + PartialEq + std::fmt::Debug, const W: usize>() {
 /// Numbers of rows around the widths of the registers, and every number of components.
 #[test]
 fn gather_and_scatter_round_trip() {
-    round_trip::<f64, 64>();
-    round_trip::<f32, 64>();
     round_trip::<f64, 8>();
     round_trip::<f32, 32>();
+    if !cfg!(miri) {
+        round_trip::<f64, 64>();
+        round_trip::<f32, 64>();
+    }
 }
 
 fn streamed<T: Element + PartialEq + std::fmt::Debug>() {

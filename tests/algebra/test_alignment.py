@@ -206,6 +206,10 @@ def test_rows_of_a_batch_count_by_themselves():
         small, alone = ph.align(sizes * a, sizes * b, weights), ph.align(a, b, weights)
         assert small.rotor.distance(alone.rotor).max() <= 64 * EPS
         np.testing.assert_allclose(small.residual, [alone.residual, 1e-9 * alone.residual], rtol=64 * EPS)
+        # The turn follows from directions; a tiny row is not parallel for the size of another.
+        tiny = np.array([1.0, 1e-20])[:, None, None]
+        for pair in ((tiny * a, b), (a, tiny * b)) if weights else ():
+            assert ph.align(*pair, weights).rotor.distance(alone.rotor).max() <= 64 * EPS
         # A single alignment has a number, not an array, as its residual.
         assert isinstance(alone.residual, float)
 

@@ -126,6 +126,13 @@ def test_symbols_and_exact_numbers():
     assert [float(sympy.re(sympy.sympify(x).subs(t, 0.5).evalf())) for x in mixed.dense()] == pytest.approx(
         list(floats.dense()), abs=1e-14
     )
+    # Values whose square is not a number, by exponentials in 3-d space only.
+    for name in NAMES:
+        exact = getattr(sympy.Rational(1, 2) * e1 + sympy.Rational(1, 3) * I, name)()
+        assert exact.astype(float).is_close(getattr(e1 / 2 + I / 3, name)(), atol=16 * EPS), name
+    B = ph.algebra(4).bivector([1, 0, 0, 0, 0, 1], dtype=object)
+    with pytest.raises(TypeError, match=r"outside 3-d space; convert it with .astype\(float\)"):
+        B.cosh()
     assert ph.vector([0, 0, 0], dtype=object).cos() == 1
     assert (Fraction(1, 2) * e1).sinh()["e1"] == math.sinh(0.5)
     # A vector of any algebra squares to a number, here to t².

@@ -78,7 +78,8 @@ def test_bad_curves_are_refused():
         motion.polhode(1)
     with pytest.raises(TypeError, match="whole number"):
         motion.polhode(2.5)
-    with pytest.raises(ValueError, match=r"periods is -1\.0"):
-        motion.herpolhode(5, -1)
+    for periods in (-1.0, 0.0, np.inf, np.nan):
+        with pytest.raises(ValueError, match=rf"periods is {periods}; it must be positive and finite"):
+            motion.herpolhode(5, periods)
     with pytest.raises(ValueError, match="beyond"):
         motion.herpolhode(5, 1e20)

@@ -244,7 +244,7 @@ def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> A
         residual = residual * np.sqrt(weight[..., 0]) * unit[..., 0, 0]
         for size in (*units, weight[..., None]):
             covariance = covariance / size
-    return Alignment(rotor.canonical(), residual[()], covariance)
+    return Alignment(rotor.canonical(), residual, covariance)
 
 
 def _aligned_exactly(kind: Any, x: Any, y: Any, weights: Any) -> Alignment:
@@ -280,7 +280,7 @@ def _aligned_exactly(kind: Any, x: Any, y: Any, weights: Any) -> Alignment:
     off = y - rotor[..., np.newaxis](vector(x)).components
     residual = np.sqrt((others * (off * off).sum(axis=-1)).sum(axis=-1))
     covariance = axis[..., :, np.newaxis] * axis[..., np.newaxis, :] / curvature[..., np.newaxis, np.newaxis]
-    return Alignment(rotor.canonical(), residual[()], covariance)
+    return Alignment(rotor.canonical(), residual, covariance)
 
 
 def _rows(values: Any, what: str) -> Any:

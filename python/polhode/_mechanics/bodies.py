@@ -31,8 +31,6 @@ def matrices(inertias: Iterable[Inertia]) -> Array:
     return _native.Inertia.matrices([inertia._core for inertia in inertias]).reshape(-1, 3, 3)
 
 
-
-
 class Inertia(LinearMap):
     """The inertia map ``I(B) = ∫ρ x∧(x·B) d³x`` of bivectors to bivectors (handout eq. 4.18).
 

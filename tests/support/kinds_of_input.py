@@ -80,7 +80,9 @@ def shapes(array):
 
 def types(array):
     """Yield the numbers as arrays of other types, and arrays that hold no numbers."""
-    yield from (array.astype(name) for name in _TYPES)
+    with np.errstate(all="ignore"):
+        changed = [array.astype(name) for name in _TYPES]
+    yield from changed
     yield np.full(array.shape, None)
     yield np.zeros(array.shape, [("a", "f8")])
     yield np.ma.masked_array(array)

@@ -205,7 +205,7 @@ CALLS = {
     "torque.constant_space": _law(torque.constant_space, PLACE),
     "torque.damping": _law(torque.damping, 0.1),
     "torque.dipole_field": _law(
-        lambda m: torque.magnetic(PLACE, torque.dipole_field(m), _ORBIT), [0, 0, -8e18]
+        lambda m: torque.magnetic(PLACE, torque.dipole_field(m), _ORBIT), [0, 0, -8e15]
     ),
     "torque.formula": _law(lambda c: torque.formula("c ∧ e3", c=ph.vector(c)), PLACE),
     "torque.function": _law(lambda c: torque.function(lambda t, R, w: c * w), 0.5),

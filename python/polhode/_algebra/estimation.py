@@ -212,7 +212,7 @@ def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> A
         return _aligned_exactly(kind, x, y, given[0])
     w = _usable_weights(kind, weights, batch)
     weights = kind.zeros(batch) + 1.0 if w is None else w
-    ratio = 1.0
+    ratio: Any = 1.0
     if kind.native:
         # By powers of two, which round nothing, so that no product overflows or vanishes.
         units = [power_of_two(v, (-2, -1)) for v in (x, y)]

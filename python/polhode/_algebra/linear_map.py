@@ -119,7 +119,7 @@ class LinearMap:
         F = LinearMap.from_matrix(np.stack(np.broadcast_arrays(*images), axis=-1), grade, algebra=own)
         numbers = np.array([(-1.0) ** k * (0.6 + 0.85 * k) for k in range(size)])
         probe = own.k_vector(grade, numbers)
-        bound = 1e-9 * np.linalg.norm(numbers) * lengths(F.matrix, (-2, -1))
+        bound: Any = 1e-9 * np.linalg.norm(numbers) * lengths(F.matrix, (-2, -1))
         image = f(probe)
         if not np.all(image.is_close(F(probe), rtol=0, atol=bound)):
             raise ValueError(

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from polhode._support.arrays import Array
-from polhode._support.files import UnreadableError, read
+from polhode._support.files import UnreadableError, contents
 
 RATES, QUATERNION = ("t", "wx", "wy", "wz"), ("t", "qw", "qx", "qy", "qz")
 BOTH = RATES + QUATERNION[1:]
@@ -45,7 +45,7 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
         rows; with the file if it cannot be read.
     """
     try:
-        lines = read(path, copies=4).decode("utf-8-sig").replace("\r\n", "\n").split("\n")
+        lines = contents(path, copies=4).decode("utf-8-sig").replace("\r\n", "\n").split("\n")
     except OSError as error:
         raise UnreadableError(f"{path}: error: {(error.strerror or str(error)).lower()}") from None
     except UnicodeDecodeError as error:

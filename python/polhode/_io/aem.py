@@ -21,7 +21,7 @@ from polhode._io.epochs import TIME_SYSTEMS, Epoch, elapsed, parse_epoch
 from polhode._io.history import AttitudeHistory, FileError, continuous
 from polhode._mechanics.robots.document import Source
 from polhode._support.arrays import Array
-from polhode._support.files import read
+from polhode._support.files import contents
 
 # Numbers in a line of data after the epoch.
 _NUMBERS = {"QUATERNION": 4, "QUATERNION/ANGVEL": 7}
@@ -128,7 +128,7 @@ def read_aem(
     if not os.path.isfile(path):
         raise FileError(f"{name}: error: not a regular file; give the path of a file")
     try:
-        text = read(path, copies=4).decode("utf-8-sig")
+        text = contents(path, copies=4).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise FileError(f"{name}: error: not text from byte {error.start} on") from None
     source = Source(name, text.splitlines())

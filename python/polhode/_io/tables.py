@@ -23,7 +23,7 @@ from polhode._report import netcdf, table
 from polhode._report.output import encoded
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
-from polhode._support.files import read, write_atomically
+from polhode._support.files import contents, write_atomically
 
 _LABELS = {"quaternion": "wxyz", "axis": "xyz"}
 # Quantities of a motion with a row for each time.
@@ -154,7 +154,7 @@ def _content(path: str | os.PathLike[str], name: str) -> bytes:
         raise FileNotFoundError(f"{name}: no such file")
     if not os.path.isfile(path):
         raise FileError(f"{name}: error: not a regular file; give the path of a file")
-    return read(path, copies=4)
+    return contents(path, copies=4)
 
 
 def _rows(source: Source) -> Iterator[tuple[int, list[str]]]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from polhode._support.extras import optional
-from polhode._support.files import read
+from polhode._support.files import contents
 
 
 class TableReader:
@@ -45,7 +45,7 @@ class TableReader:
 def _csv(file: Path) -> bytes:
     if file.suffix.lower() != ".csv":
         raise ValueError(f"{file}: expected a table in a file .csv or .parquet")
-    return read(file)
+    return contents(file)
 
 
 def _parquet(file: Path) -> bytes:
@@ -54,7 +54,7 @@ def _parquet(file: Path) -> bytes:
     library: Any = optional("pyarrow", "parquet", what)
     reader: Any = optional("pyarrow.parquet", "parquet", what)
     csv: Any = optional("pyarrow.csv", "parquet", what)
-    content = io.BytesIO(read(file))
+    content = io.BytesIO(contents(file))
     text = io.BytesIO()
     try:
         table = reader.read_table(content)

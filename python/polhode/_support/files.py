@@ -11,7 +11,7 @@ from pathlib import Path
 from polhode._support.memory import require
 
 
-def read(path: str | os.PathLike[str], copies: int = 1) -> bytes:
+def contents(path: str | os.PathLike[str], copies: int = 1) -> bytes:
     """Return the content of a file; a MemoryError first if so many copies would not fit into memory."""
     return Path(loadable(path, copies)).read_bytes()
 

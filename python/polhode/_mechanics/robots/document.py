@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
+from polhode._support.files import contents
+
 _LARGEST, _DEEPEST = 50_000_000, 200
 
 # Products of three numbers below this do not overflow.
@@ -125,7 +127,7 @@ def read(path: str | os.PathLike[str]) -> Node:
     if os.path.getsize(path) > _LARGEST:
         raise DocumentError(f"{name}: error: larger than {_LARGEST // 1_000_000} MB; split the file")
     try:
-        content = read(path)
+        content = contents(path)
     except OSError as error:
         raise DocumentError(f"{name}: error: cannot be read: {error.strerror}") from None
     return parse(content, name)

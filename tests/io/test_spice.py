@@ -204,8 +204,12 @@ COUNT = SEGMENT + 8 * (8 * len(TIMES) + 2)
     ("at", "number", "expected"),
     [
         # The numbers of doubles and integers that describe a segment: SPICE writes as many to memory.
-        (8, np.int32(100), "the first record is not that of a CK"),
-        (12, np.int32(60), "the first record is not that of a CK"),
+        (8, np.int32(100), "the records that list the segments are not those of a CK"),
+        (12, np.int32(60), "the records that list the segments are not those of a CK"),
+        # The first of these records, the next one, and its number of segments.
+        (76, np.int32(5000), "the records that list the segments are not those of a CK"),
+        (1024, 2.0, "the records that list the segments are not those of a CK"),
+        (1024 + 16, 1e5, "the records that list the segments are not those of a CK"),
         (COUNT, 1e9, "the segment has 1000000000 records"),
         (COUNT, 0.0, "the segment has 0 records"),
         (SEGMENT, 1e300, "numbers that are not those of attitudes"),

@@ -12,7 +12,7 @@ import processes
 
 ROOT = Path(__file__).parents[2]
 
-SKIPPED = {"node_modules", "_viewer", "target", "__pycache__"}
+SKIPPED = {"node_modules", "_viewer", "target", "corpus", "artifacts", "__pycache__"}
 FOLDERS = ("crates", "python", "tests", "viewer", "docs", "examples", "benchmarks", "evidence", "fuzz", ".ci")
 TEXTS = [
     path

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import contextlib
 import os
+import struct
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -30,8 +31,9 @@ _Paths = Sequence[str | os.PathLike[str]]
 
 # Class of frames whose attitude is in a CK, and the number of such records.
 _CK_CLASS, _TYPE = 3, 3
-# Bytes of the first record of a CK, and the numbers of doubles and integers that describe its segments.
-_FILE_RECORD, _SUMMARY = 1024, (2, 6)
+# Bytes of a record, the numbers of doubles and integers that describe a segment, and the most
+# segments that a record describes.
+_RECORD, _SUMMARY, _MOST = 1024, (2, 6), 25
 # Names of time systems in epochs of SPICE.
 _SYSTEMS = {"UTC": "UTC", "TT": "TDT", "TDB": "TDB"}
 
@@ -220,15 +222,13 @@ def read_ck(
         raise FileNotFoundError(f"{name}: no such file")
     if not os.path.isfile(path):
         raise FileError(f"{name}: error: not a regular file; give the path of a file")
-    with open(path, "rb") as file:
-        head = file.read(_FILE_RECORD)
-    if not head.startswith(b"DAF/CK "):
+    content = Path(path).read_bytes()
+    if not content.startswith(b"DAF/CK "):
         raise FileError(f"{name}: error: not a binary SPICE CK, which begins with DAF/CK")
-    order: Literal["big", "little"] = "big" if head[88:96] == b"BIG-IEEE" else "little"
-    # SPICE writes as many numbers to memory as the file states.
-    stated = tuple(int.from_bytes(head[at : at + 4], order) for at in (8, 12))
-    if len(head) < _FILE_RECORD or stated != _SUMMARY:
-        raise FileError(f"{name}: error: the first record is not that of a CK; the file may be damaged")
+    if not _is_sound(content):
+        raise FileError(
+            f"{name}: error: the records that list the segments are not those of a CK; the file is damaged"
+        )
     with _loaded(kernels) as spice:
         handle = spice.dafopr(name)
         try:
@@ -262,6 +262,23 @@ def read_ck(
         return AttitudeHistory(times, rotor, omega, attributes=attributes)
     except ValueError as error:
         raise FileError(f"{name}: error: the segment is damaged: {error}") from None
+
+
+def _is_sound(content: bytes) -> bool:
+    """Whether the lists of segments are those of a CK; SPICE leaves its memory where they are not."""
+    order = ">" if content[88:96] == b"BIG-IEEE" else "<"
+    if len(content) < _RECORD or struct.unpack_from(f"{order}2i", content, 8) != _SUMMARY:
+        return False
+    record = float(struct.unpack_from(f"{order}i", content, 76)[0])
+    known: set[float] = set()
+    while record:
+        if record in known or not record.is_integer() or not 1 <= record <= len(content) // _RECORD:
+            return False
+        known.add(record)
+        record, _, count = struct.unpack_from(f"{order}3d", content, _RECORD * (int(record) - 1))
+        if not (count.is_integer() and 0 <= count <= _MOST):
+            return False
+    return True
 
 
 @contextlib.contextmanager

@@ -83,6 +83,20 @@ fn values_without_a_direction_are_rejected() {
     assert_eq!(Rotor::from_components([f64::NAN, 1.0, 0.0, 0.0]), Err(MathError::NotFinite));
 }
 
+/// Three and four of the smallest subnormal number are to each other as 0.6 to 0.8 to 1.
+#[test]
+fn sizes_of_components_do_not_matter() {
+    for size in [f64::from_bits(1), 1e-310, 1e-200, 1.0, 1e200, 4e307] {
+        let [s, x, y, z] = Rotor::from_components([3.0 * size, 0.0, -4.0 * size, 0.0]).unwrap().components();
+        // 1e-310 is itself rounded, to 2⁻⁴⁴ of it.
+        let rounded = if size == 1e-310 { 2f64.powi(-44) } else { EPS };
+        assert!(
+            (s - 0.6).abs() <= rounded && (y + 0.8).abs() <= rounded && x == 0.0 && z == 0.0,
+            "{size}: {s} {y}"
+        );
+    }
+}
+
 /// With β = 0 only α + γ is determined; with β = π only α − γ.
 #[test]
 fn euler_angles_at_the_poles_are_one_turn_about_e3() {

@@ -410,6 +410,14 @@ def test_progress_increases_and_its_exceptions_propagate():
     assert [fraction for _, fraction in seen] == sorted(fraction for _, fraction in seen)
     assert seen[-1][1] <= 1
 
+    # Blocks report the fraction of the whole.
+    seen.clear()
+    how = {"method": "rk4", "step": 1e-4, "block": 32, "threads": 1}
+    for _ in ph.simulate_blocks(ASYMMETRIC, states, [20.0], law, progress=lambda *at: seen.append(at), **how):
+        assert {number for number, _ in seen} <= {1}
+    assert [fraction for _, fraction in seen] == sorted(fraction for _, fraction in seen)
+    assert 0.5 < seen[-1][1] <= 1
+
     class EnoughError(Exception):
         pass
 

@@ -64,6 +64,8 @@ def test_nan_is_counted_apart():
 def test_other_axes_and_multivectors():
     over_times = ph.Moments(axis=1).add(VALUES)
     np.testing.assert_allclose(over_times.mean, VALUES.mean(axis=1), rtol=8 * EPS)
+    assert np.array_equal(over_times.minimum, VALUES.min(axis=1))
+    assert np.array_equal(over_times.maximum, VALUES.max(axis=1))
     assert np.array_equal(ph.Moments().add(ph.vector(VALUES)).mean, ph.Moments().add(VALUES).mean)
 
 

@@ -179,6 +179,8 @@ def test_gravity_of_another_body_raises():
     law = ph.torque.gravity(TOP, pivot=PIVOT)
     with pytest.raises(ValueError, match=r"made for a body of 0\.5 kg .* this body has 2\.0 kg"):
         ph.simulate(BENT, START, TIMES, law)
+    with pytest.raises(ValueError, match=r"body and torque do not broadcast.*\(2,\).*\(3,\)"):
+        ph.simulate([TOP] * 2, START, TIMES, ph.torque.gravity([TOP] * 3, pivot=PIVOT))
     with pytest.raises(
         ValueError, match=r"different points, \[0\.0, 0\.0, -0\.04.*\] and \[0\.0, 0\.0, 0\.0\]"
     ):

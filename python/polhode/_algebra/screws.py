@@ -102,10 +102,10 @@ def screw_parameters(M: Any) -> Screw:
     >>> print(screw.axis, screw.distance)
     e3 3.0
     """
-    kind, rows, given = _rows(M, "screw_parameters")
+    kind, rows = _rows(M, "screw_parameters")
     axis, point, angle, distance = _generic.motors.screw(kind, rows)
     if kind.native:
-        axis, point, angle, distance = (x.astype(given.dtype)[()] for x in (axis, point, angle, distance))
+        angle, distance = angle[()], distance[()]
     return Screw(vector(axis), vector(point), angle, distance)
 
 
@@ -126,13 +126,11 @@ def adjoint_matrix(M: Any) -> Any:
     >>> ph.adjoint_matrix(T) @ [0, 0, 1, 0, 0, 0]
     array([ 0.,  0.,  1.,  0., -2.,  0.])
     """
-    kind, rows, given = _rows(M, "adjoint_matrix")
-    matrices = _generic.motors.adjoint(kind, rows)
-    return matrices.astype(given.dtype, copy=False) if kind.native else matrices
+    return _generic.motors.adjoint(*_rows(M, "adjoint_matrix"))
 
 
-def _rows(M: Any, name: str) -> tuple[Any, Any, Any]:
-    """Return the arithmetic, the components (..., 8) and the value of a motor."""
+def _rows(M: Any, name: str) -> tuple[Any, Any]:
+    """Return the arithmetic and the components (..., 8) of a motor."""
     value = M.to_motor() if hasattr(M, "to_motor") else M
     if not is_motor(value):
         raise TypeError(
@@ -142,4 +140,4 @@ def _rows(M: Any, name: str) -> tuple[Any, Any, Any]:
     kind = kind_of(value._data)
     if kind.native and value.dtype == np.float32:
         kind = _generic.numeric.Numeric(np, np.float32)  # whose rounding M ~M may show
-    return kind, kind.asarray(rows(value)), value
+    return kind, kind.asarray(rows(value))

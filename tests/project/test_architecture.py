@@ -42,10 +42,16 @@ def test_the_algebra_depends_on_nothing():
     assert "dependencies" not in crate
 
 
+def test_a_panic_of_the_core_unwinds():
+    """It reaches Python as an exception; the core of the browser may abort."""
+    profiles = tomllib.loads((ROOT / "Cargo.toml").read_text())["profile"]
+    assert not any("panic" in settings for name, settings in profiles.items() if name != "viewer")
+
+
 # The folders of the package from the lowest up: each imports only those before it. The public modules of laws
 # belong to mechanics.
 FOLDERS = (
-    *("_support", "_generic", "_algebra", "_formula", "_mechanics"),
+    *("_start", "_support", "_generic", "_algebra", "_formula", "_mechanics"),
     *("jax", "_scene", "_report", "_io", "io", "_viewer", "_figures", "_fit", "_outputs", "_cli", "__main__"),
 )
 

@@ -9,7 +9,6 @@ import pytest
 import algebra_calls
 import kinds_of_input as kinds
 import mechanics_calls
-from polhode._algebra.foreign_names import ForeignName
 from public_names import methods, public
 
 CALLS = algebra_calls.CALLS | mechanics_calls.CALLS
@@ -37,9 +36,7 @@ def test_every_public_name_is_called():
     names = set(public())
     for name, found in public().items():
         if inspect.isclass(found):
-            # Names of other libraries only say which method to use.
-            own = [method for method, member in methods(found).items() if not isinstance(member, ForeignName)]
-            names |= {f"{name}.{method}" for method in own}
+            names |= {f"{name}.{method}" for method in methods(found)}
     assert not names - set(CALLS) - set(WITHOUT_NUMBERS)
     assert not {*CALLS, *WITHOUT_NUMBERS} - names
     assert not set(CALLS) & set(WITHOUT_NUMBERS)

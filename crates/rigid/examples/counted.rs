@@ -114,7 +114,11 @@ fn kernels() -> Vec<Kernel> {
         stepped("gravity gradient, rk4", "rk4", gradient()),
         stepped("gravity gradient, kahan_li8", "kahan_li8", gradient()),
         stepped("formula, rk4", "rk4", formula("-(0.1 e1 + 0.2 e2 + 0.3 e3) ∧ (~R e3 R)")),
-        stepped("formula of time, rk4", "rk4", formula("-0.01 (1 + sin(t)) Ω + (~R e3 R) ∧ (0.1 e1 + 0.3 e3)")),
+        stepped(
+            "formula of time, rk4",
+            "rk4",
+            formula("-0.01 (1 + sin(t)) Ω + (~R e3 R) ∧ (0.1 e1 + 0.3 e3)"),
+        ),
     ]
 }
 

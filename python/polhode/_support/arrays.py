@@ -150,7 +150,7 @@ def power_of_two(array: Array, axis: int | tuple[int, ...]) -> Array:
     """
     largest = np.abs(array).max(axis=axis, keepdims=True, initial=0.0)
     exponents = np.frexp(np.where((largest > 0) & np.isfinite(largest), largest, 1.0))[1] - 1
-    return np.asarray(np.ldexp(1.0, exponents))
+    return np.asarray(np.ldexp(np.ones((), largest.dtype), exponents))
 
 
 def lengths(array: Array, axis: int | tuple[int, ...] = -1) -> Array:

@@ -234,8 +234,11 @@ pub(crate) fn rotor_power<'py>(r: Any<'_, 'py>, n: Any<'_, 'py>, out: Any<'_, 'p
     by_type!(out, T => {
         let n: Rows<'_, T> = n.extract()?;
         let n = numbers(&n)?;
-        check_rows(4 * n.len(), 4, r.cast::<PyUntypedArray>()?.len() / 4)?;
-        map_to::<T>((4, 4), r, out, |t, r, out, rows| rotor_functions::power(t, r, if n.len() == 1 { n } else { &n[rows] }, out))
+        let rows = out.cast::<PyUntypedArray>()?.len() / 4;
+        check_rows(n.len(), 1, rows)?;
+        map_to::<T>((4, 4), r, out, |t, r, out, piece| {
+            rotor_functions::power(t, r, part(n, 1, rows, &piece), out)
+        })
     })
 }
 
@@ -252,14 +255,12 @@ fn map_to<T: Element + numpy::Element>(
     let mut to: RowsToFill<'_, T> = out.extract()?;
     let (from, to) = (numbers(&input)?, numbers_to_fill(&mut to)?);
     let rows = to.len() / filled;
-    if from.len() != rows * size {
-        return Err(bad(format!("the operand has {} numbers, expected {}", from.len(), rows * size)));
-    }
+    check_rows(from.len(), size, rows)?;
     let threads = threads(to.len())?;
     let py = out.py();
     in_pieces(py, rows, 1 << 17, |piece| {
         let first = piece.start;
-        let (from, to) = (&from[size * first..size * piece.end], &mut to[filled * first..filled * piece.end]);
+        let (from, to) = (part(from, size, rows, &piece), &mut to[filled * first..filled * piece.end]);
         let failed = |row| bad(format!("{}{}", place(first + row, batch), MathError::NotFinite));
         py.detach(|| work(threads, from, to, piece)).map_err(failed)
     })

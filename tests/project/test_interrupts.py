@@ -13,10 +13,6 @@ INERTIA = ph.Inertia.from_principal_moments(1, 1.5, 2)
 MANY = 1_000_000
 
 
-def rotors():
-    return ph.Rotor.random(MANY, 1)
-
-
 def state(*shape):
     return ph.State(ph.Rotor.identity(), RNG.standard_normal((*shape, 3)))
 
@@ -33,7 +29,7 @@ def _exponentials():
 
 
 def _powers():
-    R = rotors()
+    R = ph.Rotor.random(10 * MANY, 1)
     return lambda: R**0.3
 
 
@@ -53,7 +49,7 @@ def _exact_motion():
 
 
 def _short_formula_runs():
-    start, times = state(1000), np.linspace(0, 100, 5)
+    start, times = state(8000), np.linspace(0, 100, 5)
     return lambda: ph.simulate(INERTIA, start, times, ph.torque.formula("-k Ω", k=0.1), threads=1)
 
 

@@ -491,7 +491,7 @@ def test_other_files_are_refused(tmp_path):
     with pytest.importorskip("h5py").File(tmp_path / "groups.nc", "w") as file:
         file.create_group("attitude")
     with pytest.raises(
-        OSError, match=r"groups.nc cannot be read as a netCDF file: `attitude` is not a variable"
+        OSError, match=r"groups.nc cannot be read as a netCDF file: 'attitude' is not a variable"
     ):
         ph.Trajectory.read(tmp_path / "groups.nc")
     xarray.Dataset({"time": ("time", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")

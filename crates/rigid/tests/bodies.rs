@@ -37,6 +37,22 @@ fn points() -> impl Strategy<Value = (Vec<f64>, Vec<Vector>)> {
 
 proptest! {
     #[test]
+    fn second_moments_are_those_given(given in prop::array::uniform3(0.1..3.0_f64), axes in rotor()) {
+        let tolerance = 16.0 * EPS * largest([given; 3]);
+        let (found, frame) = Inertia::from_second_moments(given, Rotor::IDENTITY).unwrap().second_moments();
+        prop_assert_eq!(frame, None, "the body axes are principal");
+        prop_assert!((0..3).all(|k| (found[k] - given[k]).abs() <= tolerance), "{found:?} {given:?}");
+
+        let turned = Inertia::from_second_moments(given, axes).unwrap();
+        let (found, frame) = turned.second_moments();
+        let again = Inertia::from_second_moments(found, frame.unwrap()).unwrap();
+        assert_close(again.matrix(), turned.matrix(), 64.0);
+        let ordered = |mut moments: [f64; 3]| { moments.sort_by(f64::total_cmp); moments };
+        let (found, given) = (ordered(found), ordered(given));
+        prop_assert!((0..3).all(|k| (found[k] - given[k]).abs() <= 4.0 * tolerance), "{found:?} {given:?}");
+    }
+
+    #[test]
     fn points_follow_the_definition((masses, positions) in points(), b in vector()) {
         let body = Body::from_points(&masses, &positions).unwrap();
         let b = b.undual();

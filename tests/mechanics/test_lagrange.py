@@ -141,6 +141,25 @@ def test_regime_names(r, w, regime):
     assert top_of((1, 1, 0.5), (0, 0, 0), r, (0, 0, 0)).describe()["regime"] == "at rest"
 
 
+def test_the_precession_has_the_sign_of_its_momentum_at_the_bounds():
+    """It is ``(Lz - L3 u)/(i1 (1 - u²))`` at the height u = cos θ: loops have both signs, waves have one."""
+    rng = np.random.default_rng(1)
+    seen = set()
+    for _ in range(200):
+        i1, i3, c = rng.uniform([1, 0.5, 0.2], [3, 2, 5])
+        omega = rng.normal(size=3) * 10 ** rng.uniform(-1, 0.7, 3)
+        found = top_of((i1, i1, min(i3, 2 * i1)), (0, 0, c), rng.normal(size=4), omega).describe()
+        least, most = (
+            found["vertical_momentum"] - found["axial_momentum"] * np.cos(found[name])
+            for name in ("tilt_min", "tilt_max")
+        )
+        if found["regime"].startswith("nutating"):
+            assert found["regime"] == f"nutating with {'loops' if least * most < 0 else 'waves'}"
+            seen.add(found["regime"])
+        assert found["critical_spin"] == pytest.approx(2 * np.sqrt(c * i1) / min(i3, 2 * i1), rel=8 * EPS)
+    assert seen == {"nutating with loops", "nutating with waves"}
+
+
 def test_regular_precession():
     """With u = 3/5 and rate ν, c = L3 ν − i1 ν² u: the axis precesses steadily at ν."""
     r, rate = rotor(2, 1, 0, 0), 0.5

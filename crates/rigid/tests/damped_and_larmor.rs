@@ -1,5 +1,6 @@
 //! The damped body and the sphere in a field: against reference states and conservation laws.
 
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::exact::damped::DampedTop;
 use polhode_rigid::exact::free::FreeMotion;
@@ -105,6 +106,20 @@ fn damped_limits() {
 fn sphere() -> LarmorSphere {
     let inertia = Inertia::from_principal_moments([2.0; 3]).unwrap();
     LarmorSphere::new(&inertia, start(), Bivector([0.5, 1.0, 0.25]), Vector([0.125, 0.5, 1.0])).unwrap()
+}
+
+#[test]
+fn states_of_the_sphere_at_many_times_are_those_at_each() {
+    let times: Vec<f64> = (-20..20).map(|k| 0.7 * f64::from(k)).collect();
+    let (mut rotors, mut omegas) = (vec![0.0; 4 * times.len()], vec![0.0; 3 * times.len()]);
+    sphere().at_many(Threads::new(2), &times, &mut rotors, &mut omegas);
+    for (k, &t) in times.iter().enumerate() {
+        let (rotor, omega) = sphere().at(t);
+        assert_eq!(
+            (&rotors[4 * k..4 * k + 4], &omegas[3 * k..3 * k + 3]),
+            (&rotor.components()[..], &omega.0[..])
+        );
+    }
 }
 
 #[test]

@@ -45,14 +45,14 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
             Some(values)
         };
         let still: Vec<Option<[Given; W]>> = (0..sources.len()).map(still).collect();
-        let same = |values: &[Given; W]| values.iter().all(|value| numbers(value) == numbers(&values[0]));
+        let same = |values: &[Given; W]| values.iter().all(|value| value.numbers() == values[0].numbers());
         let known: Vec<Option<Given>> =
             still.iter().map(|values| values.as_ref().filter(|v| same(v)).map(|v| v[0])).collect();
         let mut program = runner.beside(&known)?;
         for (input, values) in still.iter().enumerate().filter_map(|(i, v)| Some((i, v.as_ref()?))) {
             for (l, value) in values.iter().enumerate() {
                 let lanes = program.input(input).iter_mut();
-                lanes.zip(numbers(value)).for_each(|(lane, x)| lane.0[l] = *x);
+                lanes.zip(value.numbers()).for_each(|(lane, x)| lane.0[l] = *x);
             }
         }
         let motion = |(input, source): (usize, &Source)| match source {
@@ -117,13 +117,5 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
             (_, None) => in_body,
         };
         ([x, y, z, Lanes::ZERO], 3)
-    }
-}
-
-fn numbers(given: &Given) -> &[f64] {
-    match given {
-        Given::Value(value) => value.components(),
-        Given::Matrix(m) => m,
-        Given::Determinant(d) => std::slice::from_ref(d),
     }
 }

@@ -10,8 +10,8 @@ import numpy as np
 
 from polhode import _generic, _native
 from polhode._support.arrays import (
-    aligned,
     as_floats,
+    in_aligned_memory,
     is_complex,
     is_float,
     leaves,
@@ -40,7 +40,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None, *, complex_too: b
     refuse_masked(values, what)
     if is_float(values):
         require_broadcast(values, what)
-        return aligned(values)
+        return in_aligned_memory(values)
     if isinstance(values, list | tuple):
         strange = [leaf for leaf in leaves(values) if type(leaf) not in _PLAIN]
         if strange:

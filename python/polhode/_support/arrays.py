@@ -46,7 +46,7 @@ def as_floats(values: Any, what: str) -> Array:
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}")
     require_broadcast(array, what)
-    return aligned(array.astype(np.float64, copy=False))
+    return in_aligned_memory(array.astype(np.float64, copy=False))
 
 
 def require_broadcast(array: Array, what: str) -> None:
@@ -61,7 +61,7 @@ def refuse_masked(values: Any, what: str) -> None:
         raise TypeError(f"{what} is a masked array; fill it or pass its compressed values")
 
 
-def aligned(array: Array) -> Array:
+def in_aligned_memory(array: Array) -> Array:
     """Return the array, or a copy if its memory is not aligned, as of a field of a packed record."""
     return array if array.flags.aligned else array.copy()
 

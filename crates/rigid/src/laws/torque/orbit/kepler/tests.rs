@@ -169,7 +169,7 @@ fn lanes_have_the_bits_of_single_orbits() {
     }
 }
 
-/// Many turns are no more than a loss of digits.
+/// Many turns only cost digits.
 #[test]
 fn directions_are_unit_at_any_time() {
     for e in [0.0, 0.4] {

@@ -1,5 +1,7 @@
 """Attributes and dimensions of netCDF files by the CF conventions, and older files."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -22,6 +24,23 @@ def test_global_attributes_and_dimensions():
     for name, variable in data.data_vars.items():
         assert {"units", "long_name"} <= set(variable.attrs), name
     assert set(data.dims) == set(data.coords)
+
+
+def test_texts_have_a_fixed_size(tmp_path):
+    """HDF5 2.0.0 searches a damaged heap of strings of variable size without end; readers get str."""
+    h5py = pytest.importorskip("h5py")
+    title = "Kreisel, ω = 1 s⁻¹"
+    titled = replace(MOTION, attributes={"title": title, "unit": "s", "empty": ""})
+    titled.save(tmp_path / "a.nc")
+    with h5py.File(tmp_path / "a.nc") as file:
+        texts = [h5py.check_string_dtype(file.attrs.get_id(name).dtype) for name in file.attrs]
+        assert all(text.length for text in texts if text)
+        assert sum(text is not None for text in texts) > 6
+    for attributes in (
+        ph.Trajectory.read(tmp_path / "a.nc").attributes,
+        xarray.open_dataset(tmp_path / "a.nc").attrs,
+    ):
+        assert [attributes[name] for name in ("title", "unit", "empty")] == [title, "s", ""]
 
 
 MOMENTUM = "kg m^2/s"

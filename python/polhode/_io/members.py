@@ -62,7 +62,7 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
         try:
             with library.File(path, "r") as file:
                 if "body" in file:
-                    attributes = {x: netcdf._attribute(y) for x, y in file.attrs.items()}
+                    attributes = {x: netcdf.attribute(y) for x, y in file.attrs.items()}
                     return _member(name, file, attributes, body)
         except FileError:
             raise

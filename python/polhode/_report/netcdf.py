@@ -193,8 +193,25 @@ def encoded(time: Any, variables: dict[str, Any], attributes: dict[str, Any]) ->
     return _bytes_of(xr.Dataset(variables, coordinates, CF | attributes))
 
 
+def of_fixed_size(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return attributes with texts as the fixed-size strings of netCDF-C.
+
+    The strings of variable size that h5netcdf writes lie in a heap of the file, and HDF5 2.0.0 searches some
+    damaged heaps without end.
+    """
+    library = optional("h5py", "io", "a netCDF file")
+
+    def fixed(text: str) -> Any:
+        # With a null at the end: readers take one byte alone for a character, not for a text.
+        content = text.encode()
+        return np.array(content, library.string_dtype("utf-8", len(content) + 1))
+
+    return {name: fixed(x) if isinstance(x, str) else x for name, x in attributes.items()}
+
+
 def _bytes_of(dataset: xarray.Dataset) -> bytes:
     buffer = io.BytesIO()
+    dataset = dataset.assign_attrs(of_fixed_size(dataset.attrs))
     dataset.to_netcdf(buffer, engine="h5netcdf", encoding={"time": {"_FillValue": None}})
     return buffer.getvalue()
 
@@ -335,7 +352,7 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
         raise PermissionError(f"{os.fsdecode(path)}: no permission to read it")
     try:
         with library.File(path, "r") as file:
-            attributes = {name: _attribute(x) for name, x in file.attrs.items()}
+            attributes = {name: attribute(x) for name, x in file.attrs.items()}
             many = "batch_shape" in attributes or "body" in file
             names = [] if many else [name for name in file if name in _READ or name.startswith("event_")]
             fields = {name: values(name, file[name]) for name in names}
@@ -349,8 +366,10 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
     return fields, attributes
 
 
-def _attribute(x: Any) -> Any:
-    """Return an attribute; numbers are arrays of one element in the file."""
+def attribute(x: Any) -> Any:
+    """Return an attribute; numbers are arrays of one element in the file, and texts may be bytes."""
+    if isinstance(x, bytes):
+        return x.decode()
     return x.item() if isinstance(x, np.ndarray) and x.size == 1 else x
 
 

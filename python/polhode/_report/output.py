@@ -90,7 +90,7 @@ def is_own(path: Path) -> bool:
 def _source_of_netcdf(path: Path) -> str:
     try:
         with optional("h5py", "io", "a netCDF file").File(path, "r") as file:
-            return str(file.attrs.get("source", ""))
+            return str(netcdf.attribute(file.attrs.get("source", "")))
     except (OSError, RuntimeError, KeyError, TypeError, ValueError):
         return ""  # The library raises any of these for other files.
 

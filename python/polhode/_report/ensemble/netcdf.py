@@ -12,6 +12,7 @@ from polhode._report.ensemble.collect import EnsembleRecords
 from polhode._report.ensemble.layout import LABELS, Variable, failures, flags
 from polhode._report.ensemble.reduced import ReducedBlock, ReducedRecords
 from polhode._report.ensemble.reduced_layout import bytes_of_body, layout_of
+from polhode._report.netcdf import of_fixed_size
 from polhode._scene.scene import Scene
 from polhode._support.extras import optional
 
@@ -56,7 +57,7 @@ class EnsembleFile:
             variable[:] = np.array(list(labels), dtype=object)
         for shared in self._layout.shared():
             self._write(shared)
-        self._file.attrs.update(self._layout.attributes())
+        self._file.attrs.update(of_fixed_size(self._layout.attributes()))
 
     def _write(self, given: Variable) -> None:
         """Write a variable of fixed size."""

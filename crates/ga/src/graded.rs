@@ -29,6 +29,18 @@ impl Graded {
         Some(Graded { components: held, grades })
     }
 
+    /// From the components `[1, e2e3, e3e1, e1e2]` of an even value.
+    #[inline]
+    pub fn even([s, x, y, z]: [f64; 4]) -> Graded {
+        Graded { components: [s, x, y, z, 0.0, 0.0, 0.0, 0.0], grades: Grades::EVEN }
+    }
+
+    /// From the components `[e2e3, e3e1, e1e2]` of a bivector.
+    #[inline]
+    pub fn bivector([x, y, z]: [f64; 3]) -> Graded {
+        Graded { components: [x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0], grades: Grades::BIVECTOR }
+    }
+
     /// From the components of some grades of G3, each by its place.
     #[inline]
     pub(crate) fn from_fn(grades: Grades, component: impl FnMut(usize) -> f64) -> Graded {

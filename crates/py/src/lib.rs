@@ -57,8 +57,6 @@ mod _native {
     #[pymodule_export]
     use crate::algebra::signature::{Algebra, g3_object};
     #[pymodule_export]
-    use crate::algebra::value::{Multivector, Rotor};
-    #[pymodule_export]
     use crate::support::face::register;
     #[pymodule_export]
     use crate::support::pool::{Buffer, buffer};
@@ -76,6 +74,16 @@ mod _native {
     const NO_LAST_VALUE: &str = session::NO_LAST_VALUE;
     #[pymodule_export]
     const NOT_FINITE: &str = session::NOT_FINITE;
+
+    /// Adds the types of values, which are not classes of pyo3.
+    #[pymodule_init]
+    fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
+        use pyo3::types::PyModuleMethods as _;
+
+        let [multivector, rotor] = crate::algebra::slots::create_types(module.py())?;
+        module.add("Multivector", multivector)?;
+        module.add("Rotor", rotor)
+    }
 
     /// The version of the package.
     #[pymodule_export]

@@ -238,7 +238,8 @@ def of_parts(
     """Return the history with these components, attitudes as quaternions w, x, y, z."""
     netcdf.require_shapes(time, parts)
     quaternions = np.asarray(parts["attitude"], float)
-    norms = np.linalg.norm(quaternions, axis=-1)
+    with np.errstate(over="ignore"):  # an infinite norm is rejected below
+        norms = np.linalg.norm(quaternions, axis=-1)
     if not (np.abs(norms - 1) < 1e-3).all():
         k = int(np.argmax(~(np.abs(norms - 1) < 1e-3)))
         raise RowError(f"attitude must be unit quaternions, got norm {norms[k]:.6g}", k, "attitude_w")

@@ -4,4 +4,6 @@ pub(crate) mod multivector;
 pub(crate) mod operators;
 pub(crate) mod rows;
 pub(crate) mod signature;
+pub(crate) mod slots;
+pub(crate) mod types;
 pub(crate) mod value;

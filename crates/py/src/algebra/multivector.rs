@@ -1,9 +1,12 @@
 //! Methods of the native half of Python's `Multivector` and `Rotor`.
 
-use super::operators::{equal, function, infix, infix_right, named, sum, turned};
+use super::operators::{
+    difference, equal, function, infix, infix_right, logarithm, named, negative, or_method, reversed, sum_of,
+    turned,
+};
 use super::signature::{Algebra, g3};
 use super::value::{
-    Any, Multivector, Object, Rotor, Storage, This, number, one, row, storage, unit_rotor, wrap,
+    Any, Multivector, Object, Rotor, Storage, This, number, one, operand, row, storage, wrap,
 };
 use numpy::PyArray1;
 use polhode_ga::g3::functions::Function;
@@ -122,19 +125,19 @@ impl Multivector {
     }
 
     fn __add__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        sum(slf, other, "_add", |x, y| x + y)
+        or_method(sum_of(operand(slf), operand(other)), slf, "_add", (other,))
     }
 
     fn __radd__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        sum(slf, other, "_add", |x, y| y + x)
+        or_method(sum_of(operand(other), operand(slf)), slf, "_add", (other,))
     }
 
     fn __sub__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        sum(slf, other, "_subtract", |x, y| x - y)
+        or_method(difference(operand(slf), operand(other)), slf, "_subtract", (other,))
     }
 
     fn __rsub__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        sum(slf, other, "_subtract_from", |x, y| y - x)
+        or_method(difference(operand(other), operand(slf)), slf, "_subtract_from", (other,))
     }
 
     fn __truediv__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
@@ -145,10 +148,7 @@ impl Multivector {
     }
 
     fn __neg__<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        match slf.get().single() {
-            Some(a) => wrap(slf.py(), Storage::One(a.map(|x| -x)), slf.get().unit),
-            None => slf.call_method0(intern!(slf.py(), "_negated")),
-        }
+        or_method(negative(operand(slf)), slf, "_negated", ())
     }
 
     fn __invert__<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
@@ -162,10 +162,7 @@ impl Multivector {
     /// >>> ~(1 + ph.e1 + (ph.e1 ^ ph.e2) + ph.I)
     /// 1 + e1 - e1∧e2 - I
     fn reverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        match slf.get().single() {
-            Some(a) => wrap(slf.py(), Storage::One(a.reverse()), slf.get().unit),
-            None => slf.call_method0(intern!(slf.py(), "_reversed")),
-        }
+        or_method(reversed(operand(slf)), slf, "_reversed", ())
     }
 
     /// Return the part of one grade or of several, ``grade(2)`` or ``grade(1, 3)``; zeros where absent.
@@ -389,13 +386,7 @@ impl Rotor {
         if errors != "raise" {
             return function(slf.as_super(), Function::Log, errors);
         }
-        match slf.as_super().get().single() {
-            Some(value) => {
-                let log = Graded::new(&unit_rotor(value).log().0, Grades::BIVECTOR);
-                one(slf.py(), log.unwrap_or_default())
-            }
-            None => slf.call_method0(intern!(slf.py(), "_log")),
-        }
+        or_method(logarithm(operand(slf)), slf.as_super(), "_log", ())
     }
 
     fn __call__<'py>(slf: &Bound<'py, Self>, x: Any<'_, 'py>) -> Object<'py> {

@@ -1,8 +1,7 @@
 //! Operators of single values; the Python half of the type handles all other operands.
 
 use super::value::{
-    Any, Multivector, Object, Operand, Rotor, Storage, This, number, one, one_rotor, operand, scalar,
-    unit_rotor, wrap,
+    Any, Multivector, Object, Operand, Rotor, Storage, This, number, operand, scalar, unit_rotor, wrap,
 };
 use crate::support::arrays::bad;
 use numpy::{PyArray1, PyArrayMethods};
@@ -13,6 +12,93 @@ use polhode_ga::{Bivector, Graded, Multivector as FullMultivector, Rotor as Unit
 use pyo3::intern;
 use pyo3::prelude::*;
 
+/// A single value, and whether it is a rotor.
+pub(super) struct One {
+    pub value: Graded,
+    pub unit: bool,
+}
+
+impl One {
+    fn of(value: Graded) -> One {
+        One { value, unit: false }
+    }
+
+    fn of_rotor(rotor: UnitRotor) -> One {
+        One { value: Graded::even(rotor.components()), unit: true }
+    }
+
+    /// A new Python value.
+    pub fn object(self, py: Python<'_>) -> Object<'_> {
+        wrap(py, Storage::One(self.value), self.unit)
+    }
+}
+
+/// A product of single values and numbers, at least one of them a value.
+#[inline]
+pub(super) fn product_of(product: Product, a: Operand<'_>, b: Operand<'_>) -> Option<One> {
+    Some(match (a, b) {
+        (Operand::Value(a, true), Operand::Value(b, true)) if product == Product::Geometric => {
+            One::of_rotor(unit_rotor(a).compose(unit_rotor(b)))
+        }
+        (Operand::Value(a, _), Operand::Value(b, _)) => One::of(a.product(product, b)),
+        (Operand::Value(a, _), Operand::Number(x)) => One::of(a.product(product, &scalar(x))),
+        (Operand::Number(x), Operand::Value(b, _)) => One::of(scalar(x).product(product, b)),
+        _ => return None,
+    })
+}
+
+/// `A + B` of single values and numbers.
+pub(super) fn sum_of(a: Operand<'_>, b: Operand<'_>) -> Option<One> {
+    zipped(a, b, |x, y| x + y)
+}
+
+/// `A − B` of single values and numbers.
+pub(super) fn difference(a: Operand<'_>, b: Operand<'_>) -> Option<One> {
+    zipped(a, b, |x, y| x - y)
+}
+
+#[inline]
+fn zipped(a: Operand<'_>, b: Operand<'_>, f: impl Fn(f64, f64) -> f64) -> Option<One> {
+    Some(One::of(match (a, b) {
+        (Operand::Value(a, _), Operand::Value(b, _)) => a.zip(b, f),
+        (Operand::Value(a, _), Operand::Number(x)) => a.zip(&scalar(x), f),
+        (Operand::Number(x), Operand::Value(b, _)) => scalar(x).zip(b, f),
+        _ => return None,
+    }))
+}
+
+/// `−A` of a single value; a rotor's is a rotor.
+pub(super) fn negative(a: Operand<'_>) -> Option<One> {
+    let Operand::Value(a, unit) = a else { return None };
+    Some(One { value: a.map(|x| -x), unit })
+}
+
+/// `~A` of a single value; a rotor's is a rotor.
+pub(super) fn reversed(a: Operand<'_>) -> Option<One> {
+    let Operand::Value(a, unit) = a else { return None };
+    Some(One { value: a.reverse(), unit })
+}
+
+/// `R X ~R` of single values; of a rotor a rotor.
+pub(super) fn turned_by(rotor: Operand<'_>, x: Operand<'_>) -> Option<One> {
+    let (Operand::Value(rotor, true), Operand::Value(x, unit)) = (rotor, x) else { return None };
+    Some(One { value: x.turned(unit_rotor(rotor)), unit })
+}
+
+/// `exp B` of a finite single bivector, a rotor.
+pub(super) fn exponential(b: Operand<'_>) -> Option<One> {
+    let Operand::Value(b, _) = b else { return None };
+    let &[x, y, z] = b.components() else { return None };
+    let is_finite = x.is_finite() && y.is_finite() && z.is_finite();
+    (b.grades() == Grades::BIVECTOR && is_finite).then(|| One::of_rotor(UnitRotor::exp(Bivector([x, y, z]))))
+}
+
+/// `log R` of a single rotor.
+pub(super) fn logarithm(rotor: Operand<'_>) -> Option<One> {
+    let Operand::Value(rotor, true) = rotor else { return None };
+    Some(One::of(Graded::bivector(unit_rotor(rotor).log().0)))
+}
+
 /// `A op B` here for single values; by the method of the Python half for all others.
 pub(crate) fn product<'py>(
     left: This<'_, 'py>,
@@ -20,19 +106,9 @@ pub(crate) fn product<'py>(
     right: Any<'_, 'py>,
     fallback: impl FnOnce() -> Object<'py>,
 ) -> Object<'py> {
-    let py = left.py();
-    let Some(a) = left.get().single() else {
-        return product_of_rows(left, product, right).unwrap_or_else(fallback);
-    };
-    match operand(right) {
-        Operand::Value(b, unit) => {
-            if unit && left.get().unit && product == Product::Geometric {
-                return one_rotor(py, unit_rotor(a).compose(unit_rotor(b)));
-            }
-            one(py, a.product(product, b))
-        }
-        Operand::Number(x) => one(py, a.product(product, &scalar(x))),
-        Operand::Other => fallback(),
+    match product_of(product, operand(left), operand(right)) {
+        Some(result) => result.object(left.py()),
+        None => product_of_rows(left, product, right).unwrap_or_else(fallback),
     }
 }
 
@@ -57,19 +133,16 @@ pub(crate) fn product_of_rows<'py>(
     Some(wrap(py, Storage::Many { data, grades: plan.grades, algebra: algebra.clone_ref(py) }, false))
 }
 
-/// `A + B` and `A − B` here for single values.
-pub(crate) fn sum<'py>(
-    left: This<'_, 'py>,
-    right: Any<'_, 'py>,
+/// A result for single values, or that of a method of the Python half.
+pub(super) fn or_method<'py>(
+    result: Option<One>,
+    value: This<'_, 'py>,
     name: &str,
-    f: impl Fn(f64, f64) -> f64,
+    arguments: impl pyo3::call::PyCallArgs<'py>,
 ) -> Object<'py> {
-    let fallback = || left.call_method1(name, (right,));
-    let Some(a) = left.get().single() else { return fallback() };
-    match operand(right) {
-        Operand::Value(b, _) => one(left.py(), a.zip(b, f)),
-        Operand::Number(x) => one(left.py(), a.zip(&scalar(x), f)),
-        Operand::Other => fallback(),
+    match result {
+        Some(result) => result.object(value.py()),
+        None => value.call_method1(name, arguments),
     }
 }
 
@@ -80,10 +153,11 @@ pub(crate) fn infix<'py>(left: This<'_, 'py>, kind: Product, right: Any<'_, 'py>
 
 /// `x op A` for a left factor x that is not a multivector.
 pub(crate) fn infix_right<'py>(right: This<'_, 'py>, kind: Product, left: Any<'_, 'py>) -> Object<'py> {
-    if let (Some(b), Some(x)) = (right.get().single(), number(left)) {
-        return one(right.py(), scalar(x).product(kind, b));
+    let number = number(left).map_or(Operand::Other, Operand::Number);
+    match product_of(kind, number, operand(right)) {
+        Some(result) => result.object(right.py()),
+        None => right.call_method1(intern!(right.py(), "_product_from"), (kind.name(), left)),
     }
-    right.call_method1(intern!(right.py(), "_product_from"), (kind.name(), left))
 }
 
 /// A named product, which may write to an array.
@@ -107,10 +181,10 @@ pub(crate) fn function<'py>(value: This<'_, 'py>, f: Function, errors: &str) -> 
     let Some(value) = value.get().single() else {
         return value.call_method1(intern!(py, "_function"), (f.name(),));
     };
-    if let (Function::Exp, Grades::BIVECTOR, &[x, y, z]) = (f, value.grades(), value.components())
-        && [x, y, z].iter().all(|x| x.is_finite())
+    if f == Function::Exp
+        && let Some(rotor) = exponential(Operand::Value(value, false))
     {
-        return one_rotor(py, UnitRotor::exp(Bivector([x, y, z])));
+        return rotor.object(py);
     }
     let full = value.full();
     let grades = f.grades(value.grades());
@@ -133,11 +207,5 @@ pub(crate) fn equal(left: This<'_, '_>, right: Any<'_, '_>) -> Option<bool> {
 
 /// `R X ~R` of single values.
 pub(crate) fn turned<'py>(rotor: &Bound<'py, Rotor>, x: Any<'_, 'py>) -> Option<Object<'py>> {
-    let rotor = rotor.as_super().get().single()?;
-    match operand(x) {
-        Operand::Value(value, unit) => {
-            Some(wrap(x.py(), Storage::One(value.turned(unit_rotor(rotor))), unit))
-        }
-        _ => None,
-    }
+    Some(turned_by(operand(rotor), operand(x))?.object(x.py()))
 }

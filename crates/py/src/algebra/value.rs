@@ -3,6 +3,8 @@
 //! A single value of 3-d space over float64 is stored inline, all others as arrays of any coefficients and algebra.
 
 use super::signature::{Algebra, g3};
+use super::types;
+pub(crate) use super::types::{Multivector, Rotor, Storage};
 use crate::support::arrays::bad;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
@@ -15,33 +17,9 @@ pub(crate) type Object<'py> = PyResult<Bound<'py, PyAny>>;
 pub(crate) type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 pub(crate) type This<'a, 'py> = &'a Bound<'py, Multivector>;
 
-pub(crate) enum Storage {
-    /// A single value of 3-d space over float64.
-    One(Graded),
-    /// Any array `(…, K)` of the components of the grades present.
-    Many { data: Py<PyAny>, grades: Grades, algebra: Py<Algebra> },
-}
-
-/// A multivector, or an array of them; immutable.
-#[pyclass(frozen, subclass, module = "polhode")]
-pub(crate) struct Multivector {
-    pub(crate) storage: Storage,
-    /// Whether it is a Rotor, of norm 1 by construction.
-    pub(crate) unit: bool,
-}
-
-/// A rotor, or an array of them; immutable.
-#[pyclass(frozen, subclass, extends = Multivector, module = "polhode")]
-pub(crate) struct Rotor;
-
 /// A new Python value.
 pub(crate) fn wrap(py: Python<'_>, storage: Storage, unit: bool) -> Object<'_> {
-    let value = PyClassInitializer::from(Multivector { storage, unit });
-    if unit {
-        Ok(Bound::new(py, value.add_subclass(Rotor))?.into_any())
-    } else {
-        Ok(Bound::new(py, value)?.into_any())
-    }
+    types::object(py, Multivector { storage, unit })
 }
 
 /// A new single value.
@@ -51,8 +29,7 @@ pub(crate) fn one(py: Python<'_>, value: Graded) -> Object<'_> {
 
 /// A new single rotor.
 pub(crate) fn one_rotor(py: Python<'_>, rotor: UnitRotor) -> Object<'_> {
-    let value = Graded::new(&rotor.components(), Grades::EVEN).ok_or_else(|| bad("a rotor is even"))?;
-    wrap(py, Storage::One(value), true)
+    wrap(py, Storage::One(Graded::even(rotor.components())), true)
 }
 
 /// A Python float or int (not a bool) as a number.

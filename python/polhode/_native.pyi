@@ -23,7 +23,6 @@ class SceneError(ValueError): ...
 
 # The native halves of the types in Python; `polhode._algebra.native` adds the other halves.
 
-@disjoint_base
 class Multivector:
     def __new__(cls, *values: Any, **named: Any) -> Self: ...
     @staticmethod

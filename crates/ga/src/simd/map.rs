@@ -15,18 +15,19 @@ pub(crate) const BUILT_WITH_FMA: bool = cfg!(any(target_feature = "fma", target_
 pub(crate) trait Map<const A: usize, const B: usize, const OUT: usize>: Sync {
     /// Its values for `W` rows, given by components; the first number is NaN if the row needs the long method. No
     /// branches.
-    fn short<const W: usize, const FMA: bool>(a: [&[f64; W]; A], b: [&[f64; W]; B]) -> [[f64; W]; OUT];
+    fn short<const W: usize, const FMA: bool>(&self, a: [&[f64; W]; A], b: [&[f64; W]; B])
+    -> [[f64; W]; OUT];
 
-    /// Its value for any finite row.
-    fn long(a: [f64; A], b: [f64; B]) -> [f64; OUT];
+    /// Its value for any finite row; the first number is NaN if there is none.
+    fn long(&self, a: [f64; A], b: [f64; B]) -> [f64; OUT];
 
     /// Its value; NaN if the row is not finite.
-    fn value(a: [f64; A], b: [f64; B]) -> [f64; OUT] {
-        let value = alone(Self::short::<1, BUILT_WITH_FMA>(lanes_of_one(&a), lanes_of_one(&b)));
+    fn value(&self, a: [f64; A], b: [f64; B]) -> [f64; OUT] {
+        let value = alone(self.short::<1, BUILT_WITH_FMA>(lanes_of_one(&a), lanes_of_one(&b)));
         if !value[0].is_nan() {
             value
         } else if a.iter().chain(&b).all(|x| x.is_finite()) {
-            Self::long(a, b)
+            self.long(a, b)
         } else {
             [f64::NAN; OUT]
         }
@@ -43,15 +44,15 @@ pub(crate) fn alone<const N: usize>(lanes: [[f64; 1]; N]) -> [f64; N] {
     lanes.map(|[x]| x)
 }
 
-/// A map as a kernel, which remembers whether it met a row that is not finite.
+/// A map as a kernel, which remembers whether it met a row without a value.
 struct Mapped<M, const A: usize, const B: usize, const OUT: usize> {
-    _map: M,
+    map: M,
     failed: AtomicBool,
 }
 
 impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped<M, A, B, OUT> {
     fn value(&self, a: [f64; A], b: [f64; B]) -> [f64; OUT] {
-        let value = M::value(a, b);
+        let value = self.map.value(a, b);
         if value[0].is_nan() {
             self.failed.store(true, Ordering::Relaxed);
         }
@@ -73,7 +74,7 @@ impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped
             let part = |lane: &Lane<W>| lane.0.as_chunks::<N>().0[i];
             let x: [[f64; N]; A] = std::array::from_fn(|k| part(&a[k]));
             let y: [[f64; N]; B] = std::array::from_fn(|k| part(&b[k]));
-            let values = M::short::<N, FMA>(x.each_ref(), y.each_ref());
+            let values = self.map.short::<N, FMA>(x.each_ref(), y.each_ref());
             for k in 0..OUT {
                 out[k].0.as_chunks_mut::<N>().0[i] = values[k];
             }
@@ -103,7 +104,7 @@ impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped
 }
 
 impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> ByRow for Mapped<M, A, B, OUT> {
-    fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+    fn row(&self, _: Path, a: &[f64], b: &[f64], out: &mut [f64]) {
         out.copy_from_slice(&self.value(std::array::from_fn(|k| a[k]), std::array::from_fn(|k| b[k])));
     }
 }
@@ -135,7 +136,7 @@ pub(crate) fn block<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT
     b: &[Lane<W>],
     out: &mut [Lane<W>],
 ) -> bool {
-    let kernel = Mapped::<M, A, B, OUT> { _map: map, failed: AtomicBool::new(false) };
+    let kernel = Mapped::<M, A, B, OUT> { map, failed: AtomicBool::new(false) };
     path.apply(&kernel, a, b, out);
     !kernel.failed.into_inner()
 }
@@ -148,7 +149,7 @@ pub(crate) fn run<T: Element, M: Map<A, B, OUT>, const A: usize, const B: usize,
     b: &[T],
     out: &mut [T],
 ) -> Result<(), usize> {
-    let kernel = Mapped::<M, A, B, OUT> { _map: map, failed: AtomicBool::new(false) };
+    let kernel = Mapped::<M, A, B, OUT> { map, failed: AtomicBool::new(false) };
     sweep::<_, LANES, _>(path, threads, &kernel, (a, A), (b, B), (out, OUT));
     if !kernel.failed.into_inner() {
         return Ok(());

@@ -65,17 +65,29 @@ impl<const W: usize> Lane<W> {
 /// Elements of rows: `f64`, or `f32`, which is widened when read and rounded when written.
 /// The arithmetic between is that of `f64`.
 pub trait Element: Copy + Send + Sync + Into<f64> + Registers {
+    /// The spacing of its numbers at 1.
+    const EPSILON: f64;
+
+    /// `√EPSILON`, the spacing of half of the digits.
+    const HALF_PRECISION: f64;
+
     /// The nearest of its numbers.
     fn nearest(x: f64) -> Self;
 }
 
 impl Element for f64 {
+    const EPSILON: f64 = f64::EPSILON;
+    const HALF_PRECISION: f64 = 1.0 / (1u64 << 26) as f64;
+
     fn nearest(x: f64) -> f64 {
         x
     }
 }
 
 impl Element for f32 {
+    const EPSILON: f64 = f32::EPSILON as f64;
+    const HALF_PRECISION: f64 = 3.452_669_830_012_439e-4;
+
     fn nearest(x: f64) -> f32 {
         x as f32
     }
@@ -94,8 +106,8 @@ pub(crate) trait ByRow: Sync {
         0
     }
 
-    /// One row. `out` may hold anything before.
-    fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]);
+    /// One row, with the bits of a block on this path. `out` may hold anything before.
+    fn row(&self, path: Path, a: &[f64], b: &[f64], out: &mut [f64]);
 }
 
 /// A function of two rows over lanes.
@@ -149,6 +161,24 @@ pub(crate) fn by_lanes<const A: usize, const B: usize, const OUT: usize, const W
         for k in 0..OUT {
             out[k].0[l] = value[k];
         }
+    }
+}
+
+/// Computes a lane from others, eight rows at a time. These are read before any is written: among work of several kernels
+/// the compiler does not know that lanes do not overlap.
+#[inline(always)]
+pub(crate) fn by_eights<const N: usize, const W: usize>(
+    from: [&Lane<W>; N],
+    out: &mut Lane<W>,
+    function: impl Fn([f64; N]) -> f64,
+) {
+    for i in 0..W / 8 {
+        let x: [[f64; 8]; N] = std::array::from_fn(|k| from[k].0.as_chunks().0[i]);
+        let mut values = [0.0; 8];
+        for l in 0..8 {
+            values[l] = function(std::array::from_fn(|k| x[k][l]));
+        }
+        out.0.as_chunks_mut().0[i] = values;
     }
 }
 

@@ -136,7 +136,13 @@ pub(crate) fn by_blocks<T: Element, const W: usize>(
 }
 
 /// Applies a kernel to the rows one by one.
-fn by_rows<T: Element, K: ByRow>(kernel: &K, a: Factor<T>, b: Factor<T>, (out, nout): (&mut [T], usize)) {
+fn by_rows<T: Element, K: ByRow>(
+    path: Path,
+    kernel: &K,
+    a: Factor<T>,
+    b: Factor<T>,
+    (out, nout): (&mut [T], usize),
+) {
     let mut numbers = vec![0.0; a.size + b.size + nout];
     let (x, rest) = numbers.split_at_mut(a.size);
     let (y, z) = rest.split_at_mut(b.size);
@@ -146,7 +152,7 @@ fn by_rows<T: Element, K: ByRow>(kernel: &K, a: Factor<T>, b: Factor<T>, (out, n
                 *wide = number.into();
             }
         }
-        kernel.row(x, y, z);
+        kernel.row(path, x, y, z);
         for (number, &wide) in out.iter_mut().zip(&*z) {
             *number = T::nearest(wide);
         }
@@ -189,7 +195,7 @@ fn sweep_piece<T: Element, const W: usize, K: Kernel<W> + ByRow>(
     }
     let (a, b, total) = (a.piece(rows.clone()), b.piece(rows.clone()), rows.len());
     if total < K::FEW || K::FAST_ROWS && path.is_portable() {
-        return by_rows(kernel, a, b, (out, nout));
+        return by_rows(path, kernel, a, b, (out, nout));
     }
     // Lanes beyond the last rows are computed too; 1 is in the domain of all functions.
     let mut lanes = vec![Lane::<W>::filled(1.0); a.size + b.size + nout];

@@ -13,7 +13,7 @@ use crate::MathError;
 use crate::graded::{Graded, size};
 use crate::simd::threads::{Threads, for_each};
 use crate::simd::traverse::{Factor, SHARED, Target, by_blocks};
-use crate::simd::{Element, Path};
+use crate::simd::{Element, Lane, Path};
 use schedule::Schedule;
 use single::Runner;
 use std::ops::{ControlFlow, Range};
@@ -196,17 +196,17 @@ impl Sweep<'_> {
         let ahead = self.ahead::<T, W>(factors);
         let mut result = Ok(());
         by_blocks((self.path, self.streamed), total, &mut lanes, targets, |first, count, lanes| {
-            let mut known = true;
-            for (task, ahead) in self.schedule.tasks.iter().zip(&ahead) {
-                for (input, lines) in ahead {
+            let prefetch = |task: usize| {
+                for (input, lines) in &ahead[task] {
                     let row = factors[*input].rows(first, 1);
                     let block = row.as_ptr().wrapping_add(W * row.len()).wrapping_byte_add(AHEAD);
                     self.path.prefetch(block, lines.clone());
                 }
-                known &= self.runner.task(task, (self.path, count), lanes, |input, lanes| {
-                    self.path.gather(factors[input].rows(first, count), lanes);
-                });
-            }
+            };
+            let read = |input: usize, to: Range<usize>, lanes: &mut [Lane<W>]| {
+                self.path.gather(factors[input].rows(first, count), &mut lanes[to]);
+            };
+            let known = self.runner.do_all(&self.schedule.tasks, (self.path, count), lanes, prefetch, read);
             if !known {
                 result = (first..first + count).try_for_each(|row| self.runner.row(factors, row).map(drop));
             }

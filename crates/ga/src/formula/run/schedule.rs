@@ -5,7 +5,7 @@ use super::steps::{Given, Work};
 use crate::MathError;
 use crate::formula::compile::program::Id;
 use crate::graded::size;
-use crate::simd::{Lane, Path};
+use crate::simd::{Lane, Path, lanes};
 use std::ops::Range;
 
 /// A value, or an input that is a map, at its lanes.
@@ -158,29 +158,59 @@ impl Runner {
         Ok(schedule)
     }
 
-    /// Does a task for a block of rows, `count` of which matter; false if some row may have no value.
-    pub(crate) fn task<const W: usize>(
+    /// Does the tasks for a block of rows, `count` of which matter; false if some row may have no value. `before` is called
+    /// before each task with its number, and `read` fills the lanes of a range with rows of an input.
+    pub(crate) fn do_all<const W: usize>(
         &self,
-        task: &Task,
+        tasks: &[Task],
         (path, count): (Path, usize),
         lanes: &mut [Lane<W>],
-        read: impl FnOnce(usize, &mut [Lane<W>]),
+        before: impl FnMut(usize),
+        read: impl FnMut(usize, Range<usize>, &mut [Lane<W>]),
     ) -> bool {
-        match task {
-            Task::Read { input, to } => {
-                read(*input, &mut lanes[to.clone()]);
-                true
-            }
-            Task::Do { step, operands, to } => {
-                let step = &self.steps[*step];
-                let of = self.steps[step.operands()[0]].grades;
-                step.block(path, of, count, apart(lanes, operands, to))
+        path.run(Tasks { runner: self, tasks, path, count, lanes, before, read })
+    }
+}
+
+/// Tasks that are compiled together for each path: calls would take longer than most steps of a few rows.
+struct Tasks<'a, B, R, const W: usize> {
+    runner: &'a Runner,
+    tasks: &'a [Task],
+    path: Path,
+    count: usize,
+    lanes: &'a mut [Lane<W>],
+    before: B,
+    read: R,
+}
+
+impl<B, R, const W: usize> lanes::Work for Tasks<'_, B, R, W>
+where
+    B: FnMut(usize),
+    R: FnMut(usize, Range<usize>, &mut [Lane<W>]),
+{
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> bool {
+        let Tasks { runner, tasks, path, count, lanes, mut before, mut read } = self;
+        let mut known = true;
+        for (number, task) in tasks.iter().enumerate() {
+            before(number);
+            match task {
+                Task::Read { input, to } => read(*input, to.clone(), lanes),
+                Task::Do { step, operands, to } => {
+                    let step = &runner.steps[*step];
+                    let of = runner.steps[step.operands()[0]].grades;
+                    known &= step.block(path, of, count, apart(lanes, operands, to));
+                }
             }
         }
+        known
     }
 }
 
 /// The lanes of two operands to read, and others to write.
+#[inline(always)]
 pub(super) fn apart<'a, const W: usize>(
     lanes: &'a mut [Lane<W>],
     [a, b]: &[Range<usize>; 2],

@@ -1,6 +1,6 @@
 //! Programs on lanes that the caller fills repeatedly, for bodies stepped side by side.
 
-use super::schedule::{Schedule, Task};
+use super::schedule::Schedule;
 use super::single::Runner;
 use super::steps::Given;
 use crate::simd::{Lane, Path};
@@ -49,14 +49,14 @@ impl<const W: usize> Beside<'_, W> {
 
     /// Evaluates all rows, each with the bits of [`Runner::value`]; a row with a failing step has NaN as its results.
     pub fn run(&mut self) {
-        let mut known = true;
-        for task in &self.schedule.tasks {
-            if let Task::Read { input, to } = task {
-                self.lanes.copy_within(self.schedule.inputs[*input].clone(), to.start);
-                continue;
-            }
-            known &= self.runner.task(task, (self.path, W), &mut self.lanes, |_, _| {});
-        }
+        let inputs = &self.schedule.inputs;
+        let known = self.runner.do_all(
+            &self.schedule.tasks,
+            (self.path, W),
+            &mut self.lanes,
+            |_| {},
+            |input, to, lanes| lanes.copy_within(inputs[input].clone(), to.start),
+        );
         if !known {
             (0..W).for_each(|row| self.complete(row));
         }

@@ -11,7 +11,7 @@ use crate::rows::compose::Compose;
 use crate::rows::product::{Geometric, Turn};
 use crate::rows::rotor_functions::{self, Cos, Exp, Log, Power, Sin, Tan};
 use crate::simd::map::{self, Map};
-use crate::simd::{Kernel, Lane, Path};
+use crate::simd::{Kernel, Lane, Path, by_eights};
 use crate::table::G3;
 use std::f64::consts::PI;
 
@@ -177,9 +177,9 @@ impl Ready {
             }
             Work::Function(f) => applied(*f, operand(0), self.grades)?,
             Work::Norm => Graded::from_fn(self.grades, |_| norm(operand(0).components())),
-            Work::Sin => known(Sin::value([number(operand(0))], []), self.grades)?,
-            Work::Cos => known(Cos::value([number(operand(0))], []), self.grades)?,
-            Work::Tan => known(Tan::value([number(operand(0))], []), self.grades)?,
+            Work::Sin => known(Sin.value([number(operand(0))], []), self.grades)?,
+            Work::Cos => known(Cos.value([number(operand(0))], []), self.grades)?,
+            Work::Tan => known(Tan.value([number(operand(0))], []), self.grades)?,
             Work::Map(i) => match input(*i) {
                 Given::Matrix(m) => {
                     let [x, y, z] = three(operand(0));
@@ -193,7 +193,9 @@ impl Ready {
         Ok(())
     }
 
-    /// Evaluates the step for a block of rows, `count` of which matter. False if some row may have no value.
+    /// Evaluates the step for a block of rows, `count` of which matter, within work of this path. False if some row may have
+    /// no value.
+    #[inline(always)]
     pub fn block<const W: usize>(
         &self,
         path: Path,
@@ -203,28 +205,28 @@ impl Ready {
     ) -> bool {
         match &self.work {
             Work::Input(_) | Work::Constant(_) => {}
-            Work::Sum(sum) => path.apply(sum, a, b, out),
-            Work::Selection(selection) => path.apply(selection, a, b, out),
+            Work::Sum(sum) => sum.block(a, b, out),
+            Work::Selection(selection) => selection.block(a, b, out),
             Work::Product(plan) if matches!(plan.engine, Engine::Geometric) => {
-                path.apply(&Geometric(plan), a, b, out);
+                Geometric(plan).block(a, b, out)
             }
-            Work::Product(plan) => path.apply(plan, a, b, out),
-            Work::Compose => path.apply(&Compose, a, b, out),
-            Work::Turn => path.apply(&Turn(self.grades), a, b, out),
+            Work::Product(plan) => plan.block(a, b, out),
+            Work::Compose => Compose.block(a, b, out),
+            Work::Turn => Turn(self.grades).block(a, b, out),
             Work::Divide => {
-                path.apply(&Divide, a, b, out);
+                Divide.block(a, b, out);
                 return b[0].0.iter().all(|x| *x != 0.0);
             }
             Work::Exp => return map::block(Exp, path, a, &[], out),
             Work::Log => return map::block(Log, path, a, &[], out),
             Work::Power(t) => return map::block(Power, path, a, &[Lane::filled(*t)], out),
             Work::Function(f) => return function(*f, [of, self.grades], a, out, count),
-            Work::Norm => path.apply(&Norm, a, b, out),
+            Work::Norm => norms(a, &mut out[0]),
             Work::Sin => return map::block(Sin, path, a, &[], out),
             Work::Cos => return map::block(Cos, path, a, &[], out),
             Work::Tan => return map::block(Tan, path, a, &[], out),
-            Work::Map(_) if b.len() == 9 => path.apply(&Times, a, b, out),
-            Work::Map(_) => path.apply(&Scaled, a, b, out),
+            Work::Map(_) if b.len() == 9 => times(b, a, out),
+            Work::Map(_) => scaled(&b[0], a, out),
         }
         true
     }
@@ -330,13 +332,10 @@ impl Selection {
 impl<const W: usize> Kernel<W> for Sum {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
-        let zeros = Lane([0.0; W]);
+        let (zeros, sign) = (Lane::filled(0.0), self.sign);
         for (out, [i, j]) in out.iter_mut().zip(&self.places) {
-            let x = &i.map_or(&zeros, |i| &a[i]).0;
-            let y = &j.map_or(&zeros, |j| &b[j]).0;
-            for l in 0..W {
-                out.0[l] = x[l] + self.sign * y[l];
-            }
+            let held = [i.map_or(&zeros, |i| &a[i]), j.map_or(&zeros, |j| &b[j])];
+            by_eights(held, out, |[x, y]| x + sign * y);
         }
     }
 }
@@ -344,13 +343,11 @@ impl<const W: usize> Kernel<W> for Sum {
 impl<const W: usize> Kernel<W> for Selection {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], _: &[Lane<W>], out: &mut [Lane<W>]) {
+        let start = self.start;
         for (out, place) in out.iter_mut().zip(&self.places) {
-            let Some((sign, k)) = *place else {
-                *out = Lane([0.0; W]);
-                continue;
-            };
-            for l in 0..W {
-                out.0[l] = sign * a[k].0[l] + self.start;
+            match *place {
+                Some((sign, k)) => by_eights([&a[k]], out, |[x]| sign * x + start),
+                None => *out = Lane::filled(0.0),
             }
         }
     }
@@ -363,64 +360,47 @@ impl<const W: usize> Kernel<W> for Divide {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         for (out, a) in out.iter_mut().zip(a) {
-            for l in 0..W {
-                out.0[l] = a.0[l] / b[0].0[l];
-            }
+            by_eights([a, &b[0]], out, |[x, s]| x / s);
         }
     }
 }
 
-/// A matrix, nine lanes, times three.
-struct Times;
-
-impl<const W: usize> Kernel<W> for Times {
-    #[inline(always)]
-    fn block(&self, a: &[Lane<W>], m: &[Lane<W>], out: &mut [Lane<W>]) {
-        let (a, m, out) = (&a[..3], &m[..9], &mut out[..3]);
-        for k in 0..3 {
-            let row = &m[3 * k..3 * k + 3];
-            for l in 0..W {
-                out[k].0[l] = row[0].0[l] * a[0].0[l] + row[1].0[l] * a[1].0[l] + row[2].0[l] * a[2].0[l];
-            }
-        }
+/// A matrix, nine lanes by rows, times three.
+#[inline(always)]
+fn times<const W: usize>(matrix: &[Lane<W>], a: &[Lane<W>], out: &mut [Lane<W>]) {
+    let (a, matrix, out) = (&a[..3], &matrix[..9], &mut out[..3]);
+    for k in 0..3 {
+        let row = &matrix[3 * k..3 * k + 3];
+        let factors = [&row[0], &a[0], &row[1], &a[1], &row[2], &a[2]];
+        by_eights(factors, &mut out[k], |[m, x, n, y, p, z]| m * x + n * y + p * z);
     }
 }
 
 /// A number times each component.
-struct Scaled;
-
-impl<const W: usize> Kernel<W> for Scaled {
-    #[inline(always)]
-    fn block(&self, a: &[Lane<W>], s: &[Lane<W>], out: &mut [Lane<W>]) {
-        for (out, a) in out.iter_mut().zip(a) {
-            for l in 0..W {
-                out.0[l] = 0.0 + a.0[l] * s[0].0[l];
-            }
-        }
+#[inline(always)]
+fn scaled<const W: usize>(number: &Lane<W>, a: &[Lane<W>], out: &mut [Lane<W>]) {
+    for (out, a) in out.iter_mut().zip(a) {
+        by_eights([a, number], out, |[x, s]| 0.0 + x * s);
     }
 }
 
 /// The root of the sum of squares; the sum is kept to find rows where it overflows or underflows.
-struct Norm;
-
-impl<const W: usize> Kernel<W> for Norm {
-    #[inline(always)]
-    fn block(&self, a: &[Lane<W>], _: &[Lane<W>], out: &mut [Lane<W>]) {
-        let mut sums = [0.0; W];
-        for a in a {
-            for l in 0..W {
-                sums[l] += a.0[l] * a.0[l];
-            }
-        }
-        let mut plain = true;
+#[inline(always)]
+fn norms<const W: usize>(a: &[Lane<W>], out: &mut Lane<W>) {
+    let mut sums = [0.0; W];
+    for a in a {
         for l in 0..W {
-            plain &= (1e-290..1e290).contains(&sums[l]);
-            out[0].0[l] = sums[l].sqrt();
+            sums[l] += a.0[l] * a.0[l];
         }
-        if !plain {
-            for l in 0..W {
-                out[0].0[l] = norm(&row(a, l)[..a.len()]);
-            }
+    }
+    let mut plain = true;
+    for l in 0..W {
+        plain &= (1e-290..1e290).contains(&sums[l]);
+        out.0[l] = sums[l].sqrt();
+    }
+    if !plain {
+        for l in 0..W {
+            out.0[l] = norm(&row(a, l)[..a.len()]);
         }
     }
 }

@@ -75,9 +75,16 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
     pub fn torque(&mut self, at: &Place<W, F>) -> Three<W, F> {
         for k in 0..self.motions.len() {
             let (input, motion) = self.motions[k];
-            let (numbers, count) = self.given(motion, at);
-            for (lane, x) in self.program.input(input).iter_mut().zip(&numbers[..count]) {
-                lane.0 = x.0;
+            match (motion, &self.frame) {
+                (Motion::Rotor, None) => self.give(input, &at.rotor),
+                (Motion::Rotor, Some(frame)) => self.give(input, &composed(&at.rotor, &reversed(frame))),
+                (Motion::Time, _) => self.give(input, &[at.time]),
+                (Motion::OmegaSpace, _) => self.give(input, &turned(&at.rotor, &at.omega)),
+                (Motion::MomentumSpace, _) => self.give(input, &turned(&at.rotor, &self.momentum(at))),
+                (Motion::MomentumBody, None) => self.give(input, &self.momentum(at)),
+                (Motion::MomentumBody, Some(frame)) => self.give(input, &turned(frame, &self.momentum(at))),
+                (_, None) => self.give(input, &at.omega),
+                (_, Some(frame)) => self.give(input, &turned(frame, &at.omega)),
             }
         }
         self.program.run();
@@ -90,32 +97,21 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
         }
     }
 
-    /// The value of a name that the motion defines, and the count of its numbers.
+    /// Sets the numbers of an input.
     #[inline(always)]
-    fn given(&self, motion: Motion, at: &Place<W, F>) -> ([Lanes<W, F>; 4], usize) {
-        let in_body = match motion {
-            Motion::Rotor => {
-                let rotor = match &self.frame {
-                    Some(frame) => composed(&at.rotor, &reversed(frame)),
-                    None => at.rotor,
-                };
-                return (rotor, 4);
-            }
-            Motion::Time => return ([at.time; 4], 1),
-            Motion::MomentumBody | Motion::MomentumSpace => {
-                let mut momentum = self.wheel;
-                for k in 0..3 {
-                    momentum[k] = self.moments[k].times_plus(at.omega[k], self.wheel[k]);
-                }
-                momentum
-            }
-            _ => at.omega,
-        };
-        let [x, y, z] = match (motion, &self.frame) {
-            (Motion::OmegaSpace | Motion::MomentumSpace, _) => turned(&at.rotor, &in_body),
-            (_, Some(frame)) => turned(frame, &in_body),
-            (_, None) => in_body,
-        };
-        ([x, y, z, Lanes::ZERO], 3)
+    fn give(&mut self, input: usize, numbers: &[Lanes<W, F>]) {
+        for (lane, x) in self.program.input(input).iter_mut().zip(numbers) {
+            lane.0 = x.0;
+        }
+    }
+
+    /// `I(Ω)` and that of wheels, in principal axes.
+    #[inline(always)]
+    fn momentum(&self, at: &Place<W, F>) -> Three<W, F> {
+        let mut momentum = self.wheel;
+        for k in 0..3 {
+            momentum[k] = self.moments[k].times_plus(at.omega[k], self.wheel[k]);
+        }
+        momentum
     }
 }

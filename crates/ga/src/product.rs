@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 macro_rules! named {
     ($(#[$doc:meta])* $type:ident: $count:literal { $($(#[$about:meta])* $variant:ident $name:literal,)* }) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum $type {
             $($(#[$about])* $variant,)*
         }
@@ -39,7 +39,7 @@ pub(crate) use named;
 
 named! {
     /// The products of the handout, and the contractions.
-    Product: 7 {
+    Product: 8 {
         /// The geometric product `AB`: every grade.
         Geometric "geometric",
         /// `A∧B`: grade r + s.
@@ -54,6 +54,8 @@ named! {
         RightContraction "right_contraction",
         /// `⟨AB⟩`: grade 0.
         Scalar "scalar",
+        /// The regressive product `A∨B`, the wedge of complements: grade r + s − n.
+        Vee "vee",
     }
 }
 
@@ -62,7 +64,7 @@ impl Product {
     fn keeps(self, r: usize, s: usize, k: usize, anticommute: bool) -> bool {
         match self {
             Product::Geometric => true,
-            Product::Wedge => k == r + s,
+            Product::Wedge | Product::Vee => k == r + s,
             Product::Dot => k == r.abs_diff(s),
             Product::Commutator => anticommute,
             Product::LeftContraction => k + r == s,
@@ -73,6 +75,9 @@ impl Product {
 
     /// The named product of basis elements `i` and `j`: sign (0 if it vanishes) and index.
     pub fn of_basis(self, algebra: &Algebra, i: usize, j: usize) -> (i8, usize) {
+        if self == Product::Vee {
+            return vee(algebra, i, j);
+        }
         let (sign, k) = algebra.basis_product(i, j);
         let (reverse_sign, _) = algebra.basis_product(j, i);
         let grade = |index: usize| algebra.blades()[index].grade();
@@ -81,8 +86,20 @@ impl Product {
     }
 }
 
+/// `E_i ∨ E_j = lc(rc(E_i) ∧ rc(E_j))`, with the complements `E ∧ rc(E) = I` and `lc(E) ∧ E = I`.
+fn vee(algebra: &Algebra, i: usize, j: usize) -> (i8, usize) {
+    let pseudoscalar = algebra.blades().len() - 1;
+    // The index of the product with I is that of the complement, even where the product vanishes.
+    let complement = |i: usize| algebra.basis_product(i, pseudoscalar).1;
+    let right = |i: usize| (algebra.basis_product(i, complement(i)).0, complement(i));
+    let ((si, ci), (sj, cj)) = (right(i), right(j));
+    let (sign, k) = Product::Wedge.of_basis(algebra, ci, cj);
+    let left = complement(k);
+    (si * sj * sign * algebra.basis_product(left, k).0, left)
+}
+
 /// A set of grades, as bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Grades(pub u16);
 
 impl Grades {
@@ -105,6 +122,11 @@ impl Grades {
     /// Whether grade `k` is in the set.
     pub fn contains(self, k: usize) -> bool {
         self.0 >> k & 1 == 1
+    }
+
+    /// Its odd grades, or its even ones.
+    pub fn of_parity(self, odd: bool) -> Grades {
+        Grades(self.0 & if odd { 0xaaaa } else { 0x5555 })
     }
 
     /// Indices of the basis elements of these grades, in basis order: the components of a value.
@@ -210,7 +232,7 @@ impl Plan {
     /// # Panics
     /// If a set holds a grade above 3.
     pub fn g3(product: Product, ga: Grades, gb: Grades) -> &'static Plan {
-        static PLANS: [OnceLock<Plan>; 7 * 16 * 16] = [const { OnceLock::new() }; 7 * 16 * 16];
+        static PLANS: [OnceLock<Plan>; 8 * 16 * 16] = [const { OnceLock::new() }; 8 * 16 * 16];
         assert!(ga.0 < 16 && gb.0 < 16, "3-d space has grades 0 to 3");
         let index = (product as usize * 16 + usize::from(ga.0)) * 16 + usize::from(gb.0);
         PLANS[index].get_or_init(|| Plan::new(&G3, product, ga, gb))

@@ -43,7 +43,7 @@ impl Calculus {
         let square = self.product(&scaled(&v, 1.0 / scale), &scaled(&v, 1.0 / scale));
         let rest = norm(&square[1..]);
         if rest <= 4.0 * f64::EPSILON * (norm(&v) / scale).powi(2) {
-            let (c, phi) = cosh_sinhc(s, square[0], scale);
+            let (c, phi) = cosh_sinhc(s, square[0], scale)?;
             let mut exp = scaled(&v, phi);
             exp[0] = c;
             return Ok(exp);
@@ -65,7 +65,7 @@ impl Calculus {
         if q > SPLITS {
             for root in [q.sqrt(), -q.sqrt()] {
                 let half = self.half(v, &unit, root);
-                let (c, phi) = cosh_sinhc(s, 2.0 * self.scalar_product(&half, &half), 1.0);
+                let (c, phi) = cosh_sinhc(s, 2.0 * self.scalar_product(&half, &half), 1.0)?;
                 exp[0] += 0.5 * c;
                 add_scaled(&mut exp, &unit, 0.5 * c / root);
                 add_scaled(&mut exp, &half, phi);
@@ -122,18 +122,19 @@ pub(super) fn unit_of_grade_4(m: &[f64]) -> (Vec<f64>, f64) {
 }
 
 /// `e^s cosh √w` and `e^s sinh √w / √w`, given `w / scale²`. For a large root the exponents are added first:
-/// `e^(s ± √w)` may be finite where `cosh √w` is not.
-fn cosh_sinhc(s: f64, w: f64, scale: f64) -> (f64, f64) {
+/// `e^(s ± √w)` may be finite where `cosh √w` is not. An error for an angle beyond the precision.
+fn cosh_sinhc(s: f64, w: f64, scale: f64) -> Result<(f64, f64), MathError> {
     let root = w.abs().sqrt() * scale;
     if root == 0.0 {
-        (s.exp(), s.exp())
+        Ok((s.exp(), s.exp()))
     } else if w < 0.0 {
-        (s.exp() * root.cos(), s.exp() * (root.sin() / root))
+        halvings(root.log2())?;
+        Ok((s.exp() * root.cos(), s.exp() * (root.sin() / root)))
     } else if root > LARGE {
         let (plus, minus) = (0.5 * (s + root).exp(), 0.5 * (s - root).exp());
-        (plus + minus, (plus - minus) / root)
+        Ok((plus + minus, (plus - minus) / root))
     } else {
-        (s.exp() * root.cosh(), s.exp() * (root.sinh() / root))
+        Ok((s.exp() * root.cosh(), s.exp() * (root.sinh() / root)))
     }
 }
 

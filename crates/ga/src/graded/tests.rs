@@ -28,6 +28,28 @@ fn single_values_equal_the_batches() {
     }
 }
 
+/// A sum that begins with 0 is never −0: here all terms of the scalar part are −0.
+#[test]
+fn zeros_have_the_signs_of_the_batches() {
+    let bits = |m: &[f64]| m.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    for grades in (1..16).map(Grades) {
+        let square = |i: usize| if G3.blades()[i].grade() >= 2 { -1.0 } else { 1.0 };
+        let a: Vec<f64> = grades.indices(&G3).into_iter().map(|i| -0.0 * square(i)).collect();
+        let b = vec![1.0; size(grades)];
+        let (left, right) = (Graded::new(&a, grades).unwrap(), Graded::new(&b, grades).unwrap());
+        for product in Product::ALL {
+            let plan = Plan::g3(product, grades, grades);
+            let mut expected = vec![0.0; plan.sizes.2];
+            plan.run(Threads::ONE, &a, &b, &mut expected);
+            assert_eq!(
+                bits(left.product(product, &right).components()),
+                bits(&expected),
+                "{product:?} {grades:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn parts_and_sums_follow_the_basis() {
     for grades in (1..16).map(Grades) {

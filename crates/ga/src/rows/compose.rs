@@ -17,7 +17,7 @@ fn product(s: [f64; 4], r: [f64; 4]) -> [f64; 4] {
 impl ByRow for Compose {
     const FAST_ROWS: bool = true;
 
-    fn row(&self, s: &[f64], r: &[f64], out: &mut [f64]) {
+    fn row(&self, _: Path, s: &[f64], r: &[f64], out: &mut [f64]) {
         out.copy_from_slice(&product(from_fn(|k| s[k]), from_fn(|k| r[k])));
     }
 

@@ -2,7 +2,9 @@
 
 pub mod compose;
 pub mod curve;
+pub mod motors;
 pub mod product;
 pub mod rotor_functions;
 pub(crate) mod tiles;
+pub mod versors;
 pub(crate) mod written;

@@ -16,9 +16,10 @@ use std::f64::consts::PI;
 #[derive(Clone, Copy)]
 pub(crate) struct Exp;
 
-impl Map<3, 0, 4> for Exp {
+impl Exp {
+    /// `cos|B|` and `sin|B|/|B|`; the cosine is NaN where the long method is needed.
     #[inline(always)]
-    fn short<const W: usize, const FMA: bool>(b: [&[f64; W]; 3], _: [&[f64; W]; 0]) -> [[f64; W]; 4] {
+    pub fn cosine_and_sinc<const W: usize, const FMA: bool>(b: [&[f64; W]; 3]) -> [[f64; W]; 2] {
         /// `r` has an error of 2⁻¹⁰² |B|, which must be negligible. Compared with |B|² this also selects the long
         /// method from |B| = 10⁶ on.
         const KEPT: f64 = 1.0 / (1u64 << 40) as f64;
@@ -32,23 +33,34 @@ impl Map<3, 0, 4> for Exp {
         for l in 0..W {
             (k[l], r[l], rest[l]) = quarter_turns::<FMA>(hi[l], lo[l]);
         }
-        let mut out = [[0.0; W]; 4];
+        let [mut cosine, mut sinc] = [[0.0; W]; 2];
         for l in 0..W {
             let known = r[l].abs() >= hi[l] * hi[l] * KEPT;
             let cos;
             ((sin[l], rest[l]), cos) = sin_cos::<FMA>(k[l], r[l], rest[l]);
-            out[0][l] = if known { cos } else { f64::NAN };
+            cosine[l] = if known { cos } else { f64::NAN };
         }
         for l in 0..W {
-            let sinc = divide::<FMA>((sin[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
+            sinc[l] = divide::<FMA>((sin[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
+        }
+        [cosine, sinc]
+    }
+}
+
+impl Map<3, 0, 4> for Exp {
+    #[inline(always)]
+    fn short<const W: usize, const FMA: bool>(&self, b: [&[f64; W]; 3], _: [&[f64; W]; 0]) -> [[f64; W]; 4] {
+        let [cosine, sinc] = Exp::cosine_and_sinc::<W, FMA>(b);
+        let mut out = [cosine, [0.0; W], [0.0; W], [0.0; W]];
+        for l in 0..W {
             for i in 0..3 {
-                out[i + 1][l] = b[i][l] * sinc;
+                out[i + 1][l] = b[i][l] * sinc[l];
             }
         }
         out
     }
 
-    fn long(b: [f64; 3], _: [f64; 0]) -> [f64; 4] {
+    fn long(&self, b: [f64; 3], _: [f64; 0]) -> [f64; 4] {
         let scale = scale_of(&b);
         let scaled = b.map(|x| x / scale);
         let size = Size::of::<BUILT_WITH_FMA>(scaled);
@@ -65,9 +77,10 @@ impl Map<3, 0, 4> for Exp {
 #[derive(Clone, Copy)]
 pub(crate) struct Log;
 
-impl Map<4, 0, 3> for Log {
+impl Log {
+    /// `atan2(|B|, s)/|B|`; NaN where the long method is needed.
     #[inline(always)]
-    fn short<const W: usize, const FMA: bool>(c: [&[f64; W]; 4], _: [&[f64; W]; 0]) -> [[f64; W]; 3] {
+    pub fn angle_over_size<const W: usize, const FMA: bool>(c: [&[f64; W]; 4]) -> [f64; W] {
         /// Between these bounds rounding errors of squares are exact. Only rotors that are −1 up to a tiny bivector are
         /// outside.
         const LEAST: f64 = 1e-100;
@@ -95,24 +108,35 @@ impl Map<4, 0, 3> for Log {
         for l in 0..W {
             (u[l], rest[l]) = tangent(u[l], rest[l], eighths[l]).angle::<FMA>(s[l], excess[l]);
         }
+        let mut factor = [0.0; W];
+        for l in 0..W {
+            let quotient = divide::<FMA>((u[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
+            let known = (quotient > LEAST) & (quotient < MOST);
+            factor[l] = if known { quotient } else { f64::NAN };
+        }
+        factor
+    }
+}
+
+impl Map<4, 0, 3> for Log {
+    #[inline(always)]
+    fn short<const W: usize, const FMA: bool>(&self, c: [&[f64; W]; 4], _: [&[f64; W]; 0]) -> [[f64; W]; 3] {
+        let factor = Log::angle_over_size::<W, FMA>(c);
         let mut out = [[0.0; W]; 3];
         for l in 0..W {
-            let factor = divide::<FMA>((u[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
-            let known = (factor > LEAST) & (factor < MOST);
-            let factor = if known { factor } else { f64::NAN };
             for i in 0..3 {
-                out[i][l] = c[i + 1][l] * factor;
+                out[i][l] = c[i + 1][l] * factor[l];
             }
         }
         out
     }
 
     /// Rows beyond the fast method, once scaled, are −1 up to a tiny bivector, or zero, which is not a rotor.
-    fn long(c: [f64; 4], _: [f64; 0]) -> [f64; 3] {
+    fn long(&self, c: [f64; 4], _: [f64; 0]) -> [f64; 3] {
         const EXACT_PI: (f64, f64) = (PI, 1.224_646_799_147_353_2e-16);
         let scale = scale_of(&c);
         let [s, x, y, z] = c.map(|x| x / scale);
-        let value = alone(Log::short::<1, BUILT_WITH_FMA>(lanes_of_one(&[s, x, y, z]), []));
+        let value = alone(Log.short::<1, BUILT_WITH_FMA>(lanes_of_one(&[s, x, y, z]), []));
         if !value[0].is_nan() {
             return value;
         }
@@ -135,18 +159,18 @@ pub(crate) struct Power;
 
 impl Map<4, 1, 4> for Power {
     #[inline(always)]
-    fn short<const W: usize, const FMA: bool>(c: [&[f64; W]; 4], t: [&[f64; W]; 1]) -> [[f64; W]; 4] {
-        let mut log = Log::short::<W, FMA>(c, []);
+    fn short<const W: usize, const FMA: bool>(&self, c: [&[f64; W]; 4], t: [&[f64; W]; 1]) -> [[f64; W]; 4] {
+        let mut log = Log.short::<W, FMA>(c, []);
         for l in 0..W {
             for i in 0..3 {
                 log[i][l] *= t[0][l];
             }
         }
-        Exp::short::<W, FMA>(log.each_ref(), [])
+        Exp.short::<W, FMA>(log.each_ref(), [])
     }
 
-    fn long(c: [f64; 4], [t]: [f64; 1]) -> [f64; 4] {
-        Exp::value(Log::value(c, []).map(|x| x * t), [])
+    fn long(&self, c: [f64; 4], [t]: [f64; 1]) -> [f64; 4] {
+        Exp.value(Log.value(c, []).map(|x| x * t), [])
     }
 }
 
@@ -183,7 +207,7 @@ macro_rules! circular_map {
 
         impl Map<1, 0, 1> for $name {
             #[inline(always)]
-            fn short<const W: usize, const FMA: bool>([x]: [&[f64; W]; 1], _: [&[f64; W]; 0]) -> [[f64; W]; 1] {
+            fn short<const W: usize, const FMA: bool>(&self, [x]: [&[f64; W]; 1], _: [&[f64; W]; 0]) -> [[f64; W]; 1] {
                 // A loop, because the closure of a map would not be compiled for the instructions of this path.
                 let mut out = [0.0; W];
                 for l in 0..W {
@@ -192,7 +216,7 @@ macro_rules! circular_map {
                 [out]
             }
 
-            fn long([x]: [f64; 1], _: [f64; 0]) -> [f64; 1] {
+            fn long(&self, [x]: [f64; 1], _: [f64; 0]) -> [f64; 1] {
                 [$value(circular_long(x))]
             }
         }
@@ -249,17 +273,17 @@ pub fn power<T: Element>(
 
 /// `exp(B)` of one bivector, the same bits as [`exp`]; NaN if it is not finite.
 pub(crate) fn exp_one(b: [f64; 3]) -> [f64; 4] {
-    Exp::value(b, [])
+    Exp.value(b, [])
 }
 
 /// `log R` of one rotor, the same bits as [`log`]; NaN if it is not finite.
 pub(crate) fn log_one(c: [f64; 4]) -> [f64; 3] {
-    Log::value(c, [])
+    Log.value(c, [])
 }
 
 /// `exp(t log R)` of one rotor, the same bits as [`power`]; NaN if it has no value.
 pub(crate) fn power_one(c: [f64; 4], t: f64) -> [f64; 4] {
-    Power::value(c, [t])
+    Power.value(c, [t])
 }
 
 #[cfg(test)]

@@ -15,8 +15,10 @@
 //! square to 0, the first three square to +1 or −1, and no product in a tile vanishes. Where the basis of the algebra is
 //! in another order, as that of `Algebra::pga`, some basis elements are minus the sorted blades (`flips`).
 
-use crate::simd::{ByRow, Kernel, Lane};
+use crate::simd::lanes::Work;
+use crate::simd::{ByRow, Kernel, Lane, Path};
 use crate::table::{Algebra, Signature, swaps};
+use std::borrow::BorrowMut;
 
 /// The sign of the product of two blades of three generators, the first `P` of which square to +1 and the
 /// others to −1.
@@ -103,27 +105,31 @@ impl Tiles {
         Some(Tiles { positive: p.min(3), cosets, flips, pairs })
     }
 
+    /// The product of `W` rows by their columns.
     #[inline(always)]
-    fn multiply<const P: usize, const FLIPS: bool, const FUSED: bool, const W: usize>(
+    fn multiply<const P: usize, const FLIPS: bool, const FUSED: bool, const W: usize, C>(
         &self,
-        a: &[Lane<W>],
-        b: &[Lane<W>],
-        out: &mut [Lane<W>],
-    ) {
+        a: &[C],
+        b: &[C],
+        out: &mut [C],
+    ) where
+        C: BorrowMut<[f64; W]>,
+    {
         for pairs in self.pairs.chunk_by(|s, t| s.out == t.out) {
-            let mut sums = [Lane::filled(0.0); 8];
+            let mut sums = [[0.0; W]; 8];
             for pair in pairs {
-                let xs = self.cosets[pair.a].map(|component| &a[component]);
-                let ys = self.cosets[pair.b].map(|component| &b[component]);
+                let xs = self.cosets[pair.a].map(|component| a[component].borrow());
+                let ys = self.cosets[pair.b].map(|component| b[component].borrow());
                 let flips = if FLIPS { [self.flips[pair.a], self.flips[pair.b]] } else { [[0; 8]; 2] };
                 tile::<P, FLIPS, FUSED, W>(xs, ys, pair.signs, flips, &mut sums);
             }
             let coset = pairs[0].out;
             for (l, &component) in self.cosets[coset].iter().enumerate() {
-                out[component] = sums[l];
+                let column = out[component].borrow_mut();
+                *column = sums[l];
                 if FLIPS {
                     let mask = self.flips[coset][l];
-                    for x in &mut out[component].0 {
+                    for x in column {
                         // Adding 0 makes −0 to 0.
                         *x = flipped(*x, mask) + 0.0;
                     }
@@ -133,13 +139,16 @@ impl Tiles {
     }
 
     #[inline(always)]
-    fn block<const FUSED: bool, const W: usize>(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+    fn columns<const FUSED: bool, const W: usize, C>(&self, a: &[C], b: &[C], out: &mut [C])
+    where
+        C: BorrowMut<[f64; W]>,
+    {
         match self.positive {
-            0 => self.multiply::<0, false, FUSED, W>(a, b, out),
-            1 => self.multiply::<1, false, FUSED, W>(a, b, out),
-            2 => self.multiply::<2, false, FUSED, W>(a, b, out),
-            _ if self.flips.is_empty() => self.multiply::<3, false, FUSED, W>(a, b, out),
-            _ => self.multiply::<3, true, FUSED, W>(a, b, out),
+            0 => self.multiply::<0, false, FUSED, W, C>(a, b, out),
+            1 => self.multiply::<1, false, FUSED, W, C>(a, b, out),
+            2 => self.multiply::<2, false, FUSED, W, C>(a, b, out),
+            _ if self.flips.is_empty() => self.multiply::<3, false, FUSED, W, C>(a, b, out),
+            _ => self.multiply::<3, true, FUSED, W, C>(a, b, out),
         }
     }
 }
@@ -166,49 +175,80 @@ fn flipped(x: f64, mask: u64) -> f64 {
 /// Adds the product of two cosets.
 #[inline(always)]
 fn tile<const P: usize, const FLIPS: bool, const FUSED: bool, const W: usize>(
-    a: [&Lane<W>; 8],
-    b: [&Lane<W>; 8],
+    a: [&[f64; W]; 8],
+    b: [&[f64; W]; 8],
     signs: [u64; 2],
     flips: [[u64; 8]; 2],
-    sums: &mut [Lane<W>; 8],
+    sums: &mut [[f64; W]; 8],
 ) {
     for row in 0..W {
         let mut sum = [0.0; 8];
         let mut y = [0.0; 8];
         each!(L, {
-            sum[L] = sums[L].0[row];
-            y[L] = flipped(b[L].0[row], signs[L.count_ones() as usize % 2] ^ flips[1][L]);
+            sum[L] = sums[L][row];
+            y[L] = flipped(b[L][row], signs[L.count_ones() as usize % 2] ^ flips[1][L]);
         });
         each!(L1, {
-            let x = if FLIPS { flipped(a[L1].0[row], flips[0][L1]) } else { a[L1].0[row] };
+            let x = if FLIPS { flipped(a[L1][row], flips[0][L1]) } else { a[L1][row] };
             each!(L2, {
                 let x = if const { sign::<P>(L1, L2) } > 0 { x } else { -x };
                 sum[L1 ^ L2] = if FUSED { x.mul_add(y[L2], sum[L1 ^ L2]) } else { sum[L1 ^ L2] + x * y[L2] };
             });
         });
         each!(L, {
-            sums[L].0[row] = sum[L];
+            sums[L][row] = sum[L];
         });
     }
 }
 
-impl ByRow for Tiles {
-    /// Always by blocks, whose rounding differs from rows.
-    const FEW: usize = 0;
+impl<const W: usize> std::borrow::Borrow<[f64; W]> for Lane<W> {
+    #[inline(always)]
+    fn borrow(&self) -> &[f64; W] {
+        &self.0
+    }
+}
 
-    fn row(&self, _: &[f64], _: &[f64], _: &mut [f64]) {
-        unreachable!("no rows are few");
+impl<const W: usize> BorrowMut<[f64; W]> for Lane<W> {
+    #[inline(always)]
+    fn borrow_mut(&mut self) -> &mut [f64; W] {
+        &mut self.0
+    }
+}
+
+/// The product of one row as work, the same bits as in lanes.
+struct Row<'a> {
+    tiles: &'a Tiles,
+    factors: [&'a [f64]; 2],
+    out: &'a mut [f64],
+}
+
+impl Work for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let [a, b] = self.factors.map(|row| row.as_chunks().0);
+        self.tiles.columns::<FUSED, 1, [f64; 1]>(a, b, self.out.as_chunks_mut().0);
+    }
+}
+
+impl ByRow for Tiles {
+    /// As many rows take as long as a block of eight.
+    const FEW: usize = 4;
+
+    fn row(&self, path: Path, a: &[f64], b: &[f64], out: &mut [f64]) {
+        path.run(Row { tiles: self, factors: [a, b], out });
     }
 }
 
 impl<const W: usize> Kernel<W> for Tiles {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
-        self.block::<false, W>(a, b, out);
+        self.columns::<false, W, _>(a, b, out);
     }
 
     #[inline(always)]
     fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
-        self.block::<true, W>(a, b, out);
+        self.columns::<true, W, _>(a, b, out);
     }
 }

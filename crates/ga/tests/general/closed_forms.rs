@@ -150,4 +150,22 @@ fn many_planes() {
     let b = boosts.sum(&[(2.0, &[1, 5]), (-1.0, &[2, 6]), (0.5, &[3, 4]), (0.7, &[7, 8])]);
     let log = boosts.calculus.log(&boosts.calculus.exp(&b).unwrap()).unwrap();
     assert!(distance(&log, &b) <= 1e-12, "{}", distance(&log, &b));
+    // A boost R by 10 is as large as e¹⁰, and its logarithm known to the documented ε|R|².
+    let far = Space::new(5, 1, 0);
+    let b = far.sum(&[(10.0, &[1, 6]), (0.5, &[2, 3])]);
+    let rotor = far.calculus.exp(&b).unwrap();
+    let log = far.calculus.log(&rotor).unwrap();
+    assert!(distance(&log, &b) <= 32.0 * EPS * (norm(&rotor).powi(2) + norm(&b).powi(2)));
+}
+
+/// `exp(−1600 + 800 (E + F)) = (1 + E)(1 + F)/4` to rounding for two planes of square 1.
+#[test]
+fn exponentials_may_be_in_range_where_their_parts_are_not() {
+    let space = Space::new(2, 2, 0);
+    let m = space.sum(&[(-1600.0, &[]), (800.0, &[1, 3]), (800.0, &[2, 4])]);
+    // Each plane by itself: e⁻⁸⁰⁰ (cosh 800 + E sinh 800) = (1 + E)/2.
+    let [first, second]: [&[usize]; 2] = [&[1, 3], &[2, 4]];
+    let [e, f] = [first, second].map(|plane| space.sum(&[(0.5, &[]), (0.5, plane)]));
+    let exp = space.calculus.exp(&m).unwrap();
+    assert!(distance(&exp, &space.product(&e, &f)) <= 8.0 * EPS);
 }

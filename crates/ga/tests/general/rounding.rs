@@ -66,6 +66,41 @@ proptest! {
         }
     }
 
+    /// Null parts that are off by more than rounding, but by less than half of the digits, are of the nearest versor.
+    #[test]
+    fn null_parts_of_half_the_digits_belong_to_a_versor(x in numbers(), y in numbers(), e in 9.5..11.0f64) {
+        for (p, q, r) in DEGENERATE {
+            let space = Space::new(p, q, r);
+            let b = space.of_grade(2, &x);
+            let versor = exp(&space, &scaled(&b, 1.0 / (1.0 + norm(&b))));
+            let blades = space.algebra.blades();
+            let even: Vec<f64> =
+                (0..space.size()).map(|i| if blades[i].grade().is_multiple_of(2) { y[i] } else { 0.0 }).collect();
+            let noise = split(&space, r, &even).1;
+            // All is of size 1 to 3, and the change of the nearest versor not above that of the null parts.
+            let noise = scaled(&noise, 10f64.powf(-e) / (1.0 + norm(&noise)));
+            let m: Vec<f64> = versor.iter().zip(&noise).map(|(a, b)| a + b).collect();
+            let log = space.calculus.log(&m);
+            prop_assert!(log.is_ok(), "{p} {q} {r} {log:?}");
+            let error = distance(&exp(&space, &log.unwrap()), &m);
+            prop_assert!(error <= 8.0 * norm(&versor) * norm(&noise), "{p} {q} {r} {error:e}");
+        }
+    }
+
+    /// `−S exp(B) ~S` with a boost B: a half turn, in a plane across that of B, commutes with it.
+    #[test]
+    fn minus_a_boost_is_a_boost_and_a_half_turn(y in numbers(), rapidity in 0.1..6.0f64) {
+        for (p, q) in [(3, 1), (4, 1), (1, 3)] {
+            let space = Space::new(p, q, 0);
+            let moved = exp(&space, &scaled(&space.of_grade(2, &y), 0.5));
+            let last: &[usize] = &[1, p + q];
+            let boost = space.sum(&[(-rapidity.cosh(), &[]), (-rapidity.sinh(), last)]);
+            let m = space.product(&space.product(&moved, &boost), &space.reverse(&moved));
+            prop_assume!(norm(&m) < 300.0);
+            undone(&space, &m, 1.0)?;
+        }
+    }
+
     /// `s S exp(B) ~S`, large by the boost S, with logarithms to the documented size.
     #[test]
     fn large_versors_times_a_number(x in numbers(), y in numbers(), size in 0.1..10.0f64) {

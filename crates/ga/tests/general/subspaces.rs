@@ -105,6 +105,27 @@ proptest! {
             }
         }
     }
+
+    /// If A contains B, J = A and M = B, and the same with A and B exchanged.
+    #[test]
+    fn a_subspace_of_another_is_their_meet(x in numbers()) {
+        for (n, inner, outer) in [(3, 1, 2), (4, 1, 3), (4, 2, 3), (5, 2, 4), (3, 1, 3)] {
+            let space = Space::new(n, 0, 0);
+            let vectors: Vec<Vec<f64>> = x.chunks_exact(n).map(|c| space.of_grade(1, c)).collect();
+            let wedge = |list: &[Vec<f64>]| list.iter().fold(space.scalar(1.0), |w, v| space.wedge(&w, v));
+            let [part, whole] = [inner, outer].map(|k| wedge(&vectors[..k]));
+            // Vectors that nearly depend on each other are not known well.
+            prop_assume!(norm(&part) > 0.05 && norm(&whole) > 0.05);
+            for sign in [1.0, -1.0] {
+                let part = scaled(&part, sign);
+                for (a, b) in [(&part, &whole), (&whole, &part)] {
+                    let (join, meet) = (space.calculus.join(a, b).unwrap(), space.calculus.meet(a, b).unwrap());
+                    prop_assert!(distance(&scaled(&meet, norm(&part)), &part) <= 1e-12 * norm(&part), "{n} {inner}");
+                    prop_assert!(distance(&scaled(&join, norm(&whole)), &whole) <= 1e-12 * norm(&whole), "{n} {inner}");
+                }
+            }
+        }
+    }
 }
 
 #[test]

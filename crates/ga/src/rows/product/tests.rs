@@ -139,8 +139,12 @@ fn tiles_round_the_same_for_any_number_of_rows() {
         for (row, expected) in expected.chunks(16).enumerate().take(40) {
             let place = row * 16..(row + 1) * 16;
             let mut out = [0.5; 16];
-            plan.run_on(path, Threads::ONE, &a[place.clone()], &b[place], &mut out);
+            plan.run_on(path, Threads::ONE, &a[place.clone()], &b[place.clone()], &mut out);
             assert_same(&out, expected, &format!("{path:?}, row {row}"));
+            if path == Path::best() {
+                plan.run_row(&a[place.clone()], &b[place], &mut out);
+                assert_same(&out, expected, &format!("row {row} alone"));
+            }
         }
     }
 }
@@ -155,7 +159,7 @@ fn every_pair_of_grades_equals_its_rows() {
         let (a, b) = (numbers(rows * na, false), numbers(rows * nb, true));
         let mut expected = vec![0.5; rows * nout];
         for (row, out) in expected.chunks_exact_mut(nout).enumerate() {
-            plan.row(&a[row * na..(row + 1) * na], &b[row * nb..(row + 1) * nb], out);
+            plan.row(Path::best(), &a[row * na..(row + 1) * na], &b[row * nb..(row + 1) * nb], out);
         }
         for path in Path::available() {
             let mut out = vec![0.5; rows * nout];
@@ -245,7 +249,7 @@ fn large_full_products_are_the_same() {
     let (a, b) = (numbers(rows * 8, true), numbers(rows * 8 + 1, false).split_off(1));
     let mut expected = vec![0.5; rows * 8];
     for ((a, b), out) in a.chunks(8).zip(b.chunks(8)).zip(expected.chunks_mut(8)) {
-        plan.row(a, b, out);
+        plan.row(Path::best(), a, b, out);
     }
     for path in Path::available() {
         let mut out = vec![0.5; rows * 8];

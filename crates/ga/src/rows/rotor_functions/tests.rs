@@ -62,7 +62,7 @@ fn check<M: Map<A, B, OUT> + Copy, const A: usize, const B: usize, const OUT: us
     b: &[f64],
 ) {
     let pick = |i: usize| (std::array::from_fn(|k| a[i * A + k]), std::array::from_fn(|k| b[i * B + k]));
-    let expected: Vec<f64> = (0..a.len() / A).flat_map(|i| M::value(pick(i).0, pick(i).1)).collect();
+    let expected: Vec<f64> = (0..a.len() / A).flat_map(|i| map.value(pick(i).0, pick(i).1)).collect();
     assert!(expected.iter().all(|x| x.is_finite()));
     for path in Path::available() {
         for count in [0, 1, 7, 8, 9, 63, 64, 65, a.len() / A] {

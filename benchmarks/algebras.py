@@ -1,4 +1,4 @@
-"""Full products in other signatures: the projective Cl(3,0,1) and the conformal Cl(4,1).
+"""Full products and versors in other signatures: the projective Cl(3,0,1) and the conformal Cl(4,1).
 
 The bits of a blade's index are its generators, in the order p of square 1, q of −1, r of 0. Products of basis
 vectors show the order and signs of the blades in each library.
@@ -21,10 +21,13 @@ IN_CACHE = 2**15  # components: three such arrays fit in the L2 cache of a core
 
 
 def rows(rng: np.random.Generator, _: Pace) -> Iterator[Row]:
-    """Yield a row of one product and one of many for each signature."""
+    """Yield rows of products and versors, one and many, for each signature."""
     for signature, goal in SIGNATURES.items():
         yield product(rng, signature)
+        yield versor(rng, signature)
+        yield versors(rng, signature)
         yield products(rng, signature, goal)
+    yield normalized(rng)
 
 
 def sign(a: int, b: int, squares: list[int]) -> int:
@@ -98,6 +101,63 @@ def product(rng: np.random.Generator, signature: Signature) -> Row:
         names, read = _gasparse(signature, a, b)
         row.enter("gasparse", "a * b", names, read)
     return row
+
+
+def versor(rng: np.random.Generator, signature: Signature) -> Row:
+    """``V X ~V`` of a versor with ``V ~V = 1``, a product of two vectors, and a full multivector."""
+    row = Row(f"V X ~V in {title(signature)}, one", unit="us")
+    v, x, row.expected = (part[0] for part in _versors(rng, signature, 1))
+    with row.planned():
+        names, read = _ours(signature, v, x)
+        row.enter("polhode", "a(b)", names, read)
+    programs = {"clifford": _clifford, "kingdon": _kingdon, "galaga": _galaga, "gasparse": _gasparse}
+    for library, build in programs.items():
+        with row.peer(library):
+            names, read = build(signature, v, x)
+            row.enter(library, "a * b * ~a", names, read)
+    return row
+
+
+def versors(rng: np.random.Generator, signature: Signature) -> Row:
+    """``V X ~V`` of many even versors and trivectors, as of motors and points, that fit in the cache."""
+    count = IN_CACHE // 2 ** sum(signature)
+    row = Row(f"V X ~V in {title(signature)}, {count} even V, trivectors X", count=count)
+    v, x, row.expected = _versors(rng, signature, count, grade=3)
+    for library, build, program in (("polhode", _ours, "a(b)"), ("kingdon", _kingdon, "a.sw(b)")):
+        with row.peer(library):
+            names, read = build(signature, v, x)
+            names = {"a": names["a"].grade(0, 2, 4), "b": names["b"].grade(3)}
+            row.enter(library, program, names, read)
+    return row
+
+
+def normalized(rng: np.random.Generator) -> Row:
+    """Many motors divided by their norms, in the cache."""
+    count, signature = IN_CACHE // 16, (3, 0, 1)
+    row = Row(f"V.normalized() in {title(signature)}, {count} motors", count=count)
+    row.expected, x, _ = _versors(rng, signature, count)
+    for library, build in (("polhode", _ours), ("kingdon", _kingdon)):
+        with row.peer(library):
+            names, read = build(signature, 2 * row.expected, x)
+            row.enter(library, "a.normalized()", {"a": names["a"].grade(0, 2, 4)}, read)
+    return row
+
+
+def _versors(rng: np.random.Generator, signature: Signature, count: int, grade: int | None = None) -> Any:
+    """Return products V of two vectors with ``V ~V = 1``, values X of a grade or of all, and ``V X ~V``."""
+    signs = table(signature)
+    x = rng.standard_normal((count, len(signs)))
+    sides = np.zeros((2, *x.shape))
+    for side in sides:  # unit vectors of the generators of square 1, with a part of a null one
+        parts = rng.standard_normal((count, 3))
+        side[:, [1, 2, 4]] = parts / np.linalg.norm(parts, axis=-1, keepdims=True)
+        side[:, 8] = rng.standard_normal(count) if signature[2] else 0.0
+    v = by_hand(*sides, signs)
+    grades = np.array([i.bit_count() for i in range(len(signs))])
+    if grade is not None:
+        x[:, grades != grade] = 0.0
+    reverse = np.where(grades % 4 < 2, v, -v)
+    return v, x, by_hand(by_hand(v, x, signs), reverse, signs)
 
 
 def products(rng: np.random.Generator, signature: Signature, goal: str) -> Row:

@@ -230,7 +230,7 @@ def test_flats_and_rounds_are_told_apart():
             C.normal_and_distance(weight * sphere)
     with pytest.raises(TypeError, match=r"the value must be a value of cga\(3\), got float"):
         C.center(1.0)
-    with pytest.raises(ValueError, match="the way to the point through"):
+    with pytest.raises(ValueError, match="the vector to the point `through`"):
         C.line([1.0, 0, 0], [1.0, 0, 0])
 
 

@@ -6,6 +6,7 @@ import pytest
 
 import polhode as ph
 from polhode import RigidTransform, Rotor, e3
+from polhode._algebra.motors import columns, of_columns
 
 EPS = np.finfo(float).eps
 A = ph.algebra(3, 0, 1)
@@ -311,3 +312,34 @@ def test_the_null_vector_may_come_first():
         np.testing.assert_array_equal(np.asarray(x), np.asarray(y))
     np.testing.assert_array_equal(ph.adjoint_matrix(M), T.adjoint())
     assert near(M**0.5 * M**0.5, M, 64)
+
+
+@pytest.mark.parametrize("angle", [1e-3, 0.3, 3.1, 40.0, 9.9e5, 1.1e6, 1e20, 1e300])
+@pytest.mark.parametrize("far", [1e-200, 1.0, 1e9, 1e200])
+@pytest.mark.parametrize("A", [ph.pga(), ph.algebra(3, 0, 1)], ids=str)
+def test_exponentials_against_60_digits(A, far, angle):
+    """``cos Θ + C sin Θ/Θ`` of dual numbers, of bivectors of any size."""
+    rng = np.random.default_rng(3)
+    b, v = rng.normal(size=(2, 3))
+    b *= angle / np.linalg.norm(b)
+    v *= far
+    found = columns(of_columns(A, [np.float64(x) for x in (0, *b, *v, 0)]).grade(2).exp())
+    with mpmath.workdps(700):
+        b, v = ([mpmath.mpf(float(x)) for x in row] for row in (b, v))
+        square = mpmath.fsum(x * x for x in b)
+        theta, along = mpmath.sqrt(square), mpmath.fsum(x * y for x, y in zip(b, v, strict=True))
+        cosine, sinc = mpmath.cos(theta), mpmath.sin(theta) / theta
+        slope = (cosine - sinc) / square
+        moved = [sinc * y + along * slope * x for x, y in zip(b, v, strict=True)]
+        expected = [float(x) for x in (cosine, *(sinc * x for x in b), *moved, sinc * along)]
+    np.testing.assert_allclose(found[:4], expected[:4], rtol=2 * EPS, atol=0)
+    np.testing.assert_allclose(found[4:], expected[4:], rtol=0, atol=8 * EPS * far)
+
+
+@pytest.mark.parametrize("A", [ph.algebra(4), ph.algebra(1, 3), ph.cga()], ids=str)
+def test_angles_beyond_the_precision_of_other_algebras(A):
+    a, b = A.basis_vectors[1:3]
+    plane = a * b
+    assert (1e15 * plane).exp().is_finite()
+    with pytest.raises(ValueError, match=r"exceeds 2\^52"):
+        (1e16 * plane).exp()

@@ -309,7 +309,7 @@ def test_named_lines_of_the_literature():
 def test_lines_need_two_things():
     with pytest.raises(TypeError, match="either the point"):
         A.line([0.0, 0, 0])
-    with pytest.raises(ValueError, match="the way to the point through is not a direction"):
+    with pytest.raises(ValueError, match="the vector to the point `through` is not a direction"):
         A.line([1.0, 2, 3], [1.0, 2, 3])
     with pytest.raises(ValueError, match=r"index \(1,\)"):
         A.line(np.zeros((2, 3)), direction=[[1.0, 0, 0], [0.0, 0, 0]])

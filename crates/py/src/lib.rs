@@ -15,10 +15,11 @@ mod _native {
 
     #[pymodule_export]
     use crate::algebra::rows::{
-        from_pauli, function, norm, product, rotor_apply, rotor_compose, rotor_exp, rotor_from_components,
-        rotor_from_matrix, rotor_from_plane_angle, rotor_from_quaternion, rotor_from_rotation_vector,
-        rotor_from_vectors, rotor_log, rotor_plane_angle, rotor_power, rotor_to_matrix, rotor_to_quaternion,
-        rotor_to_rotation_vector, subspaces, to_pauli,
+        from_pauli, function, motor_function, motor_normalize, norm, product, rotor_apply, rotor_compose,
+        rotor_exp, rotor_from_components, rotor_from_matrix, rotor_from_plane_angle, rotor_from_quaternion,
+        rotor_from_rotation_vector, rotor_from_vectors, rotor_log, rotor_plane_angle, rotor_power,
+        rotor_to_matrix, rotor_to_quaternion, rotor_to_rotation_vector, subspaces, to_pauli, units_and_sizes,
+        versor_apply,
     };
 
     #[pymodule_export]
@@ -56,6 +57,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::algebra::signature::{Algebra, g3_object};
+    #[pymodule_export]
+    use crate::algebra::single::{normalized_motor, unit_and_size, versor_action};
     #[pymodule_export]
     use crate::support::face::register;
     #[pymodule_export]

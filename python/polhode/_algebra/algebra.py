@@ -5,8 +5,9 @@ from __future__ import annotations
 import functools
 import math
 import operator
-from collections.abc import Iterable
-from typing import Any
+import re
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -45,9 +46,25 @@ class Algebra(_native.Algebra):
 
     __slots__ = ()
 
+    # What other libraries call them, and what to write.
+    _foreign_names: ClassVar[Mapping[str, str]] = {}
+
+    def __init__(self, *_signature: Any, **_named: Any) -> None:
+        # Values of equal algebras that are not the same object do not mix.
+        raise TypeError(
+            f"{type(self).__name__} has no public constructor; write algebra(p, q, r), pga(n) or cga(n)"
+        )
+
     def __repr__(self) -> str:
         p, q, r = self.signature
         return f"Cl({p},{q},{r})" if r else f"Cl({p},{q})" if q else f"Cl({p})"
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            ours = f'blades["{name}"]' if re.fullmatch(r"e\d+", name) else self._foreign_names.get(name)
+            remedy = f"; write {ours}" if ours else ""
+            raise AttributeError(f"{self!r} has no attribute {name!r}{remedy}")
 
     def __reduce__(self) -> tuple[Any, ...]:
         return algebra, self.signature
@@ -57,6 +74,7 @@ class Algebra(_native.Algebra):
         return list(self.signature)
 
     @property
+    @functools.cache  # noqa: B019  # algebras live as long as the process
     def dimension(self) -> int:
         """Number of generators.
 
@@ -87,7 +105,7 @@ class Algebra(_native.Algebra):
         >>> ph.algebra(2).basis_vectors
         (e1, e2)
         """
-        return tuple(self.vector(row) for row in np.eye(self.dimension))
+        return self._generators()
 
     @property
     def blades(self) -> dict[str, Multivector]:
@@ -242,6 +260,10 @@ class Algebra(_native.Algebra):
 
     # --- tables that values use
 
+    @functools.cache  # noqa: B019
+    def _generators(self) -> tuple[Multivector, ...]:
+        return tuple(self.vector(row) for row in np.eye(self.dimension))
+
     @property
     def _all(self) -> int:
         """All grades, as bits."""
@@ -276,23 +298,32 @@ class Algebra(_native.Algebra):
     @functools.cache  # noqa: B019
     def _reverse_squares(self, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
         """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0, as int8 so that float32 stays."""
-        signs = np.zeros(len(self._indices(mask)), dtype=np.int8)
-        terms, _ = self._terms("scalar", mask, mask)
-        grades = self._grade_of[self._indices(mask)]
-        for a, _b, _out, sign in terms:
-            signs[a] = -sign if grades[a] % 4 in (2, 3) else sign
-        return signs
+        return np.array(self._squares_of(mask), np.int8)
 
     @functools.cache  # noqa: B019
-    def _complement(self, right: bool) -> list[tuple[int, float]]:
-        """Return the place and sign of each basis element's right or left complement."""
+    def _places(self, mask: int) -> tuple[int, dict[int, slice]]:
+        """Return the number of components of the grades in `mask`, and where those of each grade are."""
+        places, first = {}, 0
+        for k in range(self.dimension + 1):
+            if mask >> k & 1:
+                places[k] = slice(first, first + math.comb(self.dimension, k))
+                first = places[k].stop
+        return first, places
+
+    @functools.cache  # noqa: B019
+    def _complement(self, mask: int, right: bool) -> tuple[int, list[int], list[float]]:
+        """Return the grades of the right or left complement of values that hold the grades in `mask`.
+
+        And for each of its components the place of the one that becomes it, and the sign.
+        """
         images = self._right_complement()
-        if right:
-            return images
-        inverse = [(0, 0.0)] * len(images)
-        for i, (place, sign) in enumerate(images):
-            inverse[place] = (i, sign)
-        return inverse
+        source = (
+            {image: (i, sign) for i, (image, sign) in enumerate(images)} if right else dict(enumerate(images))
+        )
+        grades = sum(1 << self.dimension - k for k in range(self.dimension + 1) if mask >> k & 1)
+        place = {i: k for k, i in enumerate(self._indices(mask))}
+        found = [source[i] for i in self._indices(grades)]
+        return grades, [place[i] for i, _ in found], [sign for _, sign in found]
 
     @functools.cache  # noqa: B019
     def _inverse_of_I(self) -> Multivector:
@@ -339,4 +370,4 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
 def _algebra(p: int, q: int, r: int) -> Algebra:
     if (p, q, r) == (3, 0, 0):
         return _native.g3()
-    return _native.Algebra(p, q, r)  # type: ignore[return-value]
+    return Algebra.__new__(Algebra, p, q, r)

@@ -490,4 +490,4 @@ def cga(n: int = 3) -> CGA:
 
 @functools.cache
 def _cga(n: int) -> CGA:
-    return CGA(n + 1, 1, 0)
+    return CGA.__new__(CGA, n + 1, 1, 0)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import operator
 from typing import TYPE_CHECKING, Any
 
-from polhode._algebra.coefficients import as_coefficients, kind_of
-from polhode._algebra.grades import with_grades
+from polhode._algebra.coefficients import as_coefficients, duplicate, kind_of
 from polhode._algebra.multivector import Multivector
 
 if TYPE_CHECKING:
@@ -23,18 +22,19 @@ def vector_in(space: Algebra, x: Any, what: str) -> Multivector:
             raise ValueError(
                 f"{what} needs {space.dimension} components in the last axis, got shape {tuple(data.shape)}"
             )
-        return space.vector(data)
+        return Multivector._of(duplicate(data), _VECTOR, space)
     if x.algebra is not space:
         raise TypeError(f"{what} must be a vector of {space} or an array, got a value of {x.algebra}")
     if x._held() & ~_VECTOR:
         raise TypeError(f"{what} must be a vector, got {x!r}, which has other grades")
-    return space.vector(with_grades(x, _VECTOR))
+    return x if x._mask == _VECTOR else x._part(_VECTOR)
 
 
 def unit_in(space: Algebra, x: Any, what: str) -> Multivector:
     """Return `vector_in` divided by its norm; a ValueError, with the batch index, for zero."""
+    v = vector_in(space, x, what)
     try:
-        return vector_in(space, x, what).normalized()
+        return v.normalized()
     except ValueError as error:
         raise ValueError(f"{what} is not a direction: {error}") from None
 
@@ -55,7 +55,7 @@ def point_and_unit(algebra: Any, point: Any, through: Any, direction: Any) -> tu
     if direction is not None:
         return start, unit_in(algebra._space, direction, "the direction")
     way = position_in(algebra, through, "the point through") - start
-    return start, unit_in(algebra._space, way, "the way to the point through")
+    return start, unit_in(algebra._space, way, "the vector to the point `through`")
 
 
 def columns(value: Multivector) -> list[Any]:

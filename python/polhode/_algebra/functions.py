@@ -129,14 +129,18 @@ def norm(value: Multivector) -> Any:
     """
     if value._is_one:
         return np.float64(value._norm_of_one())
+    single = _native.unit_and_size(value)
+    if single is not None:
+        return np.float64(single[0] * single[1])
     data, signs = _real(value._data), value.algebra._reverse_squares(value._mask)
     if not is_float(data):
         kind = kind_of(data)
         return _generic.functions.norm(kind, data) if min(signs) > 0 else kind.sqrt(abs(norm_squared(value)))
     if min(signs) > 0 and len(signs) <= 8:
         return mapped(_native.norm, data)[..., 0][()]
-    unit, size = _unit_and_size(data, signs)
-    return (size * unit)[..., 0][()]
+    unit, size = _unit_and_size(data, value)
+    with np.errstate(over="ignore"):
+        return (size * unit)[..., 0][()]
 
 
 def _real(data: Any) -> Any:
@@ -152,14 +156,10 @@ def _counted(data: Array, signs: Signs) -> tuple[Array, Signs]:
     return np.ascontiguousarray(data[..., signs != 0]), signs[signs != 0]
 
 
-def _unit_and_size(data: Array, signs: Signs) -> tuple[Array, Array]:
+def _unit_and_size(data: Array, value: Multivector) -> tuple[Array, Array]:
     """Return the largest magnitude of the components that count, and the norm in units of it."""
-    counted, signs = _counted(data, signs)
-    unit = np.abs(counted).max(axis=-1, keepdims=True, initial=0)
-    unit = np.where(np.isfinite(unit) & (unit > 0), unit, np.ones_like(unit))
-    squares = np.square(counted / unit) * signs
-    with np.errstate(invalid="ignore"):  # inf − inf
-        return unit, np.sqrt(np.abs(squares.sum(axis=-1, keepdims=True)))
+    found = mapped(lambda rows: _native.units_and_sizes(value.algebra, value._mask, rows), data)
+    return found[..., :1], found[..., 1:]
 
 
 def normalized(value: Multivector, *, errors: Errors = "raise") -> Multivector:
@@ -175,22 +175,31 @@ def normalized(value: Multivector, *, errors: Errors = "raise") -> Multivector:
     """
     if errors != "raise":
         return masked(errors, normalized, (value, 1))
-    unit = _over_norm(value)
-    return _motors.without_excess(unit) if value._mask & _EVEN == _EVEN and _motors.is_motor(value) else unit
+    if value._mask & _EVEN != _EVEN or not _motors.is_motor(value):
+        return _over_norm(value)
+    unit = _motors.normalized(value)
+    return _motors.without_excess(_over_norm(value)) if unit is None else unit
 
 
 def _over_norm(value: Multivector) -> Multivector:
+    single = _native.unit_and_size(value)
+    if single is not None and single[1] > _cancelled(float):
+        return value / single[0] / single[1]
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if not is_float(data) and not is_complex(data):
         if min(signs) > 0:
             return value._like(_generic.functions.normalized(kind_of(data), data))
         return value / coerced(norm(value), value)
     # Scaling by the largest component first keeps subnormal values accurate.
-    unit, size = _unit_and_size(_real(data), signs)
-    # Where squares cancel, a size below this is rounding.
-    usable = np.isfinite(data).all(axis=-1) & (size > 8 * np.finfo(data.dtype).eps)[..., 0]
+    unit, size = _unit_and_size(_real(data), value)
+    usable = np.isfinite(data).all(axis=-1) & (size > _cancelled(data.dtype))[..., 0]
     _require(usable, "has no direction (norm {})", value)
     return value._like(data / unit / size)
+
+
+def _cancelled(dtype: Any) -> float:
+    """Return the norm in units of the largest component up to which it is rounding, where squares cancel."""
+    return 8 * float(np.finfo(dtype).eps)
 
 
 def _require(ok: Any, what: str, value: Multivector) -> None:
@@ -219,6 +228,11 @@ def function(name: str, value: Multivector) -> Multivector:
     algebra, data = value.algebra, value._data
     if is_float(data):
         mask, single = algebra._grades_of_function(name, value._mask), data.dtype == np.float32
+        motor = _motors.of_floats(name, value, mask)
+        if motor is not None:
+            if single:  # rounded to float32 after the core has looked
+                _require_finite(name, motor._data, value)
+            return motor
 
         def native(rows: Array) -> Array:
             return _native.function(algebra, name, rows, single)[..., algebra._indices(mask)]

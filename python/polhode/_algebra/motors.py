@@ -9,13 +9,15 @@ import numpy as np
 
 from polhode import _generic, _native
 from polhode._algebra.coefficients import kind_of
-from polhode._algebra.grades import with_grades
+from polhode._algebra.grades import over_grades, with_grades
+from polhode._support.arrays import is_float, new
 
 if TYPE_CHECKING:
     from polhode._algebra.algebra import Algebra
     from polhode._algebra.multivector import Multivector
 
 EVEN = 0b10101
+_BIVECTOR = 0b100
 # One basis element: its place among all, and the sign with which it stands there.
 Place = tuple[int, int]
 
@@ -66,6 +68,12 @@ def rows(value: Multivector) -> Any:
 
 def of_columns(algebra: Algebra, parts: list[Any], mask: int = EVEN) -> Multivector:
     """Return the element with these components in the order of `places`, over the grades in the mask."""
+    if mask == EVEN and all(is_float(x) or isinstance(x, np.float64 | np.float32) for x in parts):
+        shape = np.broadcast_shapes(*(part.shape for part in parts))
+        found = new((*shape, len(parts)), np.result_type(*parts))
+        for (index, sign), part in zip(_order(algebra), parts, strict=True):
+            np.multiply(part, sign, out=found[..., index])
+        return _native.Multivector._of(found, EVEN, algebra)
     at = {index: sign * part for (index, sign), part in zip(places(algebra) or (), parts, strict=True)}
     data = kind_of(*parts).stack([at[index] for index in algebra._indices(mask)])
     return _native.Multivector._of(data, mask, algebra)
@@ -85,6 +93,32 @@ def _order(algebra: Algebra) -> tuple[Place, ...]:
     """Return `places` among the even elements instead of all."""
     place = {index: k for k, index in enumerate(algebra._indices(EVEN))}
     return tuple((place[index], sign) for index, sign in places(algebra) or ())
+
+
+def of_floats(name: str, value: Multivector, mask: int) -> Multivector | None:
+    """Return a function of floats in the core over the grades in the mask, None unless of motors there."""
+    exp = name == "exp"
+    if not is_motor(value) or (exp and value._mask != _BIVECTOR):
+        return None
+    data = over_grades(value, _BIVECTOR if exp else EVEN)
+    rows = new((*value.shape, 8), data.dtype)
+    _native.motor_function(value.algebra, name, data, rows)
+    result = _native.Multivector._of(rows, EVEN, value.algebra)
+    return _native.Multivector._of(over_grades(result, mask), mask, value.algebra)
+
+
+def normalized(value: Multivector) -> Multivector | None:
+    """Return floats divided by the dual number ``√(M ~M)``, None where that has no finite value."""
+    single: Multivector | None = _native.normalized_motor(value)
+    if single is not None or not is_float(value._data):
+        return single
+    data = over_grades(value, EVEN)
+    rows = new((*value.shape, 8), data.dtype)
+    try:
+        _native.motor_normalize(value.algebra, data, rows)
+    except ValueError:
+        return None
+    return _native.Multivector._of(rows, EVEN, value.algebra)
 
 
 def without_excess(unit: Multivector) -> Multivector:

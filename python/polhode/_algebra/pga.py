@@ -5,6 +5,8 @@ from __future__ import annotations
 import functools
 from typing import Any
 
+import numpy as np
+
 from polhode._algebra.algebra import Algebra, algebra
 from polhode._algebra.coefficients import common, kind_of, number_like
 from polhode._algebra.euclidean import (
@@ -16,13 +18,14 @@ from polhode._algebra.euclidean import (
     unit_in,
     vector_in,
 )
+from polhode._algebra.foreign_names import PGA as PGA_NAMES
 from polhode._algebra.functions import as_precise
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._algebra.versors import small
-from polhode._support.arrays import copied
+from polhode._support.arrays import copied, is_float, new
 
 
 class PGA(Algebra):
@@ -60,6 +63,8 @@ class PGA(Algebra):
 
     __slots__ = ()
 
+    _foreign_names = PGA_NAMES
+
     def __repr__(self) -> str:
         return f"pga({self.dimension - 1})"
 
@@ -70,6 +75,7 @@ class PGA(Algebra):
         return repr(self)
 
     @property
+    @functools.cache  # noqa: B019  # algebras live as long as the process
     def _space(self) -> Algebra:
         """The algebra of Euclidean vectors."""
         return algebra(self.dimension - 1)
@@ -319,8 +325,13 @@ class PGA(Algebra):
     def _vector(self, first: Any, rest: Multivector) -> Multivector:
         """Return the vector with these components (..., 1) of e0, and the others of a Euclidean vector."""
         weight, rows = common(first, rest._data)
+        if is_float(rows):
+            batch = np.broadcast_shapes(weight.shape[:-1], rows.shape[:-1])
+            data = new((*batch, self.dimension), np.result_type(weight, rows))
+            data[..., :1], data[..., 1:] = weight, rows
+            return Multivector._of(data, 1 << 1, self)
         parts = [rows[..., k] for k in range(rows.shape[-1])]
-        return self.vector(kind_of(rows).stack([weight[..., 0], *parts]))
+        return Multivector._of(kind_of(rows).stack([weight[..., 0], *parts]), 1 << 1, self)
 
 
 def pga(n: int = 3) -> PGA:
@@ -342,4 +353,4 @@ def pga(n: int = 3) -> PGA:
 
 @functools.cache
 def _pga(n: int) -> PGA:
-    return PGA(n, 0, 1, True)
+    return PGA.__new__(PGA, n, 0, 1, True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -33,12 +34,30 @@ def relabelled(value: Multivector, target: Algebra, places: Sequence[int | None]
 
     Basis elements with a generator that has no place are dropped, as are grades that the target lacks.
     """
-    source, data = value.algebra, value._data
-    mask = value._mask & target._all or 1
-    wanted = target._indices(mask)
+    data, mask = value._data, value._mask & target._all or 1
+    size, columns = _columns(value.algebra, value._mask, target, tuple(places))
+    if is_float(data):
+        rows = np.zeros((*data.shape[:-1], size), dtype=data.dtype)
+        for column, (k, sign) in columns.items():
+            rows[..., column] = sign * data[..., k]
+        return Multivector._of(rows, mask, target)
+    kind = kind_of(data)
+    zero = kind.zeros_like(data[..., 0])
+    parts = [zero] * size
+    for column, (k, sign) in columns.items():
+        parts[column] = data[..., k] if sign > 0 else -data[..., k]
+    return Multivector._of(kind.stack(parts), mask, target)
+
+
+@functools.cache
+def _columns(
+    source: Algebra, mask: int, target: Algebra, places: tuple[int | None, ...]
+) -> tuple[int, dict[int, tuple[int, int]]]:
+    """Return the number of components of the relabelled value, and which become some of them, with signs."""
+    wanted = target._indices(mask & target._all or 1)
     where = {bits: (index, sign) for index, (bits, sign) in enumerate(target._blades())}
     columns: dict[int, tuple[int, int]] = {}
-    for k, element in enumerate(source._indices(value._mask)):
+    for k, element in enumerate(source._indices(mask)):
         moved = [places[i] for i in generators_of(*source._blades()[element])]
         found = [place for place in moved if place is not None]
         if len(found) < len(moved):
@@ -46,14 +65,4 @@ def relabelled(value: Multivector, target: Algebra, places: Sequence[int | None]
         swaps = sum(a > b for i, a in enumerate(found) for b in found[i + 1 :])
         index, sign = where[sum(1 << place for place in found)]
         columns[wanted.index(index)] = k, -sign if swaps % 2 else sign
-    if is_float(data):
-        rows = np.zeros((*data.shape[:-1], len(wanted)), dtype=data.dtype)
-        for column, (k, sign) in columns.items():
-            rows[..., column] = sign * data[..., k]
-        return Multivector._of(rows, mask, target)
-    kind = kind_of(data)
-    zero = kind.zeros_like(data[..., 0])
-    parts = [zero] * len(wanted)
-    for column, (k, sign) in columns.items():
-        parts[column] = data[..., k] if sign > 0 else -data[..., k]
-    return Multivector._of(kind.stack(parts), mask, target)
+    return len(wanted), columns

@@ -9,7 +9,7 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.coefficients import taken
 from polhode._algebra.grades import over_grades, with_signs
-from polhode._algebra.products import coerced, common_algebra
+from polhode._algebra.products import coerced, common_algebra, product
 from polhode._support.arrays import common_batch, is_float, power_of_two
 
 if TYPE_CHECKING:
@@ -44,12 +44,9 @@ def left_complement(value: Multivector) -> Multivector:
 
 def _complement(value: Multivector, right: bool) -> Multivector:
     """Permute the components, with signs."""
-    algebra, n = value.algebra, value.algebra.dimension
-    mask = sum(1 << n - k for k in value.grades)
-    images = algebra._complement(right)
-    source = {images[i][0]: (place, images[i][1]) for place, i in enumerate(algebra._indices(value._mask))}
-    places, signs = zip(*(source[i] for i in algebra._indices(mask)), strict=True)
-    return value._of(with_signs(taken(value._data, list(places)), signs), mask, algebra)
+    algebra = value.algebra
+    mask, places, signs = algebra._complement(value._mask, right)
+    return value._of(with_signs(taken(value._data, places), signs), mask, algebra)
 
 
 def vee(left: Multivector, other: Any) -> Multivector:
@@ -67,7 +64,7 @@ def vee(left: Multivector, other: Any) -> Multivector:
     right = coerced(other, left)
     if right is None:
         raise TypeError(f"vee needs a multivector, a number or an array, got {type(other).__name__}")
-    return left.right_complement().wedge(right.right_complement()).left_complement()
+    return product("vee", left, right)
 
 
 def regressive(left: Multivector, right: Any) -> Multivector:

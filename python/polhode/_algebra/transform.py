@@ -16,8 +16,9 @@ from polhode._algebra.coefficients import (
     number_like,
     require_real,
 )
-from polhode._algebra.constructors import one_grade, scalar, vector
+from polhode._algebra.constructors import one_grade, scalar
 from polhode._algebra.estimation import mean
+from polhode._algebra.euclidean import vector_in
 from polhode._algebra.grades import concatenate, stack
 from polhode._algebra.motors import columns, is_motor, of_columns, places
 from polhode._algebra.multivector import Multivector
@@ -368,7 +369,8 @@ class RigidTransform:
         turn, moved = common(self.rotor._data, self.translation._data)
         kind = kind_of(turn)
         w, yz, zx, xy = (turn[..., k] for k in range(4))
-        half = [kind.divide(moved[..., k], 2) for k in range(3)]
+        shift = kind.divide(moved, 2)
+        half = [shift[..., k] for k in range(3)]
         zero = kind.zeros_like(w)
         rotor = of_columns(algebra, [w, yz, zx, xy, *[zero] * 4])
         return of_columns(algebra, [zero + 1, *[zero] * 3, *half, zero]) * rotor
@@ -549,7 +551,9 @@ class RigidTransform:
 
 
 def _as_vector(value: Any, what: str) -> Multivector:
-    given = one_grade(value, 1, what) if isinstance(value, Multivector) else vector(value)
+    given = (
+        one_grade(value, 1, what) if isinstance(value, Multivector) else vector_in(algebra(3), value, what)
+    )
     require_real(given._data, what)
     return given
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from polhode import _generic, _native
 from polhode._algebra.coefficients import kind_of
-from polhode._algebra.products import common_algebra
-from polhode._support.arrays import at_index, first_index
+from polhode._algebra.products import aligned, common_algebra
+from polhode._support.arrays import at_index, first_index, is_float, new
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -24,15 +24,26 @@ def act(V: Multivector, X: Multivector) -> Multivector:
     Of an odd number of vectors ``V X̂ V⁻¹``, with X̂ the grade involution, as in `reflect`. V has any length,
     batches broadcast. A TypeError for a V that is not a versor to half of its digits.
     """
+    single = _native.versor_action(V, X)
+    if single is not None:
+        return single
     if not isinstance(X, _native.Multivector):
         raise TypeError(
             f"a versor acts on multivectors, got {type(X).__name__}; wrap arrays with ph.vector, for a "
             "product with numbers write *, for the part of grade k .grade(k)"
         )
     common_algebra(V, X)
-    held = V._held()
+    mixed = V._mask & _EVEN and V._mask & _ODD
+    held = V._held() if mixed else V._mask
     if held & _EVEN and held & _ODD:
         raise TypeError(f"a value with the even and odd grades {V.grades} is not a versor; {_REMEDY}")
+    if mixed:
+        V = V._part(V._mask & (_ODD if held & _ODD else _EVEN))
+    if is_float(V._data) and is_float(X._data):
+        batch, v, x = aligned(V._data, X._data)
+        moved = new((*batch, x.shape[-1]), v.dtype)
+        if _native.versor_apply(V.algebra, v, V._mask, bool(held & _ODD), x, X._mask, moved):
+            return X._like(moved)
     reverse = ~V
     square = V * reverse
     _require_number(square, V)
@@ -81,5 +92,6 @@ def small(data: Any, V: Multivector, digits: float = 0.5) -> Any:
     if kind.exact:
         return np.frompyfunc(_generic.exact.is_zero, 1, 1)(data).astype(bool).all(axis=-1)
     with np.errstate(over="ignore"):
-        bound = kind.eps**digits * kind.xp.sum(kind.squared(V._data), axis=-1)
+        eps = float(np.finfo(V._data.dtype).eps) if is_float(V._data) else kind.eps
+        bound = eps**digits * kind.xp.sum(kind.squared(V._data), axis=-1)
     return kind.xp.all(kind.xp.abs(data) <= bound[..., None], axis=-1)

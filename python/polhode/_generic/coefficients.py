@@ -13,6 +13,8 @@ from polhode._support.extras import optional
 
 Coefficients = Numeric | Exact
 
+_FLOAT64 = np.dtype(np.float64)
+
 # Libraries whose arrays need array-api-compat to follow the standard.
 _THROUGH_COMPAT = ("torch", "cupy", "dask", "ndonnx", "sparse")
 
@@ -24,6 +26,8 @@ def of(*values: Any) -> Coefficients:
     Fractions, SymPy expressions) combine with these only, and so do the arrays of each other library; any
     other mix is a TypeError. NumPy alone gives NumPy with float64, or complex numbers if some array has them.
     """
+    if all(_is_plain(value) for value in values):
+        return Numeric(np, _FLOAT64)
     exact: list[Any] = []
     foreign: list[Any] = []
     native: list[Any] = []
@@ -39,12 +43,18 @@ def of(*values: Any) -> Coefficients:
         other = f"exact coefficients ({_example(exact[0])})" if exact else f"{_library(foreign[0])} arrays"
         raise TypeError(f"{other} and complex numbers do not mix; convert one of them first")
     if not foreign:
-        return Exact(_context(exact)) if exact else Numeric(np, dtype or np.dtype(np.float64))
+        return Exact(_context(exact)) if exact else Numeric(np, dtype or _FLOAT64)
     names = list(dict.fromkeys(map(_library, foreign)))
     if exact or len(names) > 1:
         other = f"exact coefficients ({_example(exact[0])})" if exact else f"{names[1]} arrays"
         raise TypeError(f"{names[0]} arrays and {other} do not mix; convert one of them first")
     return _numeric(foreign)
+
+
+def _is_plain(x: Any) -> bool:
+    """Whether this is an array of floats or a number, by far the most frequent coefficients."""
+    kind = type(x)
+    return x.dtype.char in "df" if kind is np.ndarray else kind is float or kind is int
 
 
 def _complex_dtype(arrays: list[Any]) -> Any:

@@ -4,6 +4,7 @@ pub(crate) mod multivector;
 pub(crate) mod operators;
 pub(crate) mod rows;
 pub(crate) mod signature;
+pub(crate) mod single;
 pub(crate) mod slots;
 pub(crate) mod types;
 pub(crate) mod value;

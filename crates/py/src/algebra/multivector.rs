@@ -5,6 +5,7 @@ use super::operators::{
     turned,
 };
 use super::signature::{Algebra, g3};
+use super::single;
 use super::value::{
     Any, Multivector, Object, Rotor, Storage, This, number, one, operand, row, storage, wrap,
 };
@@ -125,30 +126,36 @@ impl Multivector {
     }
 
     fn __add__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        or_method(sum_of(operand(slf), operand(other)), slf, "_add", (other,))
+        let row = || single::zipped(slf, other, |x, y| x + y);
+        or_method(sum_of(operand(slf), operand(other)), row, slf, "_add", (other,))
     }
 
     fn __radd__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        or_method(sum_of(operand(other), operand(slf)), slf, "_add", (other,))
+        let row = || single::zipped(slf, other, |x, y| x + y);
+        or_method(sum_of(operand(other), operand(slf)), row, slf, "_add", (other,))
     }
 
     fn __sub__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        or_method(difference(operand(slf), operand(other)), slf, "_subtract", (other,))
+        let row = || single::zipped(slf, other, |x, y| x - y);
+        or_method(difference(operand(slf), operand(other)), row, slf, "_subtract", (other,))
     }
 
     fn __rsub__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        or_method(difference(operand(other), operand(slf)), slf, "_subtract_from", (other,))
+        let row = || single::zipped(slf, other, |x, y| y - x);
+        or_method(difference(operand(other), operand(slf)), row, slf, "_subtract_from", (other,))
     }
 
     fn __truediv__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
+        let general = || slf.call_method1(intern!(slf.py(), "_divide"), (other,));
         match (slf.get().single(), number(other)) {
             (Some(a), Some(x)) if x != 0.0 => one(slf.py(), a.map(|y| y / x)),
-            _ => slf.call_method1(intern!(slf.py(), "_divide"), (other,)),
+            (None, Some(x)) if x != 0.0 => single::mapped(slf, |y| y / x).unwrap_or_else(general),
+            _ => general(),
         }
     }
 
     fn __neg__<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        or_method(negative(operand(slf)), slf, "_negated", ())
+        or_method(negative(operand(slf)), || single::mapped(slf, |x| -x), slf, "_negated", ())
     }
 
     fn __invert__<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
@@ -162,7 +169,7 @@ impl Multivector {
     /// >>> ~(1 + ph.e1 + (ph.e1 ^ ph.e2) + ph.I)
     /// 1 + e1 - e1∧e2 - I
     fn reverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        or_method(reversed(operand(slf)), slf, "_reversed", ())
+        or_method(reversed(operand(slf)), || single::reversed(slf), slf, "_reversed", ())
     }
 
     /// Return the part of one grade or of several, ``grade(2)`` or ``grade(1, 3)``; zeros where absent.
@@ -178,9 +185,11 @@ impl Multivector {
     fn grade<'py>(slf: &Bound<'py, Self>, grades: &Bound<'py, PyTuple>) -> Object<'py> {
         let single = grades.get_item(0).ok().filter(|_| grades.len() == 1);
         let whole = single.and_then(|k| k.cast_exact::<PyInt>().ok()?.extract::<u16>().ok());
+        let general = || slf.call_method1(intern!(slf.py(), "_grade"), grades);
         match (slf.get().single(), whole) {
             (Some(value), Some(k @ 0..=3)) => one(slf.py(), value.with_grades(Grades(1 << k))),
-            _ => slf.call_method1(intern!(slf.py(), "_grade"), grades),
+            (None, Some(k)) => single::grade(slf, k).unwrap_or_else(general),
+            _ => general(),
         }
     }
 
@@ -386,7 +395,7 @@ impl Rotor {
         if errors != "raise" {
             return function(slf.as_super(), Function::Log, errors);
         }
-        or_method(logarithm(operand(slf)), slf.as_super(), "_log", ())
+        or_method(logarithm(operand(slf)), || None, slf.as_super(), "_log", ())
     }
 
     fn __call__<'py>(slf: &Bound<'py, Self>, x: Any<'_, 'py>) -> Object<'py> {

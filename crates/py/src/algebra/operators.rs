@@ -1,13 +1,9 @@
-//! Operators of single values; the Python half of the type handles all other operands.
-
-use super::value::{
-    Any, Multivector, Object, Operand, Rotor, Storage, This, number, operand, scalar, unit_rotor, wrap,
-};
+//! Operators of single values of 3-d space, and of other algebras; the Python half of the type handles all other operands.
+use super::single;
+use super::value::{Any, Object, Operand, Rotor, Storage, This, number, operand, scalar, unit_rotor, wrap};
 use crate::support::arrays::bad;
-use numpy::{PyArray1, PyArrayMethods};
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
-use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Graded, Multivector as FullMultivector, Rotor as UnitRotor};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -108,41 +104,21 @@ pub(crate) fn product<'py>(
 ) -> Object<'py> {
     match product_of(product, operand(left), operand(right)) {
         Some(result) => result.object(left.py()),
-        None => product_of_rows(left, product, right).unwrap_or_else(fallback),
+        None => single::product(left, product, right).unwrap_or_else(fallback),
     }
 }
 
-/// The product of two single values of another algebra, rows of float64.
-pub(crate) fn product_of_rows<'py>(
-    left: This<'_, 'py>,
-    product: Product,
-    right: Any<'_, 'py>,
-) -> Option<Object<'py>> {
-    let py = left.py();
-    let (a, ga, algebra) = left.get().row(py)?;
-    let (b, gb, other) = right.cast::<Multivector>().ok()?.get().row(py)?;
-    if !algebra.is(other) {
-        return None;
-    }
-    let plan = algebra.get().plan_of(product, ga, gb).ok()?;
-    let out = PyArray1::zeros(py, plan.sizes.2, false);
-    let mut target = out.readwrite();
-    plan.run(Threads::ONE, a.as_slice().ok()?, b.as_slice().ok()?, target.as_slice_mut().ok()?);
-    target.make_nonwriteable();
-    let data = out.into_any().unbind();
-    Some(wrap(py, Storage::Many { data, grades: plan.grades, algebra: algebra.clone_ref(py) }, false))
-}
-
-/// A result for single values, or that of a method of the Python half.
+/// A result for single values of 3-d space, or one for those of other algebras, or that of a method of the Python half.
 pub(super) fn or_method<'py>(
     result: Option<One>,
+    of_row: impl FnOnce() -> Option<Object<'py>>,
     value: This<'_, 'py>,
     name: &str,
     arguments: impl pyo3::call::PyCallArgs<'py>,
 ) -> Object<'py> {
     match result {
         Some(result) => result.object(value.py()),
-        None => value.call_method1(name, arguments),
+        None => of_row().unwrap_or_else(|| value.call_method1(name, arguments)),
     }
 }
 
@@ -156,7 +132,8 @@ pub(crate) fn infix_right<'py>(right: This<'_, 'py>, kind: Product, left: Any<'_
     let number = number(left).map_or(Operand::Other, Operand::Number);
     match product_of(kind, number, operand(right)) {
         Some(result) => result.object(right.py()),
-        None => right.call_method1(intern!(right.py(), "_product_from"), (kind.name(), left)),
+        None => single::product_from(right, kind, left)
+            .unwrap_or_else(|| right.call_method1(intern!(right.py(), "_product_from"), (kind.name(), left))),
     }
 }
 
@@ -179,7 +156,8 @@ pub(crate) fn function<'py>(value: This<'_, 'py>, f: Function, errors: &str) -> 
         return value.call_method1(intern!(py, "_masked"), (f.name(), errors));
     }
     let Some(value) = value.get().single() else {
-        return value.call_method1(intern!(py, "_function"), (f.name(),));
+        let general = || value.call_method1(intern!(py, "_function"), (f.name(),));
+        return single::function(value, f).unwrap_or_else(general);
     };
     if f == Function::Exp
         && let Some(rotor) = exponential(Operand::Value(value, false))
@@ -197,7 +175,8 @@ pub(crate) fn function<'py>(value: This<'_, 'py>, f: Function, errors: &str) -> 
 
 /// Whether two single values have the same components; None if one is not a single value.
 pub(crate) fn equal(left: This<'_, '_>, right: Any<'_, '_>) -> Option<bool> {
-    let a = left.get().single()?.full();
+    let Some(a) = left.get().single() else { return single::equal(left, right) };
+    let a = a.full();
     match operand(right) {
         Operand::Value(b, _) => Some(a == b.full()),
         Operand::Number(x) => Some(a == scalar(x).full()),

@@ -3,7 +3,7 @@
 use super::signature::Algebra;
 use super::value::Any;
 use crate::support::arrays::{
-    Out, Rows, RowsToFill, bad, map_long_rows, map_rows, numbers, numbers_to_fill, place, threads,
+    Out, Rows, RowsToFill, bad, fill_rows, map_long_rows, map_rows, numbers, numbers_to_fill, place, threads,
 };
 use crate::support::interrupts::in_pieces;
 use numpy::{PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
@@ -11,6 +11,7 @@ use polhode_ga::g3::functions::Function;
 use polhode_ga::g3::pauli;
 use polhode_ga::product::Grades;
 use polhode_ga::rows::compose::compose;
+use polhode_ga::rows::motors::{self, Motors};
 use polhode_ga::rows::product::{Element, turn};
 use polhode_ga::rows::rotor_functions;
 use polhode_ga::simd::threads::Threads;
@@ -19,6 +20,7 @@ use polhode_ga::{Bivector, MathError, Multivector, Rotor, Vector};
 use pyo3::prelude::*;
 use std::array::from_fn;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The value of an expression with `T` the type of the numbers of an array: `f32`, or else `f64`.
 macro_rules! by_type {
@@ -146,6 +148,27 @@ fn norms<'py, const K: usize>(py: Python<'py>, m: &Rows<'py>) -> Out<'py> {
     map_rows(py, m, |c| Ok::<_, MathError>([full(c).norm()]))
 }
 
+/// The units and the norms in them of rows of components of these grades, as [`Algebra::unit_and_size`].
+#[pyfunction]
+pub(crate) fn units_and_sizes<'py>(
+    py: Python<'py>,
+    algebra: &Algebra,
+    grades: u16,
+    m: Rows<'py>,
+) -> Out<'py> {
+    let signs = algebra.reverse_squares(algebra.check(grades)?);
+    let size = signs.len();
+    let (shape, data) = (m.shape(), numbers(&m)?);
+    if shape.last() != Some(&size) || size == 0 {
+        return Err(bad(format!("expected rows of {size} components, got the shape {shape:?}")));
+    }
+    fill_rows(py, (&shape[..shape.len() - 1], 2), 1 << 10, |row, out: &mut [f64]| {
+        let (unit, norm) = Algebra::unit_and_size(&data[row * size..(row + 1) * size], &signs);
+        out.copy_from_slice(&[unit, norm]);
+        Ok::<(), MathError>(())
+    })
+}
+
 /// Functions of Python that apply a function of one row to every row.
 macro_rules! row_functions {
     ($($(#[$doc:meta])* $name:ident($row:ident: $width:literal) $value:expr;)*) => { $(
@@ -216,16 +239,51 @@ row_functions! {
     };
 }
 
+/// Fills `out` with `inverse`, `exp`, `log` or `sqrt` of rows of motors, or with `exp` of rows of their bivectors; both hold
+/// float64, or float32.
+#[pyfunction]
+pub(crate) fn motor_function(
+    algebra: &Algebra,
+    name: &str,
+    m: Any<'_, '_>,
+    out: Any<'_, '_>,
+) -> PyResult<()> {
+    let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
+    let motors = motors(algebra)?;
+    let size = if f == Function::Exp { motors::BIVECTOR } else { motors::SIZE };
+    by_type!(out, T => map_to::<T>(
+        (size, motors::SIZE), m, out,
+        |row| motors.error(f, row),
+        |t, m, out, _| motors.run(f, t, m, out),
+    ))
+}
+
+/// Fills `out` with `M/√(M ~M)` of rows of even elements; both hold float64, or float32. An error if the norm of one is 0,
+/// or a row is not finite.
+#[pyfunction]
+pub(crate) fn motor_normalize(algebra: &Algebra, m: Any<'_, '_>, out: Any<'_, '_>) -> PyResult<()> {
+    let motors = motors(algebra)?;
+    by_type!(out, T => map_to::<T>(
+        (motors::SIZE, motors::SIZE), m, out,
+        |_| MathError::NoDirection,
+        |t, m, out, _| motors.normalize(t, m, out),
+    ))
+}
+
+fn motors(algebra: &Algebra) -> PyResult<&Motors> {
+    algebra.motors().ok_or_else(|| bad("the algebra has no motors of 3-d space"))
+}
+
 /// Fills `out` with the rotors `exp B` of rows of bivectors; both hold float64, or float32.
 #[pyfunction]
 pub(crate) fn rotor_exp(b: Any<'_, '_>, out: Any<'_, '_>) -> PyResult<()> {
-    by_type!(out, T => map_to::<T>((3, 4), b, out, |t, b, out, _| rotor_functions::exp(t, b, out)))
+    by_type!(out, T => map_to::<T>((3, 4), b, out, |_| MathError::NotFinite, |t, b, out, _| rotor_functions::exp(t, b, out)))
 }
 
 /// Fills `out` with the bivectors −Bθ/2 of rows of rotors; both hold float64, or float32.
 #[pyfunction]
 pub(crate) fn rotor_log(r: Any<'_, '_>, out: Any<'_, '_>) -> PyResult<()> {
-    by_type!(out, T => map_to::<T>((4, 3), r, out, |t, r, out, _| rotor_functions::log(t, r, out)))
+    by_type!(out, T => map_to::<T>((4, 3), r, out, |_| MathError::NotFinite, |t, r, out, _| rotor_functions::log(t, r, out)))
 }
 
 /// Fills `out` with `exp(n log R)` of rows of rotors and of one number n each; all hold float64, or float32.
@@ -236,18 +294,19 @@ pub(crate) fn rotor_power<'py>(r: Any<'_, 'py>, n: Any<'_, 'py>, out: Any<'_, 'p
         let n = numbers(&n)?;
         let rows = out.cast::<PyUntypedArray>()?.len() / 4;
         check_rows(n.len(), 1, rows)?;
-        map_to::<T>((4, 4), r, out, |t, r, out, piece| {
+        map_to::<T>((4, 4), r, out, |_| MathError::NotFinite, |t, r, out, piece| {
             rotor_functions::power(t, r, part(n, 1, rows, &piece), out)
         })
     })
 }
 
-/// Fills an array from the rows of another of the same batch shape; an error names the batch index of the first
-/// row that is not finite.
+/// Fills an array from the rows of another of the same batch shape; an error says why the first row without a value has
+/// none, and names its batch index.
 fn map_to<T: Element + numpy::Element>(
     (size, filled): (usize, usize),
     input: Any<'_, '_>,
     out: Any<'_, '_>,
+    why: impl Fn(&[T]) -> MathError,
     work: impl Fn(Threads, &[T], &mut [T], Range<usize>) -> Result<(), usize> + Sync,
 ) -> PyResult<()> {
     let input: Rows<'_, T> = input.extract()?;
@@ -261,8 +320,10 @@ fn map_to<T: Element + numpy::Element>(
     in_pieces(py, rows, 1 << 17, |piece| {
         let first = piece.start;
         let (from, to) = (part(from, size, rows, &piece), &mut to[filled * first..filled * piece.end]);
-        let failed = |row| bad(format!("{}{}", place(first + row, batch), MathError::NotFinite));
-        py.detach(|| work(threads, from, to, piece)).map_err(failed)
+        py.detach(|| work(threads, from, to, piece)).map_err(|row| {
+            let of = if from.len() == size { from } else { &from[size * row..size * (row + 1)] };
+            bad(format!("{}{}", place(first + row, batch), why(of)))
+        })
     })
 }
 
@@ -283,6 +344,31 @@ pub(crate) fn rotor_apply<'py>(
     let size = grades.indices(&G3).len();
     let (sizes, arrays) = ((4, size, size), [rotors, values, out]);
     by_type!(out, T => fill::<T>(py, sizes, arrays, |t, r, v, out| turn(t, r, v, grades, out)))
+}
+
+/// Fills `out` with `V X V⁻¹` for rows of versors and of values of these grades, with the grade involution of X if the
+/// versors are odd; one row of either meets every row of the other. All three hold float64, or float32. False if some row
+/// is not a versor to half of its digits, or the core cannot recognise versors of this algebra.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn versor_apply<'py>(
+    py: Python<'py>,
+    algebra: &Algebra,
+    versors: Any<'_, 'py>,
+    versor_grades: u16,
+    odd: bool,
+    values: Any<'_, 'py>,
+    value_grades: u16,
+    out: Any<'_, 'py>,
+) -> PyResult<bool> {
+    let (v, x) = (algebra.check(versor_grades)?, algebra.check(value_grades)?);
+    let Some(action) = algebra.action(v, odd, x) else { return Ok(false) };
+    let [nv, nx] = [v, x].map(|grades| grades.indices(&algebra.table).len());
+    let (sizes, arrays, done) = ((nv, nx, nx), [versors, values, out], AtomicBool::new(true));
+    by_type!(out, T => fill::<T>(py, sizes, arrays, |threads, v, x, out| {
+        done.fetch_and(action.run(threads, v, x, out), Ordering::Relaxed);
+    }))?;
+    Ok(done.into_inner())
 }
 
 /// Fills `out` with the products of rows of rotors (n, 4), of norm 1; one row of either meets every row of

@@ -4,21 +4,29 @@ use crate::support::arrays::bad;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::general::Calculus;
 use polhode_ga::product::{Grades, Plan, Product};
+use polhode_ga::rows::motors::Motors;
+use polhode_ga::rows::versors::Action;
 use polhode_ga::table::{self, Signature};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 type Key = (Product, Grades, Grades);
+
+/// Actions of versors by the grades of the versor, whether it is odd, and the grades of the value.
+type Actions = BTreeMap<(Grades, bool, Grades), Option<Arc<Action>>>;
 
 /// The geometric algebra Cl(p, q, r).
 #[pyclass(frozen, subclass, module = "polhode")]
 pub(crate) struct Algebra {
     pub table: table::Algebra,
-    plans: Mutex<HashMap<Key, Arc<Plan>>>,
+    plans: Mutex<BTreeMap<Key, Arc<Plan>>>,
+    actions: Mutex<Actions>,
+    reverse_squares: Mutex<BTreeMap<Grades, Arc<[f64]>>>,
     calculus: OnceLock<Calculus>,
     single_calculus: OnceLock<Calculus>,
+    motors: OnceLock<Option<Motors>>,
 }
 
 /// A term of a product: components of the left factor, the right factor and the product, and the sign.
@@ -65,6 +73,15 @@ impl Algebra {
         Ok(Arc::clone(plan))
     }
 
+    /// The action of versors on values of these grades, cached; `None` where the core cannot recognise versors.
+    pub fn action(&self, versor: Grades, odd: bool, value: Grades) -> Option<Arc<Action>> {
+        let mut actions = self.actions.lock().ok()?;
+        let action = actions
+            .entry((versor, odd, value))
+            .or_insert_with(|| Action::new(&self.table, versor, odd, value).map(Arc::new));
+        action.clone()
+    }
+
     /// The functions of this algebra, with cached tables; `single` for components rounded to float32.
     pub fn calculus(&self, single: bool) -> &Calculus {
         let double = self.calculus.get_or_init(|| Calculus::new(&self.table));
@@ -72,6 +89,35 @@ impl Algebra {
             return double;
         }
         self.single_calculus.get_or_init(|| double.clone().rounded_to(f32::EPSILON.into()))
+    }
+
+    /// The functions of motors, if the algebra has motors of 3-d space.
+    pub fn motors(&self) -> Option<&Motors> {
+        self.motors.get_or_init(|| Motors::new(&self.table)).as_ref()
+    }
+
+    /// `E ~E` of the basis elements E of these grades, the product of the squares of their generators: 1, −1 or 0; cached.
+    pub fn reverse_squares(&self, grades: Grades) -> Arc<[f64]> {
+        let mut known = self.reverse_squares.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = known.entry(grades).or_insert_with(|| {
+            let squares = self.table.squares();
+            let square = |bits: u32| {
+                (0..squares.len()).filter(|i| bits >> i & 1 == 1).map(|i| squares[i]).product::<i8>()
+            };
+            let held = self.table.blades().iter().filter(|blade| grades.contains(blade.grade()));
+            held.map(|blade| square(blade.bits).into()).collect()
+        });
+        Arc::clone(found)
+    }
+
+    /// The largest magnitude u of the components E that count in the norm, those with `E ~E` not 0, and the norm in units
+    /// of it, `√abs⟨A ~A⟩/u`. The unit is 1 where all are 0, or one is not finite.
+    pub fn unit_and_size(row: &[f64], reverse_squares: &[f64]) -> (f64, f64) {
+        let counted = || row.iter().zip(reverse_squares).filter(|(_, sign)| **sign != 0.0);
+        let unit = counted().fold(0.0, |most: f64, (x, _)| most.max(x.abs()));
+        let unit = if unit > 0.0 && unit.is_finite() { unit } else { 1.0 };
+        let square: f64 = counted().map(|(x, sign)| sign * (x / unit) * (x / unit)).sum();
+        (unit, square.abs().sqrt())
     }
 
     /// Whether it is the algebra of 3-d space.
@@ -93,7 +139,7 @@ impl Algebra {
 impl Algebra {
     /// With `from_e0`, for the signature (n, 0, 1), the null generator is e0 and comes first.
     #[new]
-    #[pyo3(signature = (p, q, r, from_e0=false))]
+    #[pyo3(signature = (p, q=0, r=0, from_e0=false))]
     fn new(p: usize, q: usize, r: usize, from_e0: bool) -> PyResult<Algebra> {
         if from_e0 && (q, r) != (0, 1) {
             return Err(bad(format!("only algebras Cl(n, 0, 1) have a generator e0, got Cl({p}, {q}, {r})")));
@@ -109,8 +155,11 @@ impl Algebra {
         Ok(Algebra {
             table: table.ok_or_else(too_many)?,
             plans: Mutex::default(),
+            actions: Mutex::default(),
+            reverse_squares: Mutex::default(),
             calculus: OnceLock::new(),
             single_calculus: OnceLock::new(),
+            motors: OnceLock::new(),
         })
     }
 
@@ -139,6 +188,11 @@ impl Algebra {
     /// Indices of the components of these grades, as bits, among all.
     fn _indices(&self, grades: u16) -> PyResult<Vec<usize>> {
         Ok(self.check(grades)?.indices(&self.table))
+    }
+
+    /// `E ~E` of the basis elements E of these grades: 1, −1 or 0.
+    fn _squares_of(&self, grades: u16) -> PyResult<Vec<f64>> {
+        Ok(self.reverse_squares(self.check(grades)?).to_vec())
     }
 
     /// The grades of `inverse`, `exp`, `log` or `sqrt` of values that hold these grades.

@@ -162,7 +162,7 @@ unsafe fn seen<'a>(types: &Types, object: *mut PyObject) -> Operand<'a> {
     Operand::Other
 }
 
-/// A new reference to the result, if there is one; NULL, with Python's error set, if there is no memory.
+/// A new reference to the result, or `None` without one; NULL, with Python's error set, when memory runs out.
 ///
 /// # Safety
 ///

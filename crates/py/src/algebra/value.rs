@@ -6,7 +6,7 @@ use super::signature::{Algebra, g3};
 use super::types;
 pub(crate) use super::types::{Multivector, Rotor, Storage};
 use crate::support::arrays::bad;
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
 use polhode_ga::{Graded, Rotor as UnitRotor};
 use pyo3::intern;
@@ -79,16 +79,6 @@ pub(crate) fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
 }
 
 impl Multivector {
-    /// A single value that is stored as an array of float64: its row, grades and algebra.
-    pub(crate) fn row<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> Option<(PyReadonlyArray1<'py, f64>, Grades, &Py<Algebra>)> {
-        let Storage::Many { data, grades, algebra } = &self.storage else { return None };
-        let row = data.bind(py).cast::<PyArray1<f64>>().ok()?.try_readonly().ok()?;
-        Some((row, *grades, algebra))
-    }
-
     pub(crate) fn single(&self) -> Option<&Graded> {
         match &self.storage {
             Storage::One(graded) => Some(graded),

@@ -150,7 +150,7 @@ pub(crate) fn map_long_rows<'py, const N: usize, E: std::fmt::Display + Send>(
 
 /// A new array of a batch of rows of `size` numbers, each row filled by a function of its number. Threads take
 /// at least `least` rows, and Python may interrupt. An error names the batch index of the first failing row.
-fn fill_rows<'py, E: std::fmt::Display + Send>(
+pub(crate) fn fill_rows<'py, E: std::fmt::Display + Send>(
     py: Python<'py>,
     (batch, size): (&[usize], usize),
     least: usize,

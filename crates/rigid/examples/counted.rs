@@ -2,8 +2,10 @@
 //! runs one. `benchmarks/instructions.py` compares two numbers of runs under valgrind.
 
 use polhode_ga::formula::Names;
+use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Plan, Product};
 use polhode_ga::rows::compose::compose;
+use polhode_ga::rows::motors::{self, Motors};
 use polhode_ga::rows::product::turn;
 use polhode_ga::rows::rotor_functions;
 use polhode_ga::simd::threads::Threads;
@@ -13,7 +15,7 @@ use polhode_rigid::Inertia;
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start};
 use polhode_rigid::exact::free::FreeMotion;
 use polhode_rigid::laws::formula::{Formula, Purpose};
-use polhode_rigid::laws::torque::{Axes, Orbit, Torque};
+use polhode_rigid::laws::torque::{Axes, Gains, Orbit, Torque};
 use polhode_rigid::methods::Method;
 use polhode_rigid::run::Options;
 use polhode_rigid::state::center::Center;
@@ -49,6 +51,17 @@ fn rotors() -> Vec<f64> {
 fn of_rotors(name: &'static str, width: usize, mut run: impl FnMut(&[f64], &mut [f64]) + 'static) -> Kernel {
     let (rotors, mut out) = (rotors(), vec![0.0; width * ROWS]);
     (name, ROWS, Box::new(move || run(black_box(&rotors), &mut out)))
+}
+
+/// A function of motors.
+fn of_motors(name: &'static str, f: Function) -> Kernel {
+    let algebra = Algebra::pga(3).expect("few generators");
+    let motors = Motors::new(&algebra).expect("the algebra of motors");
+    let bivectors = numbers(motors::BIVECTOR * ROWS);
+    let [mut rows, mut out] = [(); 2].map(|()| vec![0.0; motors::SIZE * ROWS]);
+    motors.run(Function::Exp, Threads::ONE, &bivectors, &mut rows).expect("finite bivectors");
+    let given = if f == Function::Exp { bivectors } else { rows };
+    (name, ROWS, Box::new(move || motors.run(f, Threads::ONE, black_box(&given), &mut out).expect("motors")))
 }
 
 /// Equal steps of bodies in lanes.
@@ -88,6 +101,11 @@ fn formula(text: &str) -> Vec<Torque> {
     vec![Torque::Formula(law.expect("a bivector of known names"))]
 }
 
+fn controller() -> Torque {
+    let (stiffness, damping) = (Gains::new([2.0, 3.0, 4.0]), Gains::new([0.5, 0.6, 0.7]));
+    Torque::Control { stiffness, damping, target: Rotor::exp(Bivector([0.3, 0.2, 0.1])) }
+}
+
 /// The exact free motion at many times.
 fn exact() -> Kernel {
     let motion = FreeMotion::in_principal_axes([1.0, 2.0, 3.0], Rotor::IDENTITY, Bivector([0.01, 1.0, 0.01]));
@@ -108,11 +126,14 @@ fn kernels() -> Vec<Kernel> {
         of_rotors("R v ~R", 3, move |r, out| turn(Threads::ONE, r, &vectors, Grades(0b0010), out)),
         of_rotors("exp", 4, move |_, out| rotor_functions::exp(Threads::ONE, &planes, out).expect("finite")),
         of_rotors("log", 3, |r, out| rotor_functions::log(Threads::ONE, r, out).expect("finite")),
+        of_motors("exp of a motor", Function::Exp),
+        of_motors("log of a motor", Function::Log),
         exact(),
         stepped("free body, rk4", "rk4", vec![]),
         stepped("free body, kahan_li8", "kahan_li8", vec![]),
         stepped("gravity gradient, rk4", "rk4", gradient()),
         stepped("gravity gradient, kahan_li8", "kahan_li8", gradient()),
+        stepped("controller, rk4", "rk4", vec![controller()]),
         stepped("formula, rk4", "rk4", formula("-(0.1 e1 + 0.2 e2 + 0.3 e3) ∧ (~R e3 R)")),
         stepped(
             "formula of time, rk4",

@@ -65,6 +65,12 @@ impl Work for FixedSteps<'_, '_> {
                 LaneForcing::Gradient(forcing) => {
                     self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
                 }
+                LaneForcing::Controller(forcing) => {
+                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                }
+                LaneForcing::Formula(forcing) => {
+                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                }
                 LaneForcing::Laws(forcing) => {
                     self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
                 }

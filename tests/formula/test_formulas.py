@@ -300,6 +300,14 @@ def test_wrong_positions_are_errors():
         ph.formula("a", arguments=[1])
 
 
+def test_an_x_between_factors_is_probably_a_cross_product():
+    with pytest.raises(ph.FormulaError, match="Write the cross product as `a ⨯ b`"):
+        ph.evaluate("a x b", a=e1, b=e2)
+    with pytest.raises(ph.FormulaError) as caught:
+        ph.evaluate("x + a", a=e1)
+    assert "cross" not in str(caught.value)
+
+
 def test_arguments_are_part_of_a_formula():
     f = ph.formula("a b", arguments="b a")
     assert f(e1, e2) == e2 * e1

@@ -54,6 +54,22 @@ def test_functions_are_defined_and_redefined(prompt):
     assert answers(prompt, "h(x) = x", "h = e3", "h", "h(x) = 2x", "h(e1)") == ["", "", "e3", "", "2 e1"]
 
 
+def test_let_assigns_as_in_files_of_formulas(prompt):
+    assert answers(prompt, "let a = 2 e1", "let f(x) = x x", "f(a)", "let θ = 180 deg", "cos(θ)") == [
+        "", "", "4", "", "-1",
+    ]  # fmt: skip
+    with pytest.raises(LineError):
+        prompt.answer("let a")
+
+
+def test_words_of_other_prompts(prompt):
+    assert prompt.answer("help") == prompt.answer("help()") == prompt.answer(":help")
+    for word in ("exit", "quit", "quit()"):
+        with pytest.raises(EOFError):
+            prompt.answer(word)
+    assert answers(prompt, "quit = e1", "quit") == ["", "e1"]
+
+
 def test_units_are_read_in_assignments(prompt):
     assert (
         answers(prompt, "θ = 90 deg", "R = exp(-45deg e1e2)", "Ω = 1 rev/s e12", "v(t) = (2 m/s) t e1")
@@ -197,6 +213,8 @@ def test_any_line_has_an_answer_or_a_place(line):
     answers(prompt, "a = e1 + 2e2", "b = e12", "f(x) = a x", "a")
     try:
         assert isinstance(prompt.answer(line), str)
+    except EOFError:  # a word that leaves
+        return
     except LineError as error:
         wrong = error
     else:

@@ -76,7 +76,7 @@ fn dependence_follows_from_the_variables() {
 #[test]
 fn invalid_torques_are_errors_with_a_place() {
     for (text, part) in [
-        ("R e3 ~R", "the bivector `I v`"),
+        ("R e3 ~R", "the torque with the axial vector v is `I v`"),
         ("Ω Ω_S", "grades 0, 2"),
         ("Ω = c ∧ e1", "write one side"),
         ("c ∧ q", "`q` has no value"),

@@ -1,6 +1,7 @@
 //! Reads a TOML tree and collects all errors with their places.
 
 use super::definitions::Formulas;
+use crate::laws::registry::{FORCES, TORQUES};
 use crate::units::{self, Quantity};
 use polhode_ga::diagnostic::{alternatives, list, nearest, quote};
 use std::borrow::Cow;
@@ -329,9 +330,36 @@ impl Reader {
     }
 }
 
-/// `` unknown field `x` `` and the nearest known name.
+/// Words of other programs and text books for names of a scene.
+const OTHER_WORDS: [(&str, &str); 17] = [
+    ("omega", "spin"),
+    ("angular_velocity", "spin"),
+    ("angular_rate", "spin"),
+    ("rates", "spin"),
+    ("orientation", "attitude"),
+    ("quaternion", "attitude"),
+    ("dt", "interval"),
+    ("end", "duration"),
+    ("t_end", "duration"),
+    ("tmax", "duration"),
+    ("com", "center_of_mass"),
+    ("principal_moments", "moments"),
+    ("dimensions", "lengths"),
+    ("size", "lengths"),
+    ("rk45", "dop853"),
+    ("cube", "box"),
+    ("cuboid", "box"),
+];
+
+/// `` unknown field `x` `` and the known name that is probably meant. Laws are known by their labels too.
 fn unknown(what: &str, name: &str, known: &[&str]) -> String {
-    let expected = match nearest(name, known.iter().copied()) {
+    let word = name.to_lowercase();
+    let labels =
+        TORQUES.iter().map(|law| (law.label, law.name)).chain(FORCES.iter().map(|law| (law.label, law.name)));
+    let labelled = labels.map(|(label, law)| (label.to_lowercase().replace(' ', "_"), law));
+    let mut words = OTHER_WORDS.iter().map(|&(other, ours)| (other.to_owned(), ours)).chain(labelled);
+    let same = words.find(|(other, ours)| *other == word && known.contains(ours));
+    let expected = match same.map(|(_, ours)| ours).or_else(|| nearest(name, known.iter().copied())) {
         Some(near) => format!("`{near}`"),
         None => alternatives(known),
     };

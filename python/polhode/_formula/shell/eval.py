@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import sys
 from collections.abc import Iterator
 from typing import Any, BinaryIO, NamedTuple
 
 from polhode._formula.agreement import Agreement
-from polhode._formula.shell.session import Answer, LineError, Session, text_of, without_comment
+from polhode._formula.shell.session import Answer, LineError, Session, after_let, text_of, without_comment
 from polhode._support.files import UnreadableError
 
 OK, FALSE, BAD_INPUT = 0, 1, 3
 
 # Longer lines, in bytes, are refused.
 _LONGEST = 100_000
-_LET = re.compile(r"let\s+")
 
 
 class Line(NamedTuple):
@@ -61,9 +59,8 @@ def _answer(session: Session, line: Line) -> Answer | None:
     """Return the answer to a line; None for an assignment."""
     if line.mistake:
         raise line.mistake
-    let = _LET.match(line.text)
-    start = let.end() if let and not line.assigns else 0
-    answer = session.run(line.text, start, bool(line.assigns or let))
+    start = 0 if line.assigns else after_let(line.text)
+    answer = session.run(line.text, start, line.assigns or start > 0)
     return None if answer.name else answer
 
 

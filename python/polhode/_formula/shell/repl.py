@@ -11,7 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from polhode._formula.formula import Formula
-from polhode._formula.shell.session import FUNCTIONS, LineError, Session, text_of, without_comment
+from polhode._formula.shell.session import (
+    FUNCTIONS,
+    LineError,
+    Session,
+    after_let,
+    text_of,
+    without_comment,
+)
 from polhode._support.files import write_atomically
 
 _PROMPT = "> "
@@ -49,11 +56,17 @@ class Prompt:
             ":help": lambda _line, _start: _HELP,
             ":quit": self._quit,
         }
+        # As at other prompts, unless they are names of values.
+        self._words = {"help": ":help", "exit": ":quit", "quit": ":quit"}
 
     def answer(self, line: str) -> str:
         """Return the output of a line; raise LineError for an error in it, EOFError to leave."""
+        plain = line.strip().removesuffix("()")
+        if plain in self._words and plain not in self.session.names:
+            line = self._words[plain]
         if not line.startswith(":"):
-            answer = self.session.run(line)
+            start = after_let(line)
+            answer = self.session.run(line, start, assigns=True if start else None)
             return "" if answer.name else text_of(answer.value)
         word = line.split()[0]
         command = self._commands.get(word)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
@@ -18,6 +19,8 @@ FUNCTIONS = (
 )
 
 T = TypeVar("T")
+
+_LET = re.compile(r"let\s+")
 
 
 class LineError(Exception):
@@ -181,6 +184,12 @@ def _given(functions: dict[str, tuple[str, str]], values: Mapping[str, Any]) -> 
 def canonical(name: str) -> str | None:
     """Return the canonical spelling of a name, ``a1`` for ``a_1``; None if it is not a name."""
     return _native.canonical(name.strip())
+
+
+def after_let(line: str) -> int:
+    """Return where the assignment begins in ``let name = …``; 0 without ``let``."""
+    let = _LET.match(line)
+    return let.end() if let else 0
 
 
 def without_comment(line: str) -> str:

@@ -63,7 +63,7 @@ impl Reader<'_> {
         }
         for (i, atom) in atoms.iter().enumerate() {
             let item = self.atom(atom, next.is_some() && i + 1 == atoms.len());
-            let item = item.ok_or_else(|| self.unknown(token.span, atoms))??;
+            let item = item.ok_or_else(|| self.unknown(token, atoms, items))??;
             let space = token.space && i == 0;
             items.push(Token { item, reversed: atom.reversed, span: atom.span, space });
         }
@@ -186,7 +186,7 @@ impl Reader<'_> {
     }
 
     /// The error for a name without a value, which was also read letter by letter.
-    fn unknown(&self, span: Span, atoms: &[Atom]) -> Error {
+    fn unknown(&self, token: &Token, atoms: &[Atom], before: &[Token]) -> Error {
         let word: String = atoms.iter().map(|atom| &atom.name[..]).collect();
         let mut message = format!("{} has no value", quote(&word));
         if atoms.len() > 1 {
@@ -207,10 +207,13 @@ impl Reader<'_> {
             let more = if known.len() > 8 { ", …" } else { "" };
             message += &format!("; names with values: {}{more}", known[..known.len().min(8)].join(", "));
         }
-        if word == "x" {
+        let after_factor = before.last().is_some_and(|last| {
+            matches!(last.item, Item::Name(_) | Item::Blade(_) | Item::Pseudoscalar | Item::Close(_))
+        });
+        if word == "x" && token.space && after_factor {
             message += ". Write the cross product as `a ⨯ b` or `cross(a, b)`";
         }
-        Error::new(span, message)
+        Error::new(token.span, message)
     }
 }
 

@@ -48,6 +48,8 @@ fn errors_have_messages_and_places() {
         ("2 30'", "two numbers", "2 30"),
         ("α 30'", "a prime means a derivative", "'"),
         ("a**2", "write a power as `A^2`", "**"),
+        ("√2", "`sqrt(A)`", "√"),
+        ("a & b", "join and meet are methods", "&"),
         ("⟨M⟩_4", "3-d space has grades 0 to 3", "4"),
         ("⟨M⟩_x", "expected a grade", "x"),
         ("e4", "the basis vectors are e1 to e3", "e4"),

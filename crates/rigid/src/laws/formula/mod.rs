@@ -154,22 +154,18 @@ impl Purpose {
         let listed: Vec<String> = (0..4).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect();
         let s = if listed.len() == 1 { "" } else { "s" };
         let remedy = match (self, grades) {
-            (Purpose::Torque(_), VECTOR) => {
-                "this is a vector; the torque with the axial vector v is the bivector `I v`".to_owned()
-            }
-            (Purpose::Force, Grades::BIVECTOR) => {
-                "this is a bivector; the axial vector of a bivector B is `-I B`".to_owned()
-            }
+            (Purpose::Torque(_), VECTOR) => "the torque with the axial vector v is `I v`".to_owned(),
+            (Purpose::Force, Grades::BIVECTOR) => "the axial vector of a bivector B is `-I B`".to_owned(),
             (Purpose::Force, Grades(0b1010)) => {
                 "`x` is the position, a cross product `cross(a, b)`; the vector part is `⟨…⟩_1`".to_owned()
             }
             _ if grades.contains(grade) => format!("its {wanted} part is `⟨…⟩_{grade}`"),
-            (Purpose::Torque(_), _) => "such as `a∧b`, or `I v` for an axial vector v".to_owned(),
-            (Purpose::Force, _) => "such as `-k v`".to_owned(),
-            (Purpose::Event, _) => "such as a component, `x·e3`, or a size, `norm(v) - 2`".to_owned(),
+            (Purpose::Torque(_), _) => "write `a∧b`, or `I v` for an axial vector v".to_owned(),
+            (Purpose::Force, _) => "write a vector such as `-k v`".to_owned(),
+            (Purpose::Event, _) => "write a component, `x·e3`, or a size, `norm(v) - 2`".to_owned(),
         };
         let listed = listed.join(", ");
-        format!("{} is a {wanted}, grade {grade}; this has the grade{s} {listed}: {remedy}", self.name())
+        format!("{} is a {wanted}, grade {grade}; this has the grade{s} {listed}; {remedy}", self.name())
     }
 }
 

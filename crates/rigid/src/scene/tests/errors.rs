@@ -47,6 +47,22 @@ fn all_errors_of_a_file_are_reported_in_order() {
 }
 
 #[test]
+fn words_of_other_programs_have_their_names_here() {
+    assert_eq!(
+        errors_with("duration = 10", "duration = 10\ndt = 1\nmethod = 'RK45'"),
+        ["7:1: unknown field `dt`, expected `interval`", "8:10: unknown method `RK45`, expected `dop853`"]
+    );
+    assert_eq!(
+        errors_with("[run]", "rates = 1\n[torque]\ngravity = 9.81\nwheel = [1, 2, 3]\n[run]"),
+        [
+            "5:1: unknown field `rates`, expected `spin`",
+            "7:1: unknown field `gravity`, expected `heavy`",
+            "8:1: unknown field `wheel`, expected `gyrostat`"
+        ]
+    );
+}
+
+#[test]
 fn fields_that_exclude_each_other_are_reported_at_the_second() {
     assert_eq!(
         errors_with("moments = [3, 2, 1]", "moments = [3, 2, 1]\nsolid = 'box'"),

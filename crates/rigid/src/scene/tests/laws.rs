@@ -132,7 +132,7 @@ fn errors_in_laws_have_a_place() {
         ("torque_body = '-k Ω'", "6:17: `k` has no value"),
         ("torque_body = 'e1 + R'", "6:16: "),
         ("torque_body = '3 kg (e1∧e2'", "6:21: "),
-        ("torque_body = '~R e3 R'", "6:16: a torque is a bivector, grade 2; this has the grade 1: "),
+        ("torque_body = '~R e3 R'", "6:16: a torque is a bivector, grade 2; this has the grade 1; "),
         ("torque_body = 'Ω = Ω'", "6:16: an equation has no value; write one side, which is a torque"),
         ("torque_body = '2 t Ω'", "6:18: `t` is a unit and a name here; for the name write `2*t`"),
         ("torque_space = 3", "6:16: expected a string, found an integer"),

@@ -13,8 +13,8 @@ GB = 10**9
 @pytest.fixture
 def system(tmp_path, monkeypatch):
     """Write files of a fake /proc and /sys/fs/cgroup."""
-    monkeypatch.setattr(_memory, "_PROC", tmp_path / "proc")
-    monkeypatch.setattr(_memory, "_CGROUP", tmp_path / "cgroup")
+    monkeypatch.setattr(_memory, "_PROC", str(tmp_path / "proc"))
+    monkeypatch.setattr(_memory, "_CGROUP", str(tmp_path / "cgroup"))
 
     def write(**files):
         for name, text in files.items():

@@ -16,8 +16,8 @@ HUGE = 10**12
 def _little_memory(tmp_path, monkeypatch):
     """A machine with 1 GB of free memory."""
     (tmp_path / "meminfo").write_text("MemAvailable: 1000000 kB\n")
-    monkeypatch.setattr(memory, "_PROC", tmp_path)
-    monkeypatch.setattr(memory, "_CGROUP", tmp_path)
+    monkeypatch.setattr(memory, "_PROC", str(tmp_path))
+    monkeypatch.setattr(memory, "_CGROUP", str(tmp_path))
 
 
 @pytest.mark.parametrize("name", CALLS)

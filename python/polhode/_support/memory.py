@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 
 from polhode import _native
 
-_PROC = Path("/proc")
-_CGROUP = Path("/sys/fs/cgroup")
+# Paths are texts here: to import pathlib would take as long as the rest of polhode.
+_PROC = "/proc"
+_CGROUP = "/sys/fs/cgroup"
 _SMALL = 1 << 26  # bytes; asking the system takes longer than computing a result of this size
 
 
@@ -49,7 +49,7 @@ def size(count: int) -> str:
 
 
 def _of_machine() -> Iterator[int]:
-    for line in _lines(_PROC / "meminfo"):
+    for line in _lines(f"{_PROC}/meminfo"):
         if line.startswith("MemAvailable:"):
             yield 1024 * int(line.split()[1])
 
@@ -60,31 +60,34 @@ def _of_groups() -> Iterator[int]:
     The file names a group by its path from the root of the hierarchy. In a container that root may not be
     visible and the group itself is mounted, so paths that do not exist are skipped.
     """
-    for line in _lines(_PROC / "self" / "cgroup"):
+    for line in _lines(f"{_PROC}/self/cgroup"):
         controllers, path = line.split(":", 2)[1:]
-        inner = Path(path.strip().lstrip("/"))
+        inner = path.strip()
         if not controllers:
-            for root in (_CGROUP, _CGROUP / "unified"):
+            for root in (_CGROUP, f"{_CGROUP}/unified"):
                 yield from _left(root, inner, ("memory.max", "memory.current", "inactive_file"))
         elif "memory" in controllers.split(","):
             names = ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
-            yield from _left(_CGROUP / "memory", inner, names)
+            yield from _left(f"{_CGROUP}/memory", inner, names)
 
 
-def _left(root: Path, inner: Path, names: tuple[str, str, str]) -> Iterator[int]:
+def _left(root: str, inner: str, names: tuple[str, str, str]) -> Iterator[int]:
     limit_name, usage_name, cache_name = names
-    for group in (root / inner, *(root / parent for parent in inner.parents)):
-        limits, usages = _lines(group / limit_name), _lines(group / usage_name)
+    folders = [part for part in inner.split("/") if part]
+    for depth in range(len(folders), -1, -1):
+        group = "/".join([root, *folders[:depth]])
+        limits, usages = _lines(f"{group}/{limit_name}"), _lines(f"{group}/{usage_name}")
         # "max" means no limit.
         if limits and usages and limits[0].strip().isdecimal():
-            entries = (line.split() for line in _lines(group / "memory.stat"))
+            entries = (line.split() for line in _lines(f"{group}/memory.stat"))
             cache = sum(int(entry[1]) for entry in entries if entry and entry[0] == cache_name)
             yield max(0, int(limits[0]) - int(usages[0]) + cache)
 
 
-def _lines(path: Path) -> list[str]:
+def _lines(path: str) -> list[str]:
     try:
-        return path.read_text().splitlines()
+        with open(path) as file:
+            return file.read().splitlines()
     except OSError:
         return []
 

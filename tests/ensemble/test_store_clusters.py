@@ -5,6 +5,7 @@ import json
 import pickle
 import random
 import signal
+import socket
 import sys
 import time
 from types import SimpleNamespace
@@ -88,7 +89,12 @@ def resumed(folder, store):
 
 
 def test_local_processes_fill_a_store_with_the_same_bits(folder, serial, tmp_path):
-    done = polhode("run", folder / "a.toml", "-o", tmp_path / "a.zarr", "--cluster", "local:2")
+    """Also while the usual port of Dask is in use."""
+    with socket.socket() as other:
+        with contextlib.suppress(OSError):
+            other.bind(("127.0.0.1", 8787))
+            other.listen()
+        done = polhode("run", folder / "a.toml", "-o", tmp_path / "a.zarr", "--cluster", "local:2")
     assert (done.returncode, done.stderr) == (0, "")
     assert content(tmp_path / "a.zarr") == serial
     assert status(tmp_path / "a.zarr")["running"] == []

@@ -212,6 +212,14 @@ def test_the_command_reports_points(tmp_path):
     assert "must not be negative" in done.stderr + done.stdout
 
 
+@pytest.mark.parametrize(("variation", "drawn"), [("", False), ("spin = { normal = 0.1 }\n", True)])
+def test_the_summary_names_the_seed_of_random_variations(tmp_path, variation, drawn):
+    (tmp_path / "a.toml").write_text(BASE + GRID + variation)
+    done = polhode("run", tmp_path / "a.toml")
+    assert "6 at 6 points" in done.stdout
+    assert ("drawn from seed" in done.stdout) is drawn
+
+
 def test_files_have_the_given_values(read, tmp_path):
     pytest.importorskip("h5netcdf")
     xr = pytest.importorskip("xarray")

@@ -357,7 +357,9 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
             names = [] if many else [name for name in file if name in _READ or name.startswith("event_")]
             fields = {name: values(name, file[name]) for name in names}
     except DAMAGED as error:
-        raise OSError(f"{path} cannot be read as a netCDF file: {error}") from error
+        others = os.fsdecode(path).lower().endswith((".csv", ".parquet", ".aem", ".bc"))
+        remedy = "; use polhode.io.read" if others else ""
+        raise OSError(f"{path} cannot be read as a netCDF file: {error}{remedy}") from error
     if many:
         raise ValueError(
             f"{path} holds a batch of bodies; read it with xarray.open_dataset, or take one body: "

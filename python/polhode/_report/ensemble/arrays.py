@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +22,26 @@ META = "zarr.json"
 def zarr() -> Any:
     """Return the library."""
     return optional("zarr", "zarr", "a Zarr store")
+
+
+@contextlib.contextmanager
+def new_group(folder: Path) -> Iterator[Any]:
+    """Yield a new group, whose files are written to a folder at the end.
+
+    Until then it is in memory: the library writes files in threads of its own, and after an error in one of
+    them the others would go on in a folder that its owner removes.
+    """
+    files: dict[str, Any] = {}
+    yield _group(files)
+    for name, content in files.items():
+        file = folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(content.as_numpy_array())
+
+
+def _group(files: dict[str, Any]) -> Any:
+    """Return a new group, whose files become items of a dict."""
+    return zarr().open_group(zarr().storage.MemoryStore(files), mode="w", zarr_format=3)
 
 
 def new_array(
@@ -88,8 +110,7 @@ def _metadata(
     labels: str,
 ) -> bytes:
     files: dict[str, Any] = {}
-    group = zarr().open_group(zarr().storage.MemoryStore(files), mode="w", zarr_format=3)
-    _new(group, name, shape, chunks, dtype, dims, json.loads(labels))
+    _new(_group(files), name, shape, chunks, dtype, dims, json.loads(labels))
     return bytes(files[f"{name}/{META}"].to_bytes())
 
 

@@ -61,6 +61,8 @@ def connected(address: str) -> Iterator[Any]:
                     threads_per_worker=1,
                     processes=True,
                     dashboard_address=None,
+                    # Dask serves HTTP without a dashboard too, on port 8787 if none is given.
+                    scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
                     silence_logs=logging.CRITICAL,
                 )
                 opened.enter_context(cluster)

@@ -22,6 +22,7 @@ from polhode._report.ensemble.arrays import (
     chunk_of,
     metadata_of,
     new_array,
+    new_group,
     write_chunk,
     write_labels,
     zarr,
@@ -240,14 +241,14 @@ class EnsembleStore:
             return False
         found = [(body, message) for mark in marks for body, _, message in mark["failures"]]
         with self._part() as part:
-            group = zarr().open_group(part, mode="w", zarr_format=3)
-            if found:
-                numbers, (name, texts, description) = failures(found)
-                shape = numbers.values.shape
-                new_array(group, numbers, shape, shape, ("failure",))[:] = numbers.values
-                write_labels(group, name, texts, "failure", {"long_name": description})
-            for over in shared():
-                new_array(group, over, over.values.shape, over.values.shape, over.dims)[...] = over.values
+            with new_group(part) as group:
+                if found:
+                    numbers, (name, texts, description) = failures(found)
+                    shape = numbers.values.shape
+                    new_array(group, numbers, shape, shape, ("failure",))[:] = numbers.values
+                    write_labels(group, name, texts, "failure", {"long_name": description})
+                for over in shared():
+                    new_array(group, over, over.values.shape, over.values.shape, over.dims)[...] = over.values
             self._publish(part, _files(part))
         self.consolidate({"bodies_complete": self.number})
         return True
@@ -331,15 +332,15 @@ def identity_of(scene: Scene) -> dict[str, Any]:
 
 def _write_shared(part: Path, scene: Scene) -> None:
     """Write the variables that all bodies share, labels and numbers of bodies included."""
-    group = zarr().open_group(part, mode="w", zarr_format=3)
-    for name, labels in LABELS.items():
-        write_labels(group, name, list(labels), name, {})
     assert scene.ensemble is not None
     numbers = np.arange(scene.ensemble.number)
     body = Variable("body", ("body",), numbers, "1", "number of the body")
-    for shared in (body, *layout_of(scene).shared()):
-        values = np.asarray(shared.values)
-        new_array(group, shared, values.shape, values.shape, shared.dims)[...] = values
+    with new_group(part) as group:
+        for name, labels in LABELS.items():
+            write_labels(group, name, list(labels), name, {})
+        for shared in (body, *layout_of(scene).shared()):
+            values = np.asarray(shared.values)
+            new_array(group, shared, values.shape, values.shape, shared.dims)[...] = values
 
 
 def _codes(trajectory: Trajectory | ReducedBlock) -> Array:

@@ -48,6 +48,7 @@ def summary(records: Records) -> dict[str, Any]:
         "ensemble": {
             "number": scene.ensemble.number,
             "seed": scene.ensemble.seed,
+            "drawn": scene.ensemble.drawn,
             "varied": dict(scene.ensemble.varied),
             **({} if scene.ensemble.points is None else {"points": scene.ensemble.points}),
             "levels": list(LEVELS),
@@ -149,7 +150,8 @@ def as_text(summary: dict[str, Any]) -> str:
 
 def _drawn(ensemble: dict[str, Any]) -> Iterator[Row]:
     points = f" at {ensemble['points']} points" if "points" in ensemble else ""
-    yield "bodies", f"{ensemble['number']}{points}, drawn from seed {ensemble['seed']}"
+    drawn = f", drawn from seed {ensemble['seed']}" if ensemble["drawn"] else ""
+    yield "bodies", f"{ensemble['number']}{points}{drawn}"
     yield from ensemble["varied"].items()
     if not ensemble["varied"]:
         yield "", "identical: [ensemble] varies nothing"
@@ -193,7 +195,8 @@ def _quantiles(motion: dict[str, Any]) -> Iterator[Row]:
 
 
 def _degrees(x: float) -> str:
-    return f"{np.degrees(x):.4g}°"
+    # Angles of equal attitudes differ from 0 by rounding.
+    return f"{np.degrees(x) if abs(x) > 1e-14 else 0.0:.4g}°"
 
 
 def _five_digits(x: float) -> str:

@@ -163,3 +163,17 @@ def test_meshes_of_scenes_name_the_key_of_the_unit(unit, amount, parts, tmp_path
     assert ("\n3 | mesh = " in done.stderr) == bool(parts)
     (facts,) = json.loads(check("--json", "a.toml").stdout)
     assert len(facts.get("warnings", [])) == bool(parts)
+
+
+def test_bare_angles_beyond_a_turn_are_doubted(tmp_path, check):
+    scene = (
+        "[body]\nmoments = [1, 2, 2.5]\n[initial]\n"
+        'attitude = { plane = "e1e2", angle = 30 }  # angle = 40\n'
+        'spin = { vector = [0, 0, 1] }\n[run]\nduration = "1 s"\n'
+    )
+    (tmp_path / "degrees.toml").write_text(scene)
+    (tmp_path / "radians.toml").write_text(scene.replace("30", "-3.1"))
+    done = check("degrees.toml", "radians.toml")
+    assert done.returncode == 0
+    assert 'degrees.toml:4:38: warning: 30 rad is more than a turn; for degrees write "30 deg"' in done.stderr
+    assert done.stderr.count("warning") == 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import re
 import sys
 from collections.abc import Iterator
@@ -29,6 +30,8 @@ _ROBOTS = (".urdf", ".sdf", ".xml", ".mjcf", ".world", ".xacro")
 # Meshes longer than this, in m, or thinner than this, in kg/m³, are questioned. A balloon satellite, counted
 # as full, has 0.005 kg/m³.
 _LONGEST, _THINNEST = 100.0, 1e-3
+# An angle in a scene that is a bare number, and so in radians.
+_ANGLE = re.compile(r"\bangle\s*=\s*([+-]?[0-9][0-9_]*(?:\.[0-9_]+)?(?:[eE][+-]?[0-9]+)?)")
 
 
 @dataclass
@@ -103,7 +106,19 @@ def _scene(path: str) -> Finding:
         wanted = bytes_of_file(scene) if scene.ensemble.keep else scene.result_bytes
         facts |= {"bodies": scene.ensemble.number, "bytes": wanted}
         words += f", {scene.ensemble.number} bodies, {size(wanted)} of results"
-    return Finding(facts, [words], warnings=list(_doubts_of_scene(scene)))
+    return Finding(facts, [words], warnings=[*_doubts_of_angles(scene), *_doubts_of_scene(scene)])
+
+
+def _doubts_of_angles(scene: Scene) -> Iterator[str]:
+    """Yield the angles without a unit that exceed a turn; they are probably in degrees."""
+    from polhode._mechanics.robots.document import Source
+
+    lines = scene.text.split("\n")
+    for number, line in enumerate(lines, 1):
+        for angle in _ANGLE.finditer(line):
+            if "#" not in line[: angle.start()] and abs(float(angle[1])) > 2 * math.pi:
+                words = f'{angle[1]} rad is more than a turn; for degrees write "{angle[1]} deg"'
+                yield Source(str(scene.path), lines).error(number, angle.start(1), words, "warning")
 
 
 def _doubts_of_scene(scene: Scene) -> Iterator[str]:

@@ -319,10 +319,10 @@ def test_ctrl_c_leaves_the_old_film(name, scene, tmp_path):
     command = [POLHODE, "film", scene, "-o", target, "--seconds", "4000", "--size", "64x36", "--force"]
     with processes.start(command, start_new_session=True) as process:
         while len(list(tmp_path.iterdir())) < 3:
-            assert process.poll() is None
+            assert process.poll() is None, process.communicate(timeout=30)
             time.sleep(0.05)
         while not any(b"--type=renderer" in command for command in descendants(process.pid).values()):
-            assert process.poll() is None
+            assert process.poll() is None, process.communicate(timeout=30)
             time.sleep(0.05)
         begun = descendants(process.pid)
         # As a terminal does: to the whole group.

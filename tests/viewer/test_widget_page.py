@@ -145,10 +145,17 @@ def test_a_scene_set_by_python_is_not_replaced_while_it_is_solved(shown):
     notebook = shown(INERTIA, START, duration=60)
     viewer = notebook.viewer
     slow = viewer.scene + '[torque]\nquadratic_damping = 0.1\n[method]\nname = "rk4"\nstep = "200 us"\n'
+    # The page itself toggles: the scene may be solved before another call reaches the page.
+    notebook.ask(
+        """model => {
+            const toggle = () => model.toggle('polhode');
+            model.solving.subscribe((solving) => solving && queueMicrotask(toggle));
+        }"""
+    )
+    before = viewer.shown["polhode"]
     viewer.scene = slow
     notebook.pass_on()
-    notebook.page.until("model.solving.value")
-    notebook.ask("model => model.toggle('polhode')")
+    notebook.page.until("model.shown.value.polhode !== before", before=before)
     notebook.quiet()
     assert viewer.scene == slow
     notebook.page.until("!model.solving.value")

@@ -121,9 +121,12 @@ _MODULES = ("event", "force", "io", "jax", "torque")
 _HABITS = {
     "Cl": "algebra",
     "MultiVector": "multivector",
+    "Quaternion": "Rotor",
     "Rotation": "Rotor",
     "RotationSpline": "RotorSpline",
     "Slerp": "slerp",
+    "load": "io.read, Trajectory.read and Scene.read",
+    "read": "io.read, Trajectory.read and Scene.read",
     **{
         name: f"Multivector.{name}"
         for name in ("dot", "exp", "inverse", "log", "norm", "reverse", "sqrt", "wedge")

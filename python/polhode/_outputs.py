@@ -17,6 +17,7 @@ from polhode._mechanics.simulate import simulate as simulate
 from polhode._mechanics.simulate import simulate_blocks as simulate_blocks
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.scene import Scene
+from polhode._support.calls import explains_calls
 from polhode._viewer.notebook import view as view
 
 if TYPE_CHECKING:
@@ -354,11 +355,13 @@ def run_into(
     return dataset
 
 
+# Errors and help name what the user calls; `view` here is the function of the package.
+view_of.__name__ = view_of.__qualname__ = "view"
 for _method in (to_xarray, to_dataframe, save, plot, film, _repr_html_):
     setattr(Trajectory, _method.__name__, _method)
 setattr(Trajectory, "read", staticmethod(read))  # noqa: B010, declared for type checkers only
 for _kind in (Trajectory, Scene, ClosedForm):
-    setattr(_kind, "view", view_of)  # noqa: B010
+    setattr(_kind, "view", explains_calls(view_of))  # noqa: B010
 setattr(Scene, "reduce", reduce)  # noqa: B010
 setattr(Scene, "_run_into", run_into)  # noqa: B010
 for _public in (Trajectory, Scene, FreeMotion, SymmetricTop, DampedTop, LagrangeTop, LarmorSphere):

@@ -199,7 +199,7 @@ def function(
     >>> motion.events[0].time.round(4)  # ln 2
     array([0.6931])
     """
-    given = function_of(f, "t, rotor, omega_body, position and velocity")
+    given = function_of(f, "t", "rotor", "omega_body", "position", "velocity")
     return _event("function", direction, terminal, given)
 
 

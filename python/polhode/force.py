@@ -203,7 +203,7 @@ def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Forc
     >>> ph.simulate(ball, thrown, [0, 1, 2], force=law).velocity["e1"].round(4)  # exp(-t/2)
     array([1.    , 0.6065, 0.3679])
     """
-    return _native_force("function", function_of(f, "t, position, velocity and rotor"))
+    return _native_force("function", function_of(f, "t", "position", "velocity", "rotor"))
 
 
 def _force(name: str, *values: Any) -> Force:

@@ -296,7 +296,7 @@ def magnetic(dipole: Any, field: Any, orbit: KeplerOrbit | None = None) -> Torqu
     own = vectors(dipole, "dipole")
     if not isinstance(own, tuple):
         raise ValueError(f"along an orbit the dipole must be a single vector, got batch shape {own.shape}")
-    met = field.moment if isinstance(field, DipoleField) else function_of(field, "t and position")
+    met = field.moment if isinstance(field, DipoleField) else function_of(field, "t", "position")
     return _native_law("magnetic_on_orbit", own, orbit._numbers, met)
 
 
@@ -681,7 +681,7 @@ def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
     >>> motion.omega_body["e12"].round(4)  # exp(-0.5 t)
     array([1.    , 0.6065, 0.3679])
     """
-    return _native_law("function", function_of(f, "t, rotor and omega_body"))
+    return _native_law("function", function_of(f, "t", "rotor", "omega_body"))
 
 
 def settled(bodies: Any, torque: Torque | None) -> tuple[Any, Torque | None]:

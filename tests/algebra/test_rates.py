@@ -100,8 +100,10 @@ def test_batches_of_bodies():
 
 def test_wrong_samples_raise():
     rates = np.ones((3, 3))
-    with pytest.raises(ValueError, match="times must be 3 finite numbers, one for each rate"):
+    with pytest.raises(ValueError, match=r"times must be 3 numbers, one for each rate, got shape \(2,\)"):
         ph.attitude_from_rates([0, 1], rates)
+    with pytest.raises(ValueError, match="the time at index 1 is nan"):
+        ph.attitude_from_rates([0, np.nan, 2], rates)
     with pytest.raises(ValueError, match="2 at index 1 precedes 1"):
         ph.attitude_from_rates([0, 2, 1], rates)
     with pytest.raises(ValueError, match=r"the rate at index \(1,\) is not finite"):

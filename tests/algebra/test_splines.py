@@ -145,7 +145,7 @@ def test_invalid_times_and_rotors_raise():
         with pytest.raises(ValueError, match=r"rotors of shape \(n,\), n >= 2"):
             ph.RotorSpline([0, 1], bad)
     for bad in ([0, 1], [[0, 1, 2]], [0, 1, np.nan], 3):
-        with pytest.raises(ValueError, match="times must be 3 finite numbers"):
+        with pytest.raises(ValueError, match=r"times must be (3 numbers|finite, but .* index 2 is nan)"):
             ph.RotorSpline(bad, three)
     with pytest.raises(ValueError, match="2 at index 1 precedes 2"):
         ph.RotorSpline([0, 2, 2], three)

@@ -324,13 +324,30 @@ def test_the_package_lists_public_names_only():
         (lambda: (1 + e1).mag2(), "norm_squared"),
         (lambda: (e1 * e2).e12, 'A\\["e12"\\]'),
         (lambda: ph.Rotor.concatenate, "ph.concatenate"),
+        (lambda: ph.Rotor.align(e1, e2), "from_vectors"),
+        (lambda: ph.Rotor.identity().axis, "to_rotation_vector"),
+        (lambda: ph.Rotor.identity().matrix, "to_matrix"),
+        (lambda: ph.Rotor.identity().w, "to_quaternion"),
+        (lambda: e1.x, 'A\\["e1"\\]'),
+        (lambda: e1.angle(e2), r"Rotor\.from_vectors\(a, b\)\.angle"),
+        (lambda: e1.cross(e2), "ph.cross"),
+        (lambda: ph.pga(3).e12, 'blades\\["e12"\\]'),
+        (lambda: ph.pga(3).join, "P & Q"),
         (lambda: ph.Rotation, "polhode.Rotor"),
+        (lambda: ph.Quaternion, "polhode.Rotor"),
         (lambda: ph.exp, "polhode.Multivector.exp"),
     ],
 )
 def test_names_of_other_libraries_are_errors_that_name_ours(use, remedy):
     with pytest.raises(AttributeError, match=f"; (write|see) .*{remedy}"):
         use()
+
+
+@pytest.mark.parametrize("kind", [ph.Algebra, ph.PGA, ph.CGA])
+@pytest.mark.parametrize("signature", [(3,), (3, 0, 1)])
+def test_algebras_have_no_public_constructor(kind, signature):
+    with pytest.raises(TypeError, match=r"write algebra\(p, q, r\), pga\(n\) or cga\(n\)"):
+        kind(*signature)
 
 
 def test_names_of_other_libraries_are_not_listed():

@@ -391,6 +391,9 @@ def test_inertias_compare_and_hash_by_value():
 
 def test_repr():
     assert "1, 2, 3 kg m²" in repr(ph.Inertia.from_principal_moments(1, 2, 3))
+    # A rounding error beside a component of the centre is left out.
+    moved = ph.Body.sphere(1, mass=2).moved(position=[3.0, 1e-16, 0.0])
+    assert "centre of mass 3 e1 m" in repr(moved)
     text = repr(ph.Body.sphere(1, mass=2))
     assert "2 kg" in text
     assert "0.8" in text

@@ -250,9 +250,10 @@ def test_a_shorter_pulse_needs_max_step_or_breaks(how):
 def test_a_fixed_step_too_long_for_its_law_is_reported(many):
     omega = [[1, 2, 3], [1, 2, 3]] if many else [1, 2, 3]
     state, law = ph.State(ONE, omega), ph.torque.formula("sin(100 t) e1e2")
-    with pytest.warns(RuntimeWarning, match=r"`sin\(100 t\) e1e2` changes too fast for step = 0.1 s"):
+    with pytest.warns(RuntimeWarning, match=r"`sin\(100 t\) e1e2` changes too fast for step = 0.1 s") as seen:
         found = ph.simulate(BODY, state, [10.0], law, method="rk4", step=0.1)
     assert len(found.certificate.warnings) == 1
+    assert seen[0].filename == __file__  # the line that called, not one of the package
     # A sixteenth of a turn of the sine in a step is followed.
     assert not ph.simulate(BODY, state, [10.0], law, method="rk4", step=0.004).certificate.warnings
 

@@ -317,7 +317,7 @@ def failing(t, x, v, R):
     [
         (F.function(failing), OwnError, ["enough"]),
         (failing, OwnError, ["enough"]),
-        (lambda t: 0, TypeError, ["4 were given"]),
+        (lambda t: 0, TypeError, ["called with t, position, velocity and rotor", "lambda"]),
         (lambda t, x, v, R: [1, 2], ValueError, ["the force", "t = 0 s", "3 components", "(2,)"]),
         (lambda t, x, v, R: [1, np.nan, 2], ValueError, ["t = 0 s", "force", "[1.0, NaN, 2.0]"]),
         (lambda t, x, v, R: ph.e1 ^ ph.e2, TypeError, ["t = 0 s", "vector"]),

@@ -201,6 +201,15 @@ def test_bad_steps():
         stepper.step(0.1, np.zeros((2, 3)))
     with pytest.raises(TypeError, match="bivector"):
         stepper.step(0.1, ph.e1)
+    for law in (ph.torque.damping(0.1), lambda t, rotor, omega_body: -omega_body):
+        with pytest.raises(TypeError, match=r"give a law or a function to Stepper\(body, state, torque\)"):
+            stepper.step(0.1, law)
+    with pytest.raises(ValueError, match=r"the torque is \[0\.0, NaN, 1\.0\]; it must be finite"):
+        stepper.step(0.1, [0, np.nan, 1])
+    two = ph.Stepper(BODY, ph.State(ph.Rotor.random(2, rng=1), [0, 0, 1]))
+    with pytest.raises(ValueError, match=r"at index \(1,\): the torque is \[inf, 0\.0, 0\.0\]"):
+        two.step(0.1, [[0, 0, 0], [np.inf, 0, 0]])
+    assert stepper.time == two.time == 0
 
 
 def test_exceptions_of_functions_are_raised():

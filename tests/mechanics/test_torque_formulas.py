@@ -252,6 +252,13 @@ def broken(t, rotor, omega):
     raise SensorError(f"no signal at {t}")
 
 
+@pytest.mark.parametrize("wrong", [lambda t, state: [0, 0, 1], lambda rotor: None])
+def test_a_function_takes_three_arguments(wrong):
+    with pytest.raises(TypeError, match="called with t, rotor and omega_body, which <lambda> does not take"):
+        ph.torque.function(wrong)
+    assert ph.torque.function(max) == ph.torque.function(max)  # a signature that Python does not know
+
+
 def test_exceptions_of_a_function_pass_through():
     law = T.function(broken)
     for _ in range(2):

@@ -288,6 +288,11 @@ def _turned(law, F):
     return law
 
 
+def test_a_row_of_gains_for_bodies_has_a_remedy():
+    with pytest.raises(ValueError, match=r"got shape \(4,\); for a number of each body write kp\[:, None\]"):
+        ph.torque.pd_control(np.ones(4), 1.0)
+
+
 def test_gains_along_body_axes_in_a_body_whose_principal_axes_are_others():
     """`viscous_damping` and `pd_control` act along body axes, for any inertia."""
     F = ph.Rotor.from_components([1, 2, 3, 4])

@@ -172,7 +172,12 @@ def test_an_unpickled_motion_has_its_methods_in_a_new_process():
 
 def test_names_of_other_libraries_are_errors_that_name_ours():
     motion = ph.simulate(BODY, START, [0.0, 1.0])
-    for name, ours in (("t", "time"), ("omega", "omega_body"), ("to_pandas", "to_dataframe")):
+    for name, ours in (
+        ("t", "time"),
+        ("attitude", "rotor"),
+        ("omega", "omega_body"),
+        ("to_pandas", "to_dataframe"),
+    ):
         with pytest.raises(AttributeError, match=f"no attribute '{name}'; see {ours}"):
             getattr(motion, name)
     with pytest.raises(IndexError, match=r"of one motion is at\(t\)"):
@@ -183,5 +188,5 @@ def test_names_of_other_libraries_are_errors_that_name_ours():
         ph.State([1, 0, 0, 0], [0, 0, 1])
     with pytest.raises(TypeError, match=r"use Inertia\.from_principal_moments"):
         ph.Inertia(1, 2, 3)
-    with pytest.raises(TypeError, match=r"see Inertia\.from_matrix"):
+    with pytest.raises(TypeError, match=r"see Inertia\.from_principal_moments, from_matrix"):
         ph.Body(1.0, np.eye(3))

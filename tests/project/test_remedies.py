@@ -63,3 +63,151 @@ def test_a_missing_scene_is_a_scene_error_too(tmp_path):
         done = polhode(*command, "absent.toml", cwd=tmp_path)
         assert done.returncode == 3
         assert done.stderr == "absent.toml: error: no such file\n"
+
+
+TURNED, RATE = ph.Rotor.identity(), [0, 0, 1]
+START = ph.State(TURNED, RATE)
+
+
+@pytest.mark.parametrize(
+    ("call", "wrong", "ours"),
+    [
+        (lambda: ph.State(attitude=TURNED, omega_body=RATE), "State .*'attitude'", "rotor="),
+        (lambda: ph.State(TURNED, omega=RATE), "State .*'omega'", "omega_body= or omega_space="),
+        (lambda: ph.State(TURNED, RATE, positon=0), "State .*'positon'", "position="),
+        (lambda: ph.Body(2.0, moments=BODY), "Body .*'moments'", "inertia="),
+        (lambda: ph.Body.box(size=[1, 2, 3], mass=1), r"Body\.box .*'size'", "lengths="),
+        (lambda: ph.Body.cylinder(1, h=1, mass=1), r"Body\.cylinder .*'h'", "height="),
+        (lambda: ph.Body.from_mesh("a.stl", units="mm", mass=1), r"Body\.from_mesh .*'units'", "scale="),
+        (lambda: ph.simulate(BODY, START, [1.0], dt=0.1), "simulate .*'dt'", "step="),
+        (lambda: ph.simulate(BODY, START, t_end=1.0), "simulate .*'t_end'", "times="),
+        (lambda: ph.simulate_blocks(BODY, START, [1.0], tol=1e-9), "simulate_blocks .*'tol'", "rtol="),
+        (lambda: ph.Stepper(BODY, START, dt=0.1), "Stepper .*'dt'", "step="),
+        (lambda: ph.Rotor.random(3, seed=1), r"Rotor\.random .*'seed'", "rng="),
+        (lambda: ph.fit(quaternion=GRID.rotor), "fit .*'quaternion'", "attitude="),
+    ],
+)
+def test_unknown_arguments_are_errors_that_name_ours(call, wrong, ours):
+    with pytest.raises(TypeError, match=f"^{wrong}; write {ours}$"):
+        call()
+
+
+@pytest.mark.parametrize("shown", [GRID, ph.FreeMotion(BODY, TURNED, RATE)])
+def test_unknown_arguments_without_a_like_name_list_all(shown):
+    with pytest.raises(
+        TypeError, match=r"^view has no argument 'port'; its arguments are \(duration=None\)$"
+    ):
+        shown.view(port=3)
+    assert type(shown).view.__name__ == "view"
+
+
+@pytest.mark.parametrize(
+    ("call", "python", "arguments"),
+    [
+        (lambda: ph.State(), r"State\(\) missing .*'rotor'", r"\(rotor, omega_body=None, .*"),
+        (lambda: ph.FreeMotion(BODY, START), "FreeMotion.* missing .*", r"\(inertia, rotor, omega_body\)"),
+        (lambda: ph.simulate(BODY, START), "simulate.* missing .*'times'", r"\(body, state, times, .*"),
+        (
+            lambda: ph.Inertia.from_principal_moments([1, 2, 3]),
+            "Inertia.from_principal_moments.* missing .*",
+            r"\(i1, i2, i3\)",
+        ),
+        (
+            lambda: ph.Rotor.from_quaternion([1, 0, 0, 0]),
+            "Rotor.from_quaternion.* missing .*'order'",
+            r"\(q, \*, order, errors='raise'\), with order='wxyz' or 'xyzw'",
+        ),
+        (lambda: TURNED.to_quaternion("wxyz"), ".* takes 1 .*", r".*with order='wxyz' or 'xyzw'"),
+        (lambda: ph.Body.box(1, 2, 3, mass=1), ".* takes 1 .*", r"\(lengths, \*, mass=None, density=None\)"),
+    ],
+)
+def test_calls_with_too_few_or_too_many_arguments_list_all(call, python, arguments):
+    with pytest.raises(TypeError, match=f"^{python}; its arguments are {arguments}$"):
+        call()
+
+
+@pytest.mark.parametrize(
+    ("use", "ours"),
+    [
+        (lambda: ph.Body.cuboid([1, 2, 3], mass=1), r"a Body .*; write Body\.box\(lengths, mass=m\)"),
+        (lambda: ph.Body.sphere(1, mass=1).com, "a Body .*; write center_of_mass"),
+        (lambda: BODY.Ixx, "an Inertia .*; write matrix"),
+        (lambda: START.omega, "a State .*; write omega_body or omega_space"),
+        (lambda: ph.Scene.load("a.toml"), r"a Scene .*; write Scene\.read\(path\)"),
+        (lambda: ph.Trajectory.load("a.nc"), r"a Trajectory .*; write Trajectory\.read\(path\)"),
+        (lambda: ph.FreeMotion(BODY, TURNED, RATE).plot(), r"a FreeMotion .*; write view\(\), or .*"),
+        (lambda: GRID.kinetic_energy, "a Trajectory .*; see energy"),
+        (lambda: ph.load, r".*; see polhode\.io\.read, Trajectory\.read and Scene\.read"),
+    ],
+)
+def test_other_names_are_errors_that_name_ours(use, ours):
+    with pytest.raises(AttributeError, match=f"^{ours}$"):
+        use()
+
+
+def test_other_names_are_not_listed():
+    assert {"rotor", "omega_body", "omega_space"} <= {*dir(START)}
+    assert not {"omega", "quaternion"} & {*dir(START)}
+    assert "cuboid" not in dir(ph.Body.sphere(1, mass=1))
+
+
+def test_a_spline_with_the_rotors_first_names_the_order():
+    for rotors in (ph.Rotor.identity(2), [TURNED, TURNED]):
+        with pytest.raises(TypeError, match=r"RotorSpline\(times, rotors\)"):
+            ph.RotorSpline(rotors, [0.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("call", "remedy"),
+    [
+        (lambda: ph.stack(TURNED, TURNED), r"as in stack\(\[a, b\]\)"),
+        (lambda: ph.concatenate(TURNED, TURNED), r"as in concatenate\(\[a, b\]\)"),
+        (lambda: ph.simulate(BODY, [START, START], [1.0]), r"write State\(rotor, omega_body\), with arrays"),
+        (lambda: ph.Body.sphere(1, mass=1).moved([1, 0, 0]), "a displacement is position="),
+        (lambda: ph.Body(1.0, [1, 2, 3]), "see Inertia.from_principal_moments, from_matrix"),
+    ],
+)
+def test_arguments_of_another_type_name_the_form(call, remedy):
+    with pytest.raises(TypeError, match=remedy):
+        call()
+
+
+def test_euler_angles_numbered_as_in_aerospace_are_lettered():
+    with pytest.raises(ValueError, match="got '321'; write 'ZYX' for turns about body axes"):
+        ph.Rotor.from_euler("321", [0.1, 0.2, 0.3])
+
+
+def test_a_scene_without_its_suffix_is_named(tmp_path):
+    (tmp_path / "top.toml").write_text("")
+    with pytest.raises(FileNotFoundError, match=r"no such file; use .*top\.toml$"):
+        ph.Scene.read(tmp_path / "top")
+
+
+def test_a_table_read_as_netcdf_names_its_reader(tmp_path):
+    pytest.importorskip("h5py")
+    GRID[0, 0].save(tmp_path / "a.csv")
+    with pytest.raises(OSError, match=r"use polhode\.io\.read$"):
+        ph.Trajectory.read(tmp_path / "a.csv")
+    assert len(ph.io.read(tmp_path / "a.csv").time) == 3
+
+
+def test_errors_of_arguments_that_fit_stay():
+    with pytest.raises(ValueError, match="unknown method 'RK45'"):
+        ph.simulate(BODY, START, [1.0], method="RK45")
+    with pytest.raises(TypeError, match="rotor must be a Rotor, got list"):
+        ph.State(rotor=[1, 0, 0, 0], omega_body=RATE)
+
+
+@pytest.mark.parametrize(
+    ("kind", "remedy"),
+    [
+        (ph.Scene, r"ph\.Scene\.read\(path\)"),
+        (ph.Trajectory, r"ph\.simulate, or ph\.Trajectory\.read\(path\) for a file"),
+        (ph.Fit, r"ph\.fit"),
+        (ph.ReducedEnsemble, r"Scene\.reduce"),
+    ],
+)
+@pytest.mark.parametrize("given", [(), ("file.toml",)])
+def test_results_have_no_public_constructor(kind, remedy, given):
+    with pytest.raises(TypeError, match=f"^{kind.__name__} has no public constructor; use {remedy}$"):
+        kind(*given)

@@ -39,9 +39,17 @@ def axes_of(seq: str, lengths: tuple[int, ...]) -> list[int]:
         count = "three" if lengths == (3,) else "one to three"
         raise ValueError(
             f"a sequence of Euler angles is {count} of x, y, z (fixed axes) or of X, Y, Z (body axes), "
-            f"neighbours different; got {seq!r}"
+            f"neighbours different; got {seq!r}{_lettered(seq)}"
         )
     return ["xyz".index(letter) for letter in seq.lower()]
+
+
+def _lettered(seq: object) -> str:
+    """Return the remedy for a sequence of digits, as in aerospace: ``321`` turns about body axes."""
+    digits = str(seq)
+    if not re.fullmatch("[123]{1,3}", digits):
+        return ""
+    return f"; write {digits.translate(str.maketrans('123', 'XYZ'))!r} for turns about body axes"
 
 
 def to_radians(angles: Any) -> Any:

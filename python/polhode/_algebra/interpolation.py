@@ -15,6 +15,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.signs import half_turn
 from polhode._support.arrays import Array, as_floats, at_index, first_index, frozen, is_float, power_of_two
+from polhode._support.calls import explains_calls_of
 
 
 @overload
@@ -81,6 +82,7 @@ def _is_negative(x: Any, bound: float) -> bool:
     return bool(x.is_negative) if _generic.exact.is_symbolic(x) else bool(x < bound)
 
 
+@explains_calls_of
 class RotorSpline:
     """Cubic spline through the attitudes of `rotors` (n,) at increasing `times` (n,), n >= 2.
 
@@ -114,6 +116,8 @@ class RotorSpline:
     __slots__ = ("_extrapolate", "_slopes", "_times", "_values")
 
     def __init__(self, times: Any, rotors: Rotor | Sequence[Rotor], *, extrapolate: bool = False) -> None:
+        if isinstance(times[0] if isinstance(times, list | tuple) and times else times, Rotor):
+            raise TypeError("the times of a spline come first: RotorSpline(times, rotors)")
         if not isinstance(rotors, Multivector) and isinstance(rotors, list | tuple) and rotors:
             rotors = stack(rotors)
         if not isinstance(rotors, Rotor) or len(rotors.shape) != 1 or rotors.shape[0] < 2:
@@ -233,8 +237,11 @@ def _omega(s: Array, rate: Array) -> Multivector:
 def increasing_times(times: Any, count: int, what: str) -> Array:
     """Return the times (count,) of samples; a ValueError unless they are finite and increase."""
     knots = np.array(as_floats(times, "times"))
-    if knots.shape != (count,) or not np.isfinite(knots).all():
-        raise ValueError(f"times must be {count} finite numbers, one for each {what}, got {knots}")
+    if knots.shape != (count,):
+        raise ValueError(f"times must be {count} numbers, one for each {what}, got shape {knots.shape}")
+    if not np.isfinite(knots).all():
+        i = int(np.argmin(np.isfinite(knots)))
+        raise ValueError(f"times must be finite, but the time at index {i} is {knots[i]:g}")
     rising = np.diff(knots) > 0
     if not rising.all():
         i = int(np.argmin(rising))

@@ -30,6 +30,7 @@ from polhode._support.arrays import (
     new,
     normal_numbers,
 )
+from polhode._support.calls import explains_calls, explains_calls_of
 from polhode._support.extras import optional
 from polhode._support.memory import require_array
 
@@ -68,6 +69,7 @@ def _computed(name: str, *operands: Any) -> Any:
 
 
 @joins(_native.Rotor)
+@explains_calls_of
 class Rotor(_native.Rotor, Multivector):
     """A rotation, or an array of them: ``R = exp(−Bθ/2)`` turns by θ in the plane and sense of B.
 
@@ -366,6 +368,7 @@ class Rotor(_native.Rotor, Multivector):
         """
         return reshaped(_computed("to_matrix", self._data), (*self.shape, 3, 3))
 
+    @explains_calls
     def to_quaternion(self, *, order: QuaternionOrder) -> Any:
         """Return quaternions (..., 4), Hamilton's and active; `order` is required, "wxyz" or "xyzw".
 
@@ -503,7 +506,8 @@ class Rotor(_native.Rotor, Multivector):
         """``R X ~R``, for values that the native method does not cover."""
         if not isinstance(X, Multivector):  # an array would be a batch of scalars, which do not turn
             raise TypeError(
-                f"a rotor acts on multivectors, got {type(X).__name__}; wrap arrays with ph.vector"
+                f"a rotor acts on multivectors, got {type(X).__name__}; wrap arrays with ph.vector: "
+                "R(ph.vector(x)).components"
             )
         common_algebra(self, X)
         a, b = self._data, X._data

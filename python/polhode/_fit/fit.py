@@ -18,10 +18,12 @@ from polhode._fit.samples import Samples, attitudes_of, rates_of
 from polhode._fit.solve import solve
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.state import angular_velocity
+from polhode._support.calls import explains_calls
 from polhode._support.extras import optional
 from polhode.torque import Torque
 
 
+@explains_calls
 def fit(
     *,
     attitude: Any = None,

@@ -15,6 +15,7 @@ from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.state import State
 from polhode._report.summary import number
 from polhode._support.arrays import Array, as_float, hands_out_copies
+from polhode._support.calls import made_by
 from polhode._support.extras import optional
 from polhode.torque import Torque
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@made_by("ph.fit")
 @hands_out_copies("values", "covariance", "times", "residuals")
 @dataclass(frozen=True, eq=False)
 class Fit:

@@ -82,9 +82,9 @@ def rates_of(given: Any, sigma: Any) -> Samples | None:
     if given is None:
         return None
     times, omega = _pair(given, "rates", "(times, omega_body)")
-    values = _finite(as_bivectors(omega, "rates"), "rates")
+    values = _finite(as_bivectors(omega, "the array of rates"), "rates")
     if values.ndim != 2 or len(values) < 3:
-        raise ValueError(f"rates needs angular velocities (n, 3), n >= 3, got shape {values.shape}")
+        raise ValueError(f"rates need angular velocities (n, 3), n >= 3, got shape {values.shape}")
     knots = increasing_times(times, len(values), "rate")
     _in_range(knots, "times")
     _in_range(values, "rates")
@@ -101,7 +101,8 @@ def _finite(values: Array, name: str) -> Array:
     wrong = ~np.isfinite(values)
     if wrong.any():
         place = first_index(wrong)[:-1]
-        raise ValueError(f"{name}{at_index(place)} is {values[place].tolist()}; remove samples not finite")
+        row = values[place].tolist()
+        raise ValueError(f"{name} must be finite, got {row}{at_index(place)}; remove such samples")
     return values
 
 

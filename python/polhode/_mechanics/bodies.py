@@ -14,11 +14,14 @@ from polhode import _native
 from polhode._algebra.algebra import Algebra
 from polhode._algebra.algebra import algebra as algebra_of
 from polhode._algebra.constructors import as_point, as_vectors, bivector, pure, vector
+from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._mechanics.foreign_names import BODY, INERTIA
 from polhode._mechanics.parameters import common
 from polhode._support.arrays import Array, Shape, as_components, as_float, as_floats
+from polhode._support.calls import explains_calls_of
 from polhode._support.files import loadable
 from polhode._support.memory import require_array
 
@@ -31,6 +34,8 @@ def matrices(inertias: Iterable[Inertia]) -> Array:
     return _native.Inertia.matrices([inertia._core for inertia in inertias]).reshape(-1, 3, 3)
 
 
+@with_foreign_names(INERTIA)
+@explains_calls_of
 class Inertia(LinearMap):
     """The inertia map ``I(B) = ∫ρ x∧(x·B) d³x`` of bivectors to bivectors (handout eq. 4.18).
 
@@ -235,6 +240,8 @@ def _restored(matrix: Array, moments: Array, frame: Array) -> Inertia:
     return Inertia(_native.Inertia.restored(matrix, moments, frame))
 
 
+@with_foreign_names(BODY)
+@explains_calls_of
 class Body:
     """A rigid body: mass (kg), centre of mass (m) and inertia about the centre of mass, in body axes.
 
@@ -264,7 +271,8 @@ class Body:
     def __init__(self, mass: float, inertia: Inertia, center_of_mass: Any = 0) -> None:
         if not isinstance(inertia, Inertia):
             raise TypeError(
-                f"inertia must be an Inertia, got {type(inertia).__name__}; see Inertia.from_matrix"
+                f"inertia must be an Inertia, got {type(inertia).__name__}; see "
+                "Inertia.from_principal_moments, from_matrix"
             )
         center = as_point(center_of_mass, "the centre of mass")
         self._core = _native.Body(as_float(mass, "the mass"), inertia._core, center)
@@ -296,7 +304,7 @@ class Body:
         >>> round(ph.Body.box([0.1, 0.2, 0.3], density=1000).mass, 12)
         6.0
         """
-        return Body._solid("box", as_components(lengths, 3, "the lengths of a box"), mass, density)
+        return Body._solid("box", as_components(lengths, 3, "the array of lengths"), mass, density)
 
     @staticmethod
     def ellipsoid(semi_axes: Any, *, mass: float | None = None, density: float | None = None) -> Body:
@@ -307,7 +315,7 @@ class Body:
         >>> ph.Body.ellipsoid([1, 2, 3], mass=5).inertia.principal_moments  # m (b² + c²)/5, …
         array([13., 10.,  5.])
         """
-        sizes = as_components(semi_axes, 3, "the semi-axes of an ellipsoid")
+        sizes = as_components(semi_axes, 3, "the array of semi-axes")
         return Body._solid("ellipsoid", sizes, mass, density)
 
     @staticmethod
@@ -437,7 +445,10 @@ class Body:
         mass: float | None = None,
         scale: float = 1.0,
     ) -> Body:
-        """Return the body enclosed by a triangle mesh (STL, OBJ or PLY), exactly; `scale` is its unit in m.
+        """Return the body enclosed by a triangle mesh (STL, OBJ or PLY), exactly.
+
+        The files have no units: `scale` is the unit of the numbers in m, such as 1e-3 for millimetres. At a
+        given density the mass grows with its cube. ``polhode check FILE`` prints the size of the body.
 
         Raises
         ------
@@ -516,7 +527,8 @@ class Body:
         turn = Rotor.identity() if rotor is None else rotor
         if not isinstance(turn, Rotor) or turn.shape:
             raise TypeError(
-                f"rotor must be a single Rotor, got {turn!r}; see Rotor.from_quaternion, from_matrix"
+                f"rotor must be a single Rotor, got {turn!r}; see Rotor.from_quaternion, from_matrix; a "
+                "displacement is position="
             )
         return Body._of(self._core.moved(turn._data, as_point(position, "the position")))
 
@@ -541,10 +553,10 @@ class Body:
 
     def __repr__(self) -> str:
         moments = ", ".join(f"{i:.8g}" for i in self.inertia.principal_moments)
-        return (
-            f"Body(mass {self.mass:.8g} kg, centre of mass {self.center_of_mass!r} m, "
-            f"moments {moments} kg m²)"
-        )
+        c = self.center_of_mass.components
+        # Sums over a mesh leave rounding errors where symmetry makes a component 0.
+        center = vector(np.where(np.abs(c) > 1e-12 * np.abs(c).max(), c, 0.0))
+        return f"Body(mass {self.mass:.8g} kg, centre of mass {center!r} m, moments {moments} kg m²)"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Body, (self.mass, self.inertia, self.center_of_mass)

@@ -12,6 +12,7 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import bivector
+from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia, objects_of
@@ -27,6 +28,7 @@ _BODY = 1000  # upper bound of the bytes of a motion in a batch
 _MANY = 64  # number of bodies that fills the SIMD lanes
 
 
+@with_foreign_names({"plot": "view(), or ph.simulate(…).plot()"})
 class ClosedForm:
     """Motion of a body, or of a batch of bodies, in closed form."""
 
@@ -104,14 +106,14 @@ class ClosedForm:
         >>> motion.at(np.linspace(0, 1, 5)).shape
         (5,)
         """
-        state, times = self._core.once(t), t
-        if state is None:
-            times = as_floats(t, "time")
-            shape = self.shape + times.shape
-            require(_STATE * math.prod(shape), f"states of batch shape {shape}")
-            rotors, omegas = self._core.at(np.ravel(times))
-            state = Rotor._from_rows(rotors.reshape(*shape, 4)), bivectors(omegas, shape)
-        return State._at_origin(*state, times)
+        once = self._core.once(t)
+        if once is not None:
+            return State._at_origin(once[0], once[1], t)
+        times = as_floats(t, "time")
+        shape = self.shape + times.shape
+        require(_STATE * math.prod(shape), f"states of batch shape {shape}")
+        rotors, omegas = self._core.at(np.ravel(times))
+        return State._at_origin(Rotor._from_rows(rotors.reshape(*shape, 4)), bivectors(omegas, shape), times)
 
     def at_each(self, t: Any) -> State:
         """Return the state of each body at its own time or times t in s.

@@ -13,8 +13,10 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.closed_form import ClosedForm, given
 from polhode._mechanics.parameters import check_finite
 from polhode._support.arrays import Array, as_floats
+from polhode._support.calls import explains_calls_of
 
 
+@explains_calls_of
 class LagrangeTop(ClosedForm):
     """The heavy symmetric top, exact at any time (Klein & Sommerfeld; Whittaker §72).
 
@@ -98,6 +100,7 @@ class LagrangeTop(ClosedForm):
         return self._columns(self._core.describe())
 
 
+@explains_calls_of
 class DampedTop(ClosedForm):
     """Any body with the torque ``N = −g L``, exact at any time.
 
@@ -127,6 +130,7 @@ class DampedTop(ClosedForm):
         self._core = _native.damped_tops(*arguments)
 
 
+@explains_calls_of
 class LarmorSphere(ClosedForm):
     """A sphere with the axial torque ``N = L x b``, exact at any time: a spin in a uniform field.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -237,15 +238,21 @@ def _bytes(bodies: int, times: int, forced: bool) -> int:
 
 
 def warn_of(certificate: Certificate) -> None:
-    """Issue the warnings of the certificate to the caller of `simulate`."""
+    """Issue the warnings of the certificate at the line that called the package."""
+    frame, level = sys._getframe(), 1
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "polhode":
+        frame, level = frame.f_back, level + 1
     for warning in certificate.warnings:
-        warnings.warn(warning, RuntimeWarning, stacklevel=3)
+        warnings.warn(warning, RuntimeWarning, stacklevel=level)
 
 
 def check_state(state: State) -> None:
     """Raise an error unless the numbers of a state are finite."""
     if not isinstance(state, State):
-        raise TypeError(f"state must be a State, got {type(state).__name__}")
+        raise TypeError(
+            f"state must be a State, got {type(state).__name__}; write State(rotor, omega_body), with arrays "
+            "for many bodies"
+        )
     for name in ("position", "velocity"):
         check_finite(getattr(state, name)._data, f"the {name}")
     check_finite(state.omega_body._data, "the angular velocity")

@@ -16,6 +16,7 @@ from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.closed_form import ClosedForm, bivectors, given
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, as_count, as_float, as_floats, frozen, hands_out_copies
+from polhode._support.calls import explains_calls_of
 from polhode._support.memory import require
 
 _DERIVATIVES = 2 * 64 * 8  # bytes, of the core's arrays and their copies
@@ -23,6 +24,7 @@ _CURVE = 3 * 3 * 8  # bytes of a point, with the copies of the core
 _EQUAL = 8 * float(np.finfo(float).eps)  # relative difference of moments that count as equal
 
 
+@explains_calls_of
 class FreeMotion(ClosedForm):
     """Torque-free motion of any body, or of a batch of bodies, exact at any time.
 
@@ -220,6 +222,7 @@ class FlowDerivatives:
     d_omega_dt: Array
 
 
+@explains_calls_of
 class SymmetricTop(FreeMotion):
     """Torque-free motion of one body with two equal moments, by handout eq. (4.35).
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self, TypeVar
@@ -89,10 +90,18 @@ def law_of_formula(
     return make(tuple(given.items()))
 
 
-def function_of(f: Any, names: str) -> Any:
-    """Return a function of these arguments."""
+def function_of(f: Any, *arguments: str) -> Any:
+    """Return a function that takes these arguments by place; a TypeError for others."""
+    names = f"{', '.join(arguments[:-1])} and {arguments[-1]}"
     if not callable(f) or isinstance(f, Multivector):
         raise TypeError(f"expected a function of {names}, got {type(f).__name__}")
+    try:
+        inspect.signature(f).bind(*arguments)
+    except TypeError:
+        label = getattr(f, "__name__", type(f).__name__)
+        raise TypeError(f"the function is called with {names}, which {label} does not take") from None
+    except ValueError:  # a compiled function without a signature
+        pass
     return f
 
 

@@ -94,9 +94,10 @@ def gains(value: Any, name: str) -> tuple[float, ...] | Batch:
     """Return three finite numbers from a number or three, or a batch from (..., 3) or (..., 1)."""
     array = as_floats(value, name)
     if array.shape[-1:] not in ((), (3,)) and not (array.ndim > 1 and array.shape[-1] == 1):
+        remedy = f"; for a number of each body write {name}[:, None]" if array.ndim == 1 else ""
         raise ValueError(
             f"{name} must be a number or three along the body axes, or a batch (..., 3) of them or (..., 1), "
-            f"got shape {array.shape}"
+            f"got shape {array.shape}{remedy}"
         )
     return rows(np.broadcast_to(array, (*array.shape[:-1], 3)), name)
 

@@ -20,6 +20,7 @@ from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import BYTES_OF_POINT, Trajectory
 from polhode._support.arrays import as_count, as_float, as_floats, output_times
+from polhode._support.calls import explains_calls
 from polhode._support.memory import require_array
 from polhode.event import Event
 from polhode.force import Force
@@ -31,6 +32,7 @@ _BLOCK = 32 << 20
 METHODS: tuple[str, ...] = ("auto", "exact", *_native.methods())
 
 
+@explains_calls
 def simulate(
     body: Any,
     state: State,
@@ -189,6 +191,7 @@ def simulate(
     return trajectory
 
 
+@explains_calls
 def simulate_blocks(
     body: Any,
     state: State,

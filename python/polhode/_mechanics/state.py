@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._algebra.constructors import as_bivectors, as_vectors, bivector, vector
+from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._mechanics.foreign_names import STATE
 from polhode._mechanics.parameters import common
 from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen
+from polhode._support.calls import explains_calls_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -22,6 +25,8 @@ if TYPE_CHECKING:
 _ORIGIN = vector([0.0, 0.0, 0.0])
 
 
+@with_foreign_names(STATE)
+@explains_calls_of
 @dataclass(frozen=True, eq=False, init=False)
 class State:
     """State of a body at a time, or of a batch of bodies, whose shapes broadcast.
@@ -102,10 +107,12 @@ class State:
     def _at_origin(cls, rotor: Rotor, omega_body: Multivector, time: Any) -> State:
         """Return a state at rest in the origin, without checking the values."""
         self = object.__new__(cls)
-        # Four times faster than object.__setattr__.
-        self.__dict__.update(
-            rotor=rotor, omega_body=omega_body, position=_ORIGIN, velocity=_ORIGIN, time=_time(time)
-        )
+        # Four times faster than object.__setattr__, and a quarter faster than one update.
+        values = self.__dict__
+        values["rotor"] = rotor
+        values["omega_body"] = omega_body
+        values["position"] = values["velocity"] = _ORIGIN
+        values["time"] = time if type(time) is float else _time(time)
         return self
 
     @classmethod

@@ -13,10 +13,12 @@ from polhode._algebra.constructors import as_bivectors, bivector, vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.ensemble import check_state
+from polhode._mechanics.laws import Sum
 from polhode._mechanics.parameters import check_finite
 from polhode._mechanics.simulate import _ensemble, _settled
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_float, as_floats
+from polhode._support.calls import explains_calls_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -27,6 +29,7 @@ METHODS = tuple(_native.methods())
 _NO_TORQUE = np.zeros((0, 3))
 
 
+@explains_calls_of
 class Stepper:
     """A body, or a batch of bodies side by side, stepped in a loop: for controllers and learning.
 
@@ -227,6 +230,11 @@ class Stepper:
             ) from None
 
     def _rows(self, torque: Any) -> Array:
+        if isinstance(torque, Sum) or (callable(torque) and not isinstance(torque, Multivector)):
+            raise TypeError(
+                "step takes the numbers of a torque held over dt; give a law or a function to "
+                "Stepper(body, state, torque)"
+            )
         rows = as_bivectors(torque, "the torque")
         if rows.shape == (3,):
             return rows

@@ -10,12 +10,14 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.constructors import bivector, vector
+from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.result import Certificate, Crossings, Failure
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen, hands_out_copies
+from polhode._support.calls import made_by
 from polhode._support.memory import require_array
 
 if TYPE_CHECKING:
@@ -28,9 +30,20 @@ _HABITS = {
     "t": "time",
     "times": "time",
     "y": "rotor and omega_body",
+    "attitude": "rotor",
+    "rotors": "rotor",
+    "quaternion": "rotor.to_quaternion(order)",
+    "angular_momentum": "momentum_body and momentum_space",
     "omega": "omega_body and omega_space",
     "momentum": "momentum_body and momentum_space",
+    "L": "momentum_body and momentum_space",
+    "kinetic_energy": "energy",
     "states": "at(t)",
+    "state": "at(t)",
+    "interpolate": "at(t)",
+    "summary": "certificate",
+    "show": "view() and plot()",
+    "animate": "view() and film(path)",
     "to_pandas": "to_dataframe()",
     "to_csv": "save(path)",
     "to_parquet": "save(path)",
@@ -41,6 +54,8 @@ _HABITS = {
 BYTES_OF_POINT = 400
 
 
+@with_foreign_names(dict.fromkeys(("load", "open", "from_file"), "Trajectory.read(path)"))
+@made_by("ph.simulate, or ph.Trajectory.read(path) for a file")
 @hands_out_copies("time", "energy")
 @dataclass(frozen=True, eq=False)
 class Trajectory:

@@ -66,6 +66,12 @@ class EnsembleSpec:
         kept = tuple(core.ensemble_keep())
         return EnsembleSpec(number, seed, MappingProxyType(words), count, table_sha256, core, kept)
 
+    @property
+    def drawn(self) -> bool:
+        """Whether quantities are drawn at random, from the seed; else all come from a grid, list or table."""
+        found = self._core.ensemble()
+        return found is not None and bool(found[2])
+
     def _varies(self, *places: str) -> bool:
         """Whether one of these quantities or tables of the scene varies, or a value in it."""
         return any(

@@ -12,6 +12,7 @@ import numpy as np
 
 from polhode import _native
 from polhode import force as forces
+from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body, Inertia
 from polhode._mechanics.ensemble import Results, require, warn_of
@@ -21,6 +22,7 @@ from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.ensemble import EnsembleSpec
 from polhode._scene.table import TableReader
 from polhode._support.arrays import Array, frozen, hands_out_copies
+from polhode._support.calls import made_by
 from polhode.force import Force
 from polhode.torque import Torque
 
@@ -62,6 +64,8 @@ class SceneNotFoundError(SceneError, FileNotFoundError):
     """A scene file that does not exist."""
 
 
+@with_foreign_names({**dict.fromkeys(("load", "open", "from_file"), "Scene.read(path)"), "simulate": "run()"})
+@made_by("ph.Scene.read(path)")
 @hands_out_copies("shift", "times")
 @dataclass(frozen=True, eq=False)
 class Scene:
@@ -180,7 +184,8 @@ class Scene:
         except SceneError as error:
             if os.path.lexists(path):
                 raise
-            raise SceneNotFoundError(str(error)) from None
+            named = Path(f"{os.fsdecode(path)}.toml")
+            raise SceneNotFoundError(f"{error}; use {named}" if named.is_file() else str(error)) from None
         return Scene(Path(path), core.fields()["times"], EnsembleSpec._of(core, table.sha256), core)
 
     def __post_init__(self) -> None:

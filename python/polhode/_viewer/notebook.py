@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from polhode._mechanics.state import State
+from polhode._support.calls import explains_calls
 
 if TYPE_CHECKING:
     from polhode._viewer.widget import Viewer
 
 
+@explains_calls
 def view(
     x: Any,
     state: State | None = None,

@@ -154,6 +154,14 @@ impl Stepper {
 
 impl Stepper {
     fn advance(&mut self, py: Python<'_>, dt: f64, torques: &[[f64; 3]], in_space: bool) -> PyResult<()> {
+        if let Some(body) = torques.iter().position(|torque| !torque.iter().all(|x| x.is_finite())) {
+            let shape = if torques.len() == 1 { &[] } else { &self.shape[..] };
+            return Err(bad(format!(
+                "{}the torque is {:?}; it must be finite",
+                place(body, shape),
+                torques[body]
+            )));
+        }
         let held = Held { torques, axes: if in_space { Axes::Space } else { Axes::Body } };
         let stepper = &mut self.stepper;
         let (mut last, mut raised) = (Instant::now(), None);

@@ -1,0 +1,130 @@
+"""Errors for calls whose arguments do not fit, which name the argument or function to use."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import partial, wraps
+from typing import Any, ParamSpec, TypeVar, get_args
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+_OMEGA, _TIMES = ("omega_body", "omega_space", "rates"), ("times", "duration")
+
+# Words of other programs and text books, and the arguments that they can mean. Those of scenes are in
+# `crates/rigid/src/scene/reader.rs`.
+_OURS: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("omega", "angular_velocity", "angular_rate", "rates", "spin", "w"), _OMEGA),
+    **dict.fromkeys(("attitude", "orientation", "rotation", "quaternion", "q"), ("rotor", "attitude")),
+    **dict.fromkeys(("pos", "x0"), ("position", "state")),
+    **dict.fromkeys(("y0", "initial", "initial_state", "start"), ("state",)),
+    **dict.fromkeys(("t", "t0", "epoch"), ("time", "times")),
+    **dict.fromkeys(("t_eval", "t_span", "t_end", "tmax", "end", "duration"), _TIMES),
+    **dict.fromkeys(("dt", "h", "step_size", "timestep"), ("step", "height")),
+    **dict.fromkeys(("tol", "tolerance", "reltol"), ("rtol",)),
+    "abstol": ("atol",),
+    **dict.fromkeys(("integrator", "solver"), ("method",)),
+    **dict.fromkeys(("moment", "torques"), ("torque",)),
+    **dict.fromkeys(("i", "j", "moments", "tensor"), ("inertia", "body")),
+    "inertia": ("body",),
+    **dict.fromkeys(("com", "cg", "cog", "center"), ("center_of_mass",)),
+    **dict.fromkeys(("deg", "in_degrees"), ("degrees",)),
+    **dict.fromkeys(("n", "num"), ("shape",)),
+    **dict.fromkeys(("seed", "random_state"), ("rng",)),
+    "scalar_first": ("order",),
+    "m": ("mass",),
+    "r": ("radius",),
+    "rho": ("density",),
+    **dict.fromkeys(("size", "sizes", "dimensions", "sides", "extents"), ("lengths", "shape")),
+    **dict.fromkeys(("axes", "radii", "semiaxes"), ("semi_axes",)),
+    "l": ("length", "height"),
+    "length": ("height",),
+    **dict.fromkeys(("unit", "units", "length_unit"), ("scale",)),
+    **dict.fromkeys(("file", "filename", "mesh"), ("path",)),
+    **dict.fromkeys(("n_jobs", "num_threads", "workers"), ("threads",)),
+}
+
+
+def explains_calls(function: Callable[P, T]) -> Callable[P, T]:
+    """Make the TypeError for arguments that do not fit name the one that is probably meant, or all."""
+    return _with_message(function, partial(_misfit, function))
+
+
+def explains_calls_of(kind: type[T]) -> type[T]:
+    """Make the constructor and the public static methods of a class explain arguments that do not fit."""
+    for name, member in list(vars(kind).items()):
+        if name == "__init__":
+            setattr(kind, name, explains_calls(member))
+        elif isinstance(member, staticmethod) and not name.startswith("_"):
+            setattr(kind, name, staticmethod(explains_calls(member.__func__)))
+    return kind
+
+
+def _misfit(function: Callable[..., Any], named: list[str], error: str) -> str:
+    """Return the message for a call with keywords whose arguments do not fit, from that of Python."""
+    import difflib  # here, because it takes a millisecond of the import
+
+    wanted = inspect.signature(function).parameters
+    shown = [x for name, x in wanted.items() if name != "self" and not name.startswith("_")]
+    names = [x.name for x in shown]
+    remedy = f"its arguments are {_listed(shown)}{_values(function, shown)}"
+    unknown = [name for name in named if name not in wanted]
+    if not unknown:
+        return f"{error.replace('.__init__()', '()')}; {remedy}"
+    meant = [ours for ours in _OURS.get(unknown[0].lower(), ()) if ours in names]
+    if meant := meant or difflib.get_close_matches(unknown[0].lower(), names, 1):
+        values = _values(function, [x for x in shown if x.name in meant])
+        remedy = f"write {' or '.join(f'{ours}=' for ours in meant)}{values}"
+    title = function.__qualname__.removesuffix(".__init__")
+    return f"{title} has no argument {unknown[0]!r}; {remedy}"
+
+
+def _listed(parameters: list[inspect.Parameter]) -> str:
+    return str(inspect.Signature([x.replace(annotation=inspect.Parameter.empty) for x in parameters]))
+
+
+def _values(function: Callable[..., Any], parameters: list[inspect.Parameter]) -> str:
+    """Return the values that required arguments can have, if they are few."""
+    scope = inspect.unwrap(function).__globals__
+    required = [x for x in parameters if x.default is inspect.Parameter.empty]
+    few = {x.name: get_args(scope.get(x.annotation)) for x in required}
+    return "".join(f", with {name}={' or '.join(map(repr, x))}" for name, x in few.items() if x)
+
+
+def made_by(remedy: str) -> Callable[[type[T]], type[T]]:
+    """Make the TypeError of a constructor that users do not call name the functions to use."""
+
+    def explained(kind: type[T]) -> type[T]:
+        message = f"{kind.__name__} has no public constructor; use {remedy}"
+        init: Any = kind.__init__
+        explained_init = _with_message(init, lambda *_: message)
+        setattr(kind, "__init__", explained_init)  # noqa: B010, a type checker knows the original
+        return kind
+
+    return explained
+
+
+def _with_message(function: Callable[P, T], message: Callable[[list[str], str], str]) -> Callable[P, T]:
+    """Replace the TypeError for arguments that do not fit, given the keywords and Python's message."""
+
+    @wraps(function)
+    def call(*arguments: P.args, **named: P.kwargs) -> T:
+        try:
+            return function(*arguments, **named)
+        except TypeError as error:
+            if _fit(function, *arguments, **named):
+                raise
+            text = message(list(named), str(error))
+        raise TypeError(text)
+
+    return call
+
+
+def _fit(function: Callable[..., Any], *arguments: Any, **named: Any) -> bool:
+    """Whether the function takes these arguments."""
+    try:
+        inspect.signature(function).bind(*arguments, **named)
+    except TypeError:
+        return False
+    return True

@@ -41,7 +41,8 @@ impl Exp {
             cosine[l] = if known { cos } else { f64::NAN };
         }
         for l in 0..W {
-            sinc[l] = divide::<FMA>((sin[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
+            let (quotient, correction) = divide::<FMA>((sin[l], rest[l]), (hi[l], lo[l]), reciprocal[l]);
+            sinc[l] = quotient + correction;
         }
         [cosine, sinc]
     }
@@ -67,8 +68,8 @@ impl Map<3, 0, 4> for Exp {
         let (k, r, rest) = payne_hanek::quarter_turns(b);
         let (sin, cos) = sin_cos::<BUILT_WITH_FMA>(k, r, rest);
         let reciprocal = 1.0 / size.hi;
-        let sinc = divide::<BUILT_WITH_FMA>(sin, (size.hi, size.lo(reciprocal)), reciprocal).0;
-        let [x, y, z] = scaled.map(|x| x * sinc);
+        let (sinc, correction) = divide::<BUILT_WITH_FMA>(sin, (size.hi, size.lo(reciprocal)), reciprocal);
+        let [x, y, z] = scaled.map(|x| x * (sinc + correction));
         [cos, x, y, z]
     }
 }
@@ -86,17 +87,18 @@ impl Log {
         const LEAST: f64 = 1e-100;
         const MOST: f64 = 1e100;
         let [s, x, y, z] = c;
-        let [mut hi, mut lo, mut reciprocal] = [[0.0; W]; 3];
+        let [mut hi, mut lo, mut square, mut reciprocal] = [[0.0; W]; 4];
         let [mut u, mut rest, mut eighths, mut excess] = [[0.0; W]; 4];
         for l in 0..W {
             let size = Size::of::<FMA>([x[l], y[l], z[l]]);
-            (hi[l], rest[l]) = (size.hi, size.rest);
+            (hi[l], rest[l], square[l]) = (size.hi, size.rest, size.square);
         }
         for l in 0..W {
-            reciprocal[l] = common_reciprocal(hi[l], s[l]);
+            let size = Size { hi: hi[l], rest: rest[l], square: square[l] };
+            reciprocal[l] = common_reciprocal(size, s[l]);
         }
         for l in 0..W {
-            let size = Size { hi: hi[l], rest: rest[l] };
+            let size = Size { hi: hi[l], rest: rest[l], square: square[l] };
             let tangent;
             (tangent, lo[l], reciprocal[l]) = Tangent::of::<FMA>(size, s[l], reciprocal[l]);
             (u[l], rest[l], eighths[l]) = (tangent.u, tangent.rest, tangent.eighths);
@@ -110,7 +112,8 @@ impl Log {
         }
         let mut factor = [0.0; W];
         for l in 0..W {
-            let quotient = divide::<FMA>((u[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
+            let (quotient, correction) = divide::<FMA>((u[l], rest[l]), (hi[l], lo[l]), reciprocal[l]);
+            let quotient = quotient + correction;
             let known = (quotient > LEAST) & (quotient < MOST);
             factor[l] = if known { quotient } else { f64::NAN };
         }
@@ -148,8 +151,8 @@ impl Map<4, 0, 3> for Log {
         let size = Size::of::<BUILT_WITH_FMA>(b);
         let reciprocal = 1.0 / size.hi;
         let lo = size.lo(reciprocal);
-        let factor = divide::<BUILT_WITH_FMA>(EXACT_PI, (size.hi, lo), reciprocal).0;
-        b.map(|x| x * factor)
+        let (factor, correction) = divide::<BUILT_WITH_FMA>(EXACT_PI, (size.hi, lo), reciprocal);
+        b.map(|x| x * (factor + correction))
     }
 }
 
@@ -174,9 +177,9 @@ impl Map<4, 1, 4> for Power {
     }
 }
 
-/// Sine and cosine of a finite angle, the sine as `hi + lo`; NaN if the short method is not accurate enough.
+/// Sine and cosine of a finite angle; NaN if the short method is not accurate enough.
 #[inline(always)]
-fn circular<const FMA: bool>(x: f64) -> ((f64, f64), f64) {
+fn circular<const FMA: bool>(x: f64) -> (f64, f64) {
     /// As for [`Exp`].
     const KEPT: f64 = 1.0 / (1u64 << 40) as f64;
     let angle = x.abs();
@@ -186,16 +189,15 @@ fn circular<const FMA: bool>(x: f64) -> ((f64, f64), f64) {
 }
 
 /// [`circular`] of any finite angle.
-fn circular_long(x: f64) -> ((f64, f64), f64) {
+fn circular_long(x: f64) -> (f64, f64) {
     let (k, r, rest) = payne_hanek::quarter_turns([x, 0.0, 0.0]);
     odd(x, sin_cos::<BUILT_WITH_FMA>(k, r, rest))
 }
 
 /// Gives the sine the sign of the angle.
 #[inline(always)]
-fn odd(x: f64, ((sin, rest), cos): ((f64, f64), f64)) -> ((f64, f64), f64) {
-    let sign = 1f64.copysign(x);
-    ((sign * sin, sign * rest), cos)
+fn odd(x: f64, ((sin, rest), cos): ((f64, f64), f64)) -> (f64, f64) {
+    ((sin + rest) * 1f64.copysign(x), cos)
 }
 
 /// A function of sine and cosine as a map of one number.
@@ -226,17 +228,17 @@ macro_rules! circular_map {
 circular_map!(
     /// The sine of an angle within an ulp.
     Sin,
-    |((sin, _), _): ((f64, f64), f64)| sin
+    |(sin, _): (f64, f64)| sin
 );
 circular_map!(
     /// The cosine of an angle within an ulp.
     Cos,
-    |(_, cos): ((f64, f64), f64)| cos
+    |(_, cos): (f64, f64)| cos
 );
 circular_map!(
     /// The tangent of an angle within 2 ulps.
     Tan,
-    |((sin, _), cos): ((f64, f64), f64)| sin / cos
+    |(sin, cos): (f64, f64)| sin / cos
 );
 
 /// `exp(B)` of rows of bivectors, as rows of rotor components, each within 2 ulps. Fails with the index of

@@ -98,6 +98,8 @@ pub(crate) struct Size {
     pub hi: f64,
     /// The remainder of the sum.
     pub rest: f64,
+    /// The rounded sum of the squares.
+    pub square: f64,
 }
 
 impl Size {
@@ -113,7 +115,7 @@ impl Size {
         let square = sum + Size::LEAST * Size::LEAST;
         let hi = square.sqrt();
         let rest = remainder::<FMA>(square, hi, hi) + ((ea + eb) + (ec + e1) + e2);
-        Size { hi, rest }
+        Size { hi, rest, square }
     }
 
     /// The correction to `hi`, given `1/hi`: `√(h² + ρ) = h + ρ/2h` to `ρ²/8h³`.
@@ -123,11 +125,14 @@ impl Size {
     }
 }
 
-/// `(a + b)/(c + d)` as `hi + lo`, given `1/c` to a few roundings.
+/// `(a + b)/(c + d)` as the quotient `a/c` to a few roundings and its correction, given `1/c` to a few roundings.
+///
+/// Here and below sums are left as two numbers of any sizes where the next step can begin with the first: their sum would
+/// lengthen the chain of operations, on which the time of a single row depends.
 #[inline(always)]
 pub(crate) fn divide<const FMA: bool>((a, b): (f64, f64), (c, d): (f64, f64), reciprocal: f64) -> (f64, f64) {
     let q = a * reciprocal;
-    quick_two_sum(q, (remainder::<FMA>(a, q, c) + (b - q * d)) * reciprocal)
+    (q, (remainder::<FMA>(a, q, c) + (b - q * d)) * reciprocal)
 }
 
 /// `angle + rest = k π/2 + r`, k the nearest integer: `(k mod 4, r, rest of r)`, for angles up to 10⁶.
@@ -147,8 +152,8 @@ pub(crate) fn quarter_turns<const FMA: bool>(angle: f64, rest: f64) -> (u64, f64
     (shifted.to_bits() & 3, r, rest)
 }
 
-/// Sine and cosine of `k π/2 + r + rest`, `|r| <= π/4`, the sine as `hi + lo` with an error below half an
-/// ulp. The polynomials are those of fdlibm, good to 2⁻⁵⁸.
+/// Sine and cosine of `k π/2 + r + rest`, `|r| <= π/4`, the sine as two numbers, the second at most a ninth of the first,
+/// with an error below half an ulp. The polynomials are those of fdlibm, good to 2⁻⁵⁸.
 #[inline(always)]
 pub fn sin_cos<const FMA: bool>(k: u64, r: f64, rest: f64) -> ((f64, f64), f64) {
     const S: [f64; 6] = [
@@ -177,33 +182,37 @@ pub fn sin_cos<const FMA: bool>(k: u64, r: f64, rest: f64) -> ((f64, f64), f64) 
     let sin = (r, (z * r) * s + rest * one);
     let cos = (one, e + (zz * c - r * rest));
     let (sin, cos) = if k & 1 == 1 { (cos, sin) } else { (sin, cos) };
-    let sin = quick_two_sum(sin.0, sin.1);
     // Quarters 2 and 3 have a negative sine, 1 and 2 a negative cosine.
     let (minus_sin, minus_cos) = ((k & 2) << 62, ((k + 1) & 2) << 62);
     ((flip(sin.0, minus_sin), flip(sin.1, minus_sin)), flip(cos.0 + cos.1, minus_cos))
 }
 
-/// Whether the point `(c, size)` lies below 67.5°, and above 22.5°. Turned back by 0 if only below, by 90° if only above,
-/// else by 45°, it is within ±22.5°: `(c, size)` becomes `(below c + above size, below size − above c)` up to a factor.
+const TAN_22_5: f64 = 0.414_213_562_373_095_03;
+
+/// Its square, to compare squares: those of a size are known before its root. If one of them overflows or underflows, the
+/// comparison is that of the numbers; both overflow only where the fast method gives up.
+const TAN2_22_5: f64 = 0.171_572_875_253_809_9;
+
+/// Whether the point `(c, size)` lies below 67.5°, and above 22.5°, of which `tan` is the tangent. Turned back by 0 if only
+/// below, by 90° if only above, else by 45°, it is within ±22.5°: `(c, size)` becomes
+/// `(below c + above size, below size − above c)` up to a factor.
 #[inline(always)]
-fn turned_back(size: f64, c: f64) -> (bool, bool) {
-    const TAN_22_5: f64 = 0.414_213_562_373_095_03;
-    (size * TAN_22_5 <= c, size > c * TAN_22_5)
+fn turned_back(size: f64, c: f64, tan: f64) -> (bool, bool) {
+    (size * tan <= c, size > c * tan)
 }
 
 /// `1/(size · denominator)` for [`Tangent::of`]: one division for the two quotients of a logarithm.
 #[inline(always)]
-pub(crate) fn common_reciprocal(size: f64, s: f64) -> f64 {
-    let c = s.abs();
-    let (below, above) = turned_back(size, c);
-    1.0 / (size * (only(above, size) + only(below, c)))
+pub(crate) fn common_reciprocal(size: Size, s: f64) -> f64 {
+    let (below, above) = turned_back(size.square, s * s, TAN2_22_5);
+    1.0 / (size.hi * (only(above, size.hi) + only(below, s.abs())))
 }
 
 /// The angle in [0, π/2] of the point `(|s|, size)`, not both 0, to a few roundings: [`Tangent::angle`] in single floats.
 #[inline(always)]
 pub(crate) fn angle(size: f64, s: f64) -> f64 {
     let c = s.abs();
-    let (below, above) = turned_back(size, c);
+    let (below, above) = turned_back(size, c, TAN_22_5);
     let num = only(below, size) - only(above, c);
     let den = only(above, size) + only(below, c);
     let eighths = only(above, 1.0) + only(!below, 1.0);
@@ -226,7 +235,7 @@ impl Tangent {
     #[inline(always)]
     pub fn of<const FMA: bool>(size: Size, s: f64, common: f64) -> (Tangent, f64, f64) {
         let c = s.abs();
-        let (below, above) = turned_back(size.hi, c);
+        let (below, above) = turned_back(size.square, s * s, TAN2_22_5);
         let (num, num_rest) = two_sum(only(below, size.hi), -only(above, c));
         let (den, den_rest) = two_sum(only(above, size.hi), only(below, c));
         let over_size = den * common;
@@ -261,7 +270,8 @@ impl Tangent {
         (z * u) * (low + (zz * zz) * zz * high) + (rest - z * rest)
     }
 
-    /// The angle in [0, π] of `(s, size)` as `hi + lo`, given the [`Tangent::excess`].
+    /// The angle in [0, π] of `(s, size)` as two numbers, the second at most a seventeenth of the first, given the
+    /// [`Tangent::excess`].
     #[inline(always)]
     pub fn angle<const FMA: bool>(self, s: f64, excess: f64) -> (f64, f64) {
         /// π/4; the first part has 50 bits, so that its product with 3 is exact.
@@ -273,6 +283,6 @@ impl Tangent {
         let u = flip(u, minus);
         let hi = exact_product_plus::<FMA>(eighths, EIGHTH.0, u);
         let error = exact_product_plus::<FMA>(eighths, EIGHTH.0, -hi) + u;
-        quick_two_sum(hi, (error + flip(excess, minus)) + eighths * EIGHTH.1)
+        (hi, (error + flip(excess, minus)) + eighths * EIGHTH.1)
     }
 }

@@ -22,8 +22,11 @@ pub(crate) trait Map<const A: usize, const B: usize, const OUT: usize>: Sync {
     fn long(&self, a: [f64; A], b: [f64; B]) -> [f64; OUT];
 
     /// Its value; NaN if the row is not finite.
-    fn value(&self, a: [f64; A], b: [f64; B]) -> [f64; OUT] {
-        let value = alone(self.short::<1, BUILT_WITH_FMA>(lanes_of_one(&a), lanes_of_one(&b)));
+    fn value(&self, a: [f64; A], b: [f64; B]) -> [f64; OUT]
+    where
+        Self: Sized,
+    {
+        let value = Path::best().alone(self, a, b);
         if !value[0].is_nan() {
             value
         } else if a.iter().chain(&b).all(|x| x.is_finite()) {

@@ -22,7 +22,7 @@ mod workers;
 mod x86;
 
 use lanes::Work;
-use map::BUILT_WITH_FMA;
+use map::{BUILT_WITH_FMA, Map};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -283,6 +283,29 @@ impl Path {
     /// Does work that is compiled for this path.
     pub fn run<T: Work>(self, work: T) -> T::Output {
         by_path!(self, run(work), work.run::<BUILT_WITH_FMA>())
+    }
+
+    /// The short method of a map for one row. Rounding errors of products take one instruction where it is compiled for
+    /// fused multiply-add, else seventeen.
+    #[inline]
+    pub fn alone<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(
+        self,
+        map: &M,
+        a: [f64; A],
+        b: [f64; B],
+    ) -> [f64; OUT] {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 | Level::Avx512 => {
+                // In registers: a row read back from memory in other parts than it was just written would stall.
+                let mut x = [0.0; 8];
+                x[..A].copy_from_slice(&a);
+                x[A..A + B].copy_from_slice(&b);
+                // SAFETY: both levels have fused multiply-add.
+                unsafe { x86::alone(map, x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]) }
+            }
+            _ => map::alone(map.short::<1, BUILT_WITH_FMA>(map::lanes_of_one(&a), map::lanes_of_one(&b))),
+        }
     }
 
     /// Transposes at most `W` rows of `lanes.len()` numbers into lanes; places beyond the rows are unchanged.

@@ -1,6 +1,7 @@
 //! The paths of x86-64.
 
 use super::lanes::Work;
+use super::map::{self, Map};
 use super::squares::{self, squares};
 use super::{Element, Lane, Short};
 use std::arch::x86_64::*;
@@ -10,6 +11,28 @@ use std::arch::x86_64::*;
 #[repr(align(64))]
 struct Line {
     _numbers: [f64; 8],
+}
+
+/// The short method of a map for one row, whose numbers are the first of these.
+#[target_feature(enable = "fma")]
+#[expect(clippy::too_many_arguments)]
+pub fn alone<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(
+    map: &M,
+    x0: f64,
+    x1: f64,
+    x2: f64,
+    x3: f64,
+    x4: f64,
+    x5: f64,
+    x6: f64,
+    x7: f64,
+) -> [f64; OUT] {
+    const { assert!(A + B <= 8, "a row has at most eight numbers") };
+    let x = [x0, x1, x2, x3, x4, x5, x6, x7];
+    let (mut a, mut b) = ([0.0; A], [0.0; B]);
+    a.copy_from_slice(&x[..A]);
+    b.copy_from_slice(&x[A..A + B]);
+    map::alone(map.short::<1, true>(map::lanes_of_one(&a), map::lanes_of_one(&b)))
 }
 
 /// Does work with instructions of `$feature`, and copies past the caches by registers of `$width` numbers.

@@ -49,8 +49,8 @@ pub(crate) fn sin_cos_turns<const FMA: bool>(turns: f64, rest: f64) -> (f64, f64
     let quarters = 4.0 * turns;
     let shifted = quarters + INTEGER;
     let part = (quarters - (shifted - INTEGER)) + 4.0 * rest;
-    let ((sin, _), cos) = sin_cos::<FMA>(shifted.to_bits() & 3, part * FRAC_PI_2, 0.0);
-    (sin, cos)
+    let ((sin, rest), cos) = sin_cos::<FMA>(shifted.to_bits() & 3, part * FRAC_PI_2, 0.0);
+    (sin + rest, cos)
 }
 
 /// A place within a half period of `u = 4K · turns`.

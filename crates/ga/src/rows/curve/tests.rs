@@ -9,7 +9,8 @@ impl Curve<1, 2> for Sample {
     fn values<const W: usize, const FMA: bool>(&self, x: &[f64; W]) -> ([[f64; W]; 1], [[f64; W]; 2]) {
         let (mut sin, mut square) = ([[0.0; W]], [[0.0; W]; 2]);
         for l in 0..W {
-            sin[0][l] = sin_cos::<FMA>(1, x[l], 0.0).0.0;
+            let (hi, lo) = sin_cos::<FMA>(1, x[l], 0.0).0;
+            sin[0][l] = hi + lo;
             (square[0][l], square[1][l]) = two_product::<FMA>(x[l], x[l]);
         }
         (sin, square)

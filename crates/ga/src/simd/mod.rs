@@ -9,6 +9,7 @@
 #![allow(unsafe_code)]
 
 pub mod double;
+pub mod foreseen;
 pub mod lanes;
 pub(crate) mod map;
 #[cfg(target_arch = "aarch64")]

@@ -57,7 +57,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
 
-    fn ahead(&mut self, times: impl Iterator<Item = f64>) {
+    fn ahead(&mut self, times: impl Iterator<Item = f64> + Clone) {
         self.orbits.foresee(times);
     }
 
@@ -92,6 +92,10 @@ pub(super) struct OneFormula<'t, const W: usize, const F: bool>(Box<Formulas<'t,
 impl<const W: usize, const F: bool> Forcing<W, F> for OneFormula<'_, W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
+
+    fn ahead(&mut self, times: impl Iterator<Item = f64> + Clone) {
+        self.0.foresee(times);
+    }
 
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
@@ -371,14 +375,13 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
         self.middle = middle;
     }
 
-    fn ahead(&mut self, times: impl Iterator<Item = f64>) {
-        // Of several planets the first.
-        let planet = self.laws.iter_mut().find_map(|law| match law {
-            Law::GravityGradient(orbits) => Some(orbits),
-            _ => None,
-        });
-        if let Some(orbits) = planet {
-            orbits.foresee(times);
+    fn ahead(&mut self, times: impl Iterator<Item = f64> + Clone) {
+        for law in &mut self.laws {
+            match law {
+                Law::GravityGradient(orbits) => orbits.foresee(times.clone()),
+                Law::Formula(formulas) => formulas.foresee(times.clone()),
+                _ => {}
+            }
         }
     }
 

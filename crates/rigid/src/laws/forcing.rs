@@ -37,7 +37,7 @@ pub(crate) trait Forcing<const W: usize, const F: bool> {
     /// Announces the times of the next evaluations, in order: what depends on time alone may be computed for many at once.
     /// Evaluations at other times are possible.
     #[inline(always)]
-    fn ahead(&mut self, _: impl Iterator<Item = f64>) {}
+    fn ahead(&mut self, _: impl Iterator<Item = f64> + Clone) {}
 
     /// The torque in principal axes, without damping `−g I(Ω)` and the reaction of a wheel.
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];

@@ -93,7 +93,7 @@ impl Runner {
         }
         let known = factors.iter().enumerate();
         let known: Vec<_> = known.map(|(i, factor)| factor.one.then(|| self.given(&factors, i, 0))).collect();
-        let Ok(schedule) = self.schedule(&known, false) else {
+        let Ok(schedule) = self.schedule(&known, false, &self.whole()) else {
             // An earlier step may fail in the first row too.
             return self.by_rows(&factors, &mut targets, 1).map_err(late);
         };

@@ -16,6 +16,16 @@ pub(crate) enum Task {
     Do { step: Id, operands: [Range<usize>; 2], to: Range<usize> },
 }
 
+/// A part of a program.
+pub(crate) struct Part {
+    /// For each step, whether it belongs to the part.
+    pub steps: Vec<bool>,
+    /// Steps outside, whose values the caller puts into lanes.
+    pub given: Vec<Id>,
+    /// Steps whose values are wanted.
+    pub results: Vec<Id>,
+}
+
 /// The tasks for each block of rows.
 pub(crate) struct Schedule {
     /// Values common to all rows: numbers, each for a lane, and the first lane.
@@ -25,6 +35,8 @@ pub(crate) struct Schedule {
     pub results: Vec<usize>,
     /// The lanes of the inputs that stay filled, empty for others.
     pub inputs: Vec<Range<usize>>,
+    /// The lanes of the values that the caller gives.
+    pub given: Vec<Range<usize>>,
     /// The number of lanes.
     pub lanes: usize,
 }
@@ -81,26 +93,61 @@ impl Runner {
         fixed
     }
 
+    /// The whole program.
+    pub(crate) fn whole(&self) -> Part {
+        Part { steps: vec![true; self.steps.len()], given: Vec::new(), results: self.results.clone() }
+    }
+
+    /// The steps that depend on one input and otherwise only on known ones, and all other steps.
+    pub(super) fn parts_by(&self, input: usize, known: &[Option<Given>]) -> [Part; 2] {
+        let fixed = self.fixed(&known.iter().map(Option::is_some).collect::<Vec<_>>());
+        let follow: Vec<bool> = (0..known.len()).map(|i| known[i].is_some() || i == input).collect();
+        let follow = self.fixed(&follow);
+        // Inputs stay where the caller sets them.
+        let is_input = |id: Id| matches!(self.steps[id].work, Work::Input(_));
+        let own = |id: Id| follow[id] && !fixed[id] && !is_input(id);
+        let [mut inside, mut outside] = [vec![false; self.steps.len()], vec![false; self.steps.len()]];
+        for (id, step) in self.steps.iter().enumerate() {
+            let used = if own(id) { &mut inside } else { &mut outside };
+            step.operands().iter().for_each(|&operand| used[operand] = true);
+        }
+        self.results.iter().for_each(|&id| outside[id] = true);
+        let ids = || 0..self.steps.len();
+        let given: Vec<Id> = ids().filter(|&id| own(id) && (outside[id] || !inside[id])).collect();
+        let others = ids().map(|id| !own(id)).collect();
+        [
+            Part { steps: follow, given: Vec::new(), results: given.clone() },
+            Part { steps: others, given, results: self.results.clone() },
+        ]
+    }
+
     /// Lanes for the values of steps, and for inputs that are maps; `known` are the inputs that are the same for all rows.
     /// Lanes are reused after the last use of their value, so that all stay in the first-level cache. Fails if a step that
     /// depends only on known inputs has no value.
     ///
     /// With `stay` the other inputs have lanes of their own, filled by the caller; tasks only read those that are results.
-    pub(crate) fn schedule(&self, known: &[Option<Given>], stay: bool) -> Result<Schedule, (Id, MathError)> {
+    pub(crate) fn schedule(
+        &self,
+        known: &[Option<Given>],
+        stay: bool,
+        part: &Part,
+    ) -> Result<Schedule, (Id, MathError)> {
         let fixed = self.fixed(&known.iter().map(Option::is_some).collect::<Vec<_>>());
         let given = |i: usize| known[i].unwrap_or(Given::Determinant(f64::NAN));
         let values = self.values(given, |id| fixed[id])?;
+        let computed = |id: Id| part.steps[id] && !fixed[id];
         let mut last = vec![0; self.steps.len()];
-        for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| !fixed[*id]) {
+        for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| computed(*id)) {
             step.operands().iter().for_each(|&operand| last[operand] = id);
         }
-        self.results.iter().for_each(|&id| last[id] = usize::MAX);
+        part.results.iter().chain(&part.given).for_each(|&id| last[id] = usize::MAX);
         let mut lanes = Lanes::default();
         let mut schedule = Schedule {
             fixed: Vec::new(),
             tasks: Vec::new(),
             results: Vec::new(),
             inputs: vec![0..0; self.inputs.len()],
+            given: Vec::new(),
             lanes: 0,
         };
         let mut places = vec![0..0; self.steps.len()];
@@ -109,6 +156,10 @@ impl Runner {
         for id in (0..self.steps.len()).filter(|&id| fixed[id] && last[id] > 0) {
             places[id] = lanes.take(size(self.steps[id].grades));
             schedule.fixed.push((places[id].start, values[id].components().to_vec()));
+        }
+        for &id in &part.given {
+            places[id] = lanes.take(size(self.steps[id].grades));
+            schedule.given.push(places[id].clone());
         }
         for (input, given) in known.iter().enumerate() {
             if let Some(map @ (Given::Matrix(_) | Given::Determinant(_))) = given {
@@ -122,10 +173,10 @@ impl Runner {
                 of_maps[input] = schedule.inputs[input].clone();
             }
         }
-        for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| !fixed[*id]) {
+        for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| computed(*id)) {
             if let Work::Input(input) = step.work
                 && stay
-                && !self.results.contains(&id)
+                && !part.results.contains(&id)
             {
                 places[id] = schedule.inputs[input].clone();
                 last[id] = usize::MAX;
@@ -153,7 +204,7 @@ impl Runner {
                 lanes.free(places[operand].clone());
             }
         }
-        schedule.results = self.results.iter().map(|&id| places[id].start).collect();
+        schedule.results = part.results.iter().map(|&id| places[id].start).collect();
         schedule.lanes = lanes.count();
         Ok(schedule)
     }

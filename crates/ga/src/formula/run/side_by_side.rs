@@ -1,8 +1,11 @@
 //! Programs on lanes that the caller fills repeatedly, for bodies stepped side by side.
 
-use super::schedule::Schedule;
+use super::schedule::{Part, Schedule};
 use super::single::Runner;
 use super::steps::Given;
+use crate::formula::compile::program::Id;
+use crate::graded::size;
+use crate::simd::foreseen::Foreseen;
 use crate::simd::{Lane, Path};
 use std::ops::Range;
 
@@ -13,38 +16,105 @@ pub struct Beside<'r, const W: usize> {
     schedule: Schedule,
     /// The inputs common to all rows and times.
     known: Vec<Option<Given>>,
-    /// The lanes of each result.
-    results: Vec<Range<usize>>,
+    /// Whether each step belongs to the program, or to the part of one that does not depend on values from outside.
+    steps: Vec<bool>,
+    /// The steps that are results, and their lanes.
+    results: Vec<(Id, Range<usize>)>,
     lanes: Vec<Lane<W>>,
+    parameter: Option<Box<Parameter<'r, W>>>,
+}
+
+/// An input of one number that rows mostly share, such as the time, and the steps that depend on it alone. These are
+/// computed when it changes; for announced numbers, `W` of them at once.
+struct Parameter<'r, const W: usize> {
+    input: usize,
+    /// The steps, with numbers as rows.
+    steps: Beside<'r, W>,
+    /// The bits of the numbers to which the values of the program belong.
+    now: Option<[u64; W]>,
+    /// Whether some row has no value now.
+    missing: bool,
+    foreseen: Foreseen,
+    /// The values for these, one row after the other.
+    values: Vec<f64>,
 }
 
 impl Runner {
-    /// Prepares the lanes. `known` are the inputs common to all rows and times; `None` if a step that depends only on
-    /// these has no value.
+    /// Prepares the lanes. `known` are the inputs common to all rows and times, `parameter` an input of one number that rows
+    /// mostly share; `None` if a step that depends only on known inputs has no value.
     ///
     /// # Panics
     /// If the inputs are not of their kinds and grades.
-    pub fn beside<const W: usize>(&self, known: &[Option<Given>]) -> Option<Beside<'_, W>> {
+    pub fn beside<const W: usize>(
+        &self,
+        known: &[Option<Given>],
+        parameter: Option<usize>,
+    ) -> Option<Beside<'_, W>> {
         assert_eq!(known.len(), self.inputs.len(), "an entry for each input");
-        let schedule = self.schedule(known, true).ok()?;
-        let lanes = schedule.filled();
-        let of = |(number, &first): (usize, &usize)| first..first + self.size_of_result(number);
-        let results = schedule.results.iter().enumerate().map(of).collect();
-        Some(Beside { runner: self, path: Path::best(), schedule, known: known.to_vec(), results, lanes })
+        let Some(input) = parameter else { return self.part(known, self.whole()) };
+        let [own, others] = self.parts_by(input, known);
+        if own.results.is_empty() {
+            return self.part(known, self.whole());
+        }
+        let parameter = Parameter {
+            input,
+            steps: self.part(known, own)?,
+            now: None,
+            missing: false,
+            foreseen: Foreseen::default(),
+            values: Vec::new(),
+        };
+        Some(Beside { parameter: Some(Box::new(parameter)), ..self.part(known, others)? })
+    }
+
+    fn part<const W: usize>(&self, known: &[Option<Given>], part: Part) -> Option<Beside<'_, W>> {
+        let schedule = self.schedule(known, true, &part).ok()?;
+        let of = |(&id, &first): (&Id, &usize)| (id, first..first + size(self.steps[id].grades));
+        Some(Beside {
+            runner: self,
+            path: Path::best(),
+            known: known.to_vec(),
+            results: part.results.iter().zip(&schedule.results).map(of).collect(),
+            steps: part.steps,
+            lanes: schedule.filled(),
+            schedule,
+            parameter: None,
+        })
     }
 }
 
 impl<const W: usize> Beside<'_, W> {
-    /// The numbers of an input, to be set before evaluation; they keep their values. None of an input that is known.
+    /// The numbers of an input other than the parameter, to be set before evaluation; they keep their values. None of an
+    /// input that is known.
     #[inline]
     pub fn input(&mut self, number: usize) -> &mut [Lane<W>] {
         &mut self.lanes[self.schedule.inputs[number].clone()]
     }
 
+    /// Sets the parameter of each row.
+    #[inline]
+    pub fn set_parameter(&mut self, input: usize, numbers: &[f64; W]) {
+        self.input(input)[0].0 = *numbers;
+        if let Some(parameter) = &mut self.parameter {
+            let bits = numbers.map(f64::to_bits);
+            if parameter.now != Some(bits) {
+                parameter.now = Some(bits);
+                parameter.missing = parameter.fill(numbers, &self.schedule.given, &mut self.lanes);
+            }
+        }
+    }
+
+    /// Announces the next values of the parameter, in order. It may take others.
+    pub fn foresee(&mut self, numbers: impl Iterator<Item = f64>) {
+        if let Some(parameter) = &mut self.parameter {
+            parameter.foresee(numbers);
+        }
+    }
+
     /// The numbers of a result.
     #[inline]
     pub fn result(&self, number: usize) -> &[Lane<W>] {
-        &self.lanes[self.results[number].clone()]
+        &self.lanes[self.results[number].1.clone()]
     }
 
     /// Evaluates all rows, each with the bits of [`Runner::value`]; a row with a failing step has NaN as its results.
@@ -57,7 +127,7 @@ impl<const W: usize> Beside<'_, W> {
             |_| {},
             |input, to, lanes| lanes.copy_within(inputs[input].clone(), to.start),
         );
-        if !known {
+        if !known || self.parameter.as_ref().is_some_and(|parameter| parameter.missing) {
             (0..W).for_each(|row| self.complete(row));
         }
     }
@@ -73,15 +143,61 @@ impl<const W: usize> Beside<'_, W> {
             };
             self.known[i].unwrap_or_else(own)
         };
-        let values = runner.values(given, |_| true);
-        for (lanes, &id) in self.results.iter().zip(&runner.results) {
+        let values = runner.values(given, |id| self.steps[id] || self.parameter.is_some());
+        for (id, lanes) in &self.results {
             if self.schedule.fixed.iter().any(|(fixed, _)| *fixed == lanes.start) {
                 // Constant lanes keep their values.
                 continue;
             }
             for (k, lane) in lanes.clone().enumerate() {
-                let value = values.as_ref().map_or(f64::NAN, |values| values[id].components()[k]);
+                let value = values.as_ref().map_or(f64::NAN, |values| values[*id].components()[k]);
                 self.lanes[lane].0[row] = value;
+            }
+        }
+        if let Some(parameter) = &mut self.parameter {
+            // A result may depend on the parameter alone.
+            parameter.now = None;
+        }
+    }
+}
+
+impl<const W: usize> Parameter<'_, W> {
+    /// Fills the lanes with the values for these numbers; whether some row has none.
+    fn fill(&mut self, numbers: &[f64; W], given: &[Range<usize>], lanes: &mut [Lane<W>]) -> bool {
+        let count = given.iter().map(ExactSizeIterator::len).sum::<usize>();
+        let shared = numbers.iter().all(|x| x.to_bits() == numbers[0].to_bits());
+        if shared && let Some(place) = self.foreseen.find(numbers[0]) {
+            let values = &self.values[place * count..(place + 1) * count];
+            for (lane, &x) in given.iter().cloned().flatten().zip(values) {
+                lanes[lane] = Lane::filled(x);
+            }
+            return values.iter().any(|x| x.is_nan());
+        }
+        self.compute(numbers);
+        let mut missing = false;
+        for (number, range) in given.iter().enumerate() {
+            let values = self.steps.result(number);
+            lanes[range.clone()].copy_from_slice(values);
+            missing |= values.iter().any(|lane| lane.0.iter().any(|x| x.is_nan()));
+        }
+        missing
+    }
+
+    fn compute(&mut self, numbers: &[f64; W]) {
+        self.steps.input(self.input)[0].0 = *numbers;
+        self.steps.run();
+    }
+
+    fn foresee(&mut self, numbers: impl Iterator<Item = f64>) {
+        self.values.clear();
+        let numbers = self.foreseen.announce(numbers).to_vec();
+        for numbers in numbers.chunks(W) {
+            let mut rows = [numbers[0]; W];
+            rows[..numbers.len()].copy_from_slice(numbers);
+            self.compute(&rows);
+            for row in 0..numbers.len() {
+                let results = (0..self.steps.results.len()).flat_map(|number| self.steps.result(number));
+                self.values.extend(results.map(|lane| lane.0[row]));
             }
         }
     }

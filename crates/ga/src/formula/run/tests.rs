@@ -181,8 +181,8 @@ fn blocks_equal_single_values() {
     assert!((5..100).contains(&failures), "{failures} programs have no value");
 }
 
-/// Random programs on lanes, filled twice, some inputs the same for all: the bits of single values, and NaN for the rows
-/// that have none.
+/// Random programs on lanes, filled twice, some inputs the same for all, one of them a parameter that is sometimes
+/// announced: the bits of single values, and NaN for the rows that have none.
 #[test]
 fn lanes_equal_single_values() {
     let failures = lanes_against_single_values::<8>() + lanes_against_single_values::<16>();
@@ -209,10 +209,24 @@ fn lanes_against_single_values<const ROWS: usize>() -> usize {
         let known: Vec<Option<Given>> =
             (0..program.inputs.len()).map(|i| is_known(i).then(|| row(&first, i, 0))).collect();
         let always = runner.fixed(&known.iter().map(Option::is_some).collect::<Vec<_>>());
-        let mut beside = runner.beside::<ROWS>(&known);
-        for data in [&first, &draw(&mut random)] {
+        let is_number = |i: &usize| !is_known(*i) && program.inputs[*i].kind.size() == 1;
+        let numbers: Vec<usize> = (0..program.inputs.len()).filter(is_number).collect();
+        let parameter = (!numbers.is_empty()).then(|| numbers[random.below(numbers.len())]);
+        let mut beside = runner.beside::<ROWS>(&known, parameter);
+        let mut second = draw(&mut random);
+        if let Some(parameter) = parameter {
+            let shared = second[parameter][0];
+            second[parameter].fill(shared);
+        }
+        for (data, announced) in [(&first, false), (&second, false), (&first, true), (&second, true)] {
             if let Some(beside) = &mut beside {
-                for i in (0..program.inputs.len()).filter(|&i| !is_known(i)) {
+                if let Some(parameter) = parameter {
+                    if announced {
+                        beside.foresee([0.5, 0.5, data[parameter][0], 0.25].into_iter());
+                    }
+                    beside.set_parameter(parameter, data[parameter].as_slice().try_into().unwrap());
+                }
+                for i in (0..program.inputs.len()).filter(|&i| !is_known(i) && Some(i) != parameter) {
                     let lanes = beside.input(i);
                     let size = lanes.len();
                     for (n, x) in data[i].iter().enumerate() {

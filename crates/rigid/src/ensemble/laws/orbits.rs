@@ -4,6 +4,7 @@ use crate::laws::forcing::Place;
 use crate::laws::torque::lanes::{Three, gradient, seen};
 use crate::laws::torque::orbit::kepler::Elements;
 use crate::laws::torque::{Orbit, Torque};
+use polhode_ga::simd::foreseen::Foreseen;
 use polhode_ga::simd::lanes::{Lanes, Work, fastest};
 
 /// The orbits of all bodies, with their latest positions.
@@ -16,25 +17,9 @@ pub(super) struct Orbits<const W: usize> {
     places: [[f64; W]; 3],
     /// Whether all bodies have the same orbit.
     shared: bool,
+    /// Times to come, and the places on a shared orbit then: lanes hold times instead of bodies.
     foreseen: Foreseen,
-}
-
-/// Places on a shared orbit at times to come: lanes hold times instead of bodies.
-#[derive(Default)]
-struct Foreseen {
-    times: Vec<f64>,
-    places: Vec<[f64; 3]>,
-    /// The place that was used last.
-    last: usize,
-}
-
-impl Foreseen {
-    /// The place at a time, near the one that was used last.
-    fn at(&mut self, time: f64) -> Option<[f64; 3]> {
-        let next = self.times[self.last..].iter().take(4).position(|&known| known == time)?;
-        self.last += next;
-        Some(self.places[self.last])
-    }
+    then: Vec<[f64; 3]>,
 }
 
 impl<const W: usize> Orbits<W> {
@@ -52,6 +37,7 @@ impl<const W: usize> Orbits<W> {
             places: [[0.0; W]; 3],
             shared: orbits.iter().all(|orbit| *orbit == orbits[0]),
             foreseen: Foreseen::default(),
+            then: Vec::new(),
         })
     }
 
@@ -73,17 +59,12 @@ impl<const W: usize> Orbits<W> {
         if !self.shared {
             return;
         }
-        let Foreseen { times: known, places, last } = &mut self.foreseen;
-        known.clear();
-        known.extend(times);
-        known.dedup();
-        places.clear();
-        *last = 0;
-        for times in known.chunks(W) {
+        self.then.clear();
+        for times in self.foreseen.announce(times).chunks(W) {
             let mut lanes = [times[0]; W];
             lanes[..times.len()].copy_from_slice(times);
             let [x, y, nearness] = fastest(Places { elements: &self.elements, times: &lanes });
-            places.extend((0..times.len()).map(|l| [x[l], y[l], self.strength[0] * nearness[l]]));
+            self.then.extend((0..times.len()).map(|l| [x[l], y[l], self.strength[0] * nearness[l]]));
         }
     }
 }
@@ -105,9 +86,9 @@ impl<const W: usize> Work for Moved<'_, W> {
             orbits.times[l] = times[l];
             together &= times[l] == times[0];
         }
-        if together && let Some(place) = orbits.foreseen.at(times[0]) {
+        if together && let Some(place) = orbits.foreseen.find(times[0]) {
             for k in 0..3 {
-                orbits.places[k] = [place[k]; W];
+                orbits.places[k] = [orbits.then[place][k]; W];
             }
             return;
         }

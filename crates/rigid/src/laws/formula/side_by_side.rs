@@ -48,7 +48,8 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
         let same = |values: &[Given; W]| values.iter().all(|value| value.numbers() == values[0].numbers());
         let known: Vec<Option<Given>> =
             still.iter().map(|values| values.as_ref().filter(|v| same(v)).map(|v| v[0])).collect();
-        let mut program = runner.beside(&known)?;
+        let is_time = |source: &Source| matches!(source, Source::Motion(Motion::Time));
+        let mut program = runner.beside(&known, sources.iter().position(is_time))?;
         for (input, values) in still.iter().enumerate().filter_map(|(i, v)| Some((i, v.as_ref()?))) {
             for (l, value) in values.iter().enumerate() {
                 let lanes = program.input(input).iter_mut();
@@ -70,6 +71,11 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
         })
     }
 
+    /// Announces the next times, in order.
+    pub fn foresee(&mut self, times: impl Iterator<Item = f64>) {
+        self.program.foresee(times);
+    }
+
     /// The torques in principal axes; NaN or infinite for a body without one.
     #[inline(always)]
     pub fn torque(&mut self, at: &Place<W, F>) -> Three<W, F> {
@@ -78,7 +84,7 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
             match (motion, &self.frame) {
                 (Motion::Rotor, None) => self.give(input, &at.rotor),
                 (Motion::Rotor, Some(frame)) => self.give(input, &composed(&at.rotor, &reversed(frame))),
-                (Motion::Time, _) => self.give(input, &[at.time]),
+                (Motion::Time, _) => self.program.set_parameter(input, &at.time.0),
                 (Motion::OmegaSpace, _) => self.give(input, &turned(&at.rotor, &at.omega)),
                 (Motion::MomentumSpace, _) => self.give(input, &turned(&at.rotor, &self.momentum(at))),
                 (Motion::MomentumBody, None) => self.give(input, &self.momentum(at)),

@@ -291,7 +291,11 @@ fn turn_about<const K: usize, const I: usize, const J: usize, const W: usize, co
 }
 
 /// The times of the kicks of a step.
-pub(crate) fn stage_times((stages, _): (&[(f64, f64)], f64), time: f64, h: f64) -> impl Iterator<Item = f64> {
+pub(crate) fn stage_times(
+    (stages, _): (&[(f64, f64)], f64),
+    time: f64,
+    h: f64,
+) -> impl Iterator<Item = f64> + Clone {
     let mut now = time;
     let later = stages.iter().map(move |&(_, drift)| {
         now += drift * h;

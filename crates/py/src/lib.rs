@@ -19,7 +19,7 @@ mod _native {
         rotor_exp, rotor_from_components, rotor_from_matrix, rotor_from_plane_angle, rotor_from_quaternion,
         rotor_from_rotation_vector, rotor_from_vectors, rotor_log, rotor_plane_angle, rotor_power,
         rotor_to_matrix, rotor_to_quaternion, rotor_to_rotation_vector, subspaces, to_pauli, units_and_sizes,
-        versor_apply,
+        versor_apply, with_signs,
     };
 
     #[pymodule_export]

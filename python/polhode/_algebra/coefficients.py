@@ -99,7 +99,7 @@ def reshaped(array: Any, shape: tuple[int, ...]) -> Any:
 def taken(array: Any, places: list[int]) -> Any:
     """Return some components, in this order."""
     if isinstance(array, np.ndarray):
-        return array[..., places]
+        return np.take(array, places, axis=-1)  # in C order, unlike array[..., places]
     return _generic.layout.rearranged(kind_of(array), array, places)
 
 

@@ -13,7 +13,7 @@ from polhode import _generic, _native
 from polhode._algebra.coefficients import as_coefficients, common, duplicate, kind_of, namespace
 from polhode._algebra.coefficients import reshaped as coefficients_reshaped
 from polhode._algebra.products import coerced, common_algebra
-from polhode._support.arrays import Array, Shape, is_float, new
+from polhode._support.arrays import Shape, is_float, new
 from polhode._support.memory import require_array
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 V = TypeVar("V", bound="Multivector")
 
-# Rows to which signs are applied at a time.
-_TOGETHER = 32
+# Up to this many numbers NumPy multiplies faster than a call of the core takes.
+_FEW = 256
 
 
 def mask_of(algebra: Algebra, grades: Sequence[int]) -> int:
@@ -98,22 +98,13 @@ def signed(value: Multivector, negative: Callable[[int], bool]) -> Multivector:
 def with_signs(data: Any, signs: Sequence[float]) -> Any:
     """Return the components times these signs."""
     if is_float(data):
-        return _with_signs(data, np.array(signs, dtype=data.dtype))
+        factors = np.array(signs, dtype=data.dtype)
+        if data.size < _FEW:
+            return data * factors
+        result = new(data.shape, data.dtype)
+        _native.with_signs(data.reshape(-1, len(signs)), factors, result.reshape(-1, len(signs)))
+        return result
     return _generic.layout.rearranged(kind_of(data), data, range(len(signs)), tuple(signs))
-
-
-def _with_signs(data: Array, signs: Array) -> Array:
-    """Multiply `_TOGETHER` rows at a time: NumPy's loops over short rows take three times as long."""
-    rows = data.reshape(-1, len(signs))
-    whole = len(rows) // _TOGETHER * _TOGETHER
-    if not whole:
-        return data * signs
-    result = new(data.shape, data.dtype)
-    to = result.reshape(rows.shape)
-    wide = (whole // _TOGETHER, len(signs) * _TOGETHER)
-    np.multiply(rows[:whole].reshape(wide), np.tile(signs, _TOGETHER), out=to[:whole].reshape(wide))
-    np.multiply(rows[whole:], signs, out=to[whole:])
-    return result
 
 
 def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:

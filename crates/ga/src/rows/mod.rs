@@ -5,6 +5,7 @@ pub mod curve;
 pub mod motors;
 pub mod product;
 pub mod rotor_functions;
+pub mod signs;
 pub(crate) mod tiles;
 pub mod versors;
 pub(crate) mod written;

@@ -14,6 +14,7 @@ use polhode_ga::rows::compose::compose;
 use polhode_ga::rows::motors::{self, Motors};
 use polhode_ga::rows::product::{Element, turn};
 use polhode_ga::rows::rotor_functions;
+use polhode_ga::rows::signs;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::G3;
 use polhode_ga::{Bivector, MathError, Multivector, Rotor, Vector};
@@ -59,6 +60,18 @@ pub(crate) fn product<'py>(
 ) -> PyResult<()> {
     let plan = algebra.plan(name, a_grades, b_grades)?;
     by_type!(out, T => fill::<T>(py, plan.sizes, [a, b, out], |t, a, b, out| plan.run(t, a, b, out)))
+}
+
+/// Fills `out` with rows of components times their `signs`, 1 or −1. All three hold float64, or float32.
+#[pyfunction]
+pub(crate) fn with_signs<'py>(
+    py: Python<'py>,
+    rows: Any<'_, 'py>,
+    signs: Any<'_, 'py>,
+    out: Any<'_, 'py>,
+) -> PyResult<()> {
+    let size = signs.len()?;
+    by_type!(out, T => fill::<T>(py, (size, size, size), [rows, signs, out], signs::with_signs))
 }
 
 /// Fills an array from the rows of two others.

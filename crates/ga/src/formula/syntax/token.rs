@@ -343,9 +343,19 @@ pub(crate) fn labelled(atoms: &[Atom], rest: &[Token]) -> Option<String> {
     brackets.then_some(format!("{}({label})", joined(atoms)?))
 }
 
-/// The canonical name of letters that form one name; `None` if one of them is reversed.
+/// The canonical name of letters that form one name; `None` if one of them is reversed, or would lose its mark.
 pub(crate) fn joined(atoms: &[Atom]) -> Option<String> {
-    (!atoms.iter().any(|atom| atom.reversed)).then(|| atoms.iter().map(|atom| atom.name.as_str()).collect())
+    let name: String = atoms.iter().map(|atom| atom.name.as_str()).collect();
+    (!atoms.iter().any(|atom| atom.reversed) && !marks_subscript(&name)).then_some(name)
+}
+
+/// Whether a mark follows letters of a subscript: that of `x_nΩ̇` stands above x, unlike that of `xₙΩ̇`.
+fn marks_subscript(name: &str) -> bool {
+    let mut below = false;
+    name.chars().any(|c| {
+        below = c == '_' || below && primes(c).is_none() && part_sign(c).is_none();
+        below && is_mark(c)
+    })
 }
 
 #[cfg(test)]

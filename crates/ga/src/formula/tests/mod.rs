@@ -219,7 +219,8 @@ fn names_may_be_open() {
     assert_eq!(inputs("R v ~R + (a∧b)·c"), ["R", "v", "a", "b", "c"]);
     assert_eq!(inputs("inertia(Ω) e1e2 + aB"), ["Ω", "inertia", "aB"]);
     assert_eq!(inputs("Σ_k ω_k e_k"), ["ω1", "ω2", "ω3"]);
-    for text in ["R(0) a", "V(x) + I(B)", "R'(t) = 2"] {
+    assert_eq!(inputs("xₙΩ\u{307}"), ["x_n", "Ω\u{307}"]);
+    for text in ["R(0) a", "V(x) + I(B)", "R'(t) = 2", "x_n Ω\u{307}"] {
         assert_eq!(parse(text, Space::g3(), &names).unwrap().text(Style::Unicode), text);
     }
     assert!(compiled("cross(e1, a)").is_ok());

@@ -18,11 +18,15 @@ fn names_are_canonical() {
         ("R( t )", "R(t)"),
         ("n̂", "n\u{302}"),
         ("x\u{307}", "ẋ"),
+        ("x_nΩ\u{307}", "ẋ_nΩ"),
+        ("xₙ'Ω\u{307}", "x_n'Ω\u{307}"),
+        ("x₁Ω\u{307}", "x1Ω\u{307}"),
     ];
     for (name, expected) in cases {
         assert_eq!(canonical(name).as_deref(), Some(expected), "{name}");
+        assert_eq!(canonical(expected).as_deref(), Some(expected), "{name}");
     }
-    for name in ["", "1", "a b", "R̃", "a+b", "a^2", "f(a, b)", "a_"] {
+    for name in ["", "1", "a b", "R̃", "a+b", "a^2", "f(a, b)", "a_", "xₙΩ\u{307}", "R(xₙΩ\u{307})"] {
         assert_eq!(canonical(name), None, "{name}");
     }
 }

@@ -1,5 +1,5 @@
 //! Interpreter: a formula over many rows gives the same bits, and the same error, as over single rows, whose products are
-//! those of the blade table.
+//! those of the blade table; on lanes too, where a row with an error has no value.
 #![no_main]
 
 mod names;
@@ -20,6 +20,7 @@ fuzz_target!(|data: (u8, u64, &str)| {
     let Ok(program) = compile(&tree, Space::g3(), &BOUND) else { return };
     if program.steps.len() < 1000 {
         check_rows(&program, 1 + usize::from(rows), seed);
+        check_lanes(&program, seed);
     }
 });
 
@@ -61,6 +62,86 @@ fn check_rows(program: &Program, rows: usize, mut seed: u64) {
             (Err((_, error)), Ok(())) => panic!("row {row}: {error:?}"),
         }
     }
+}
+
+/// On lanes, with some inputs the same for all rows, and one number that is sometimes shared and announced.
+fn check_lanes(program: &Program, mut seed: u64) {
+    const ROWS: usize = 8;
+    let runner = Runner::new(program).expect("a program of 3-d space");
+    let kinds: Vec<InputKind> = program.inputs.iter().map(|input| input.kind).collect();
+    let mut draw = |kind: InputKind| {
+        let numbers = components(kind, &mut seed);
+        (given_row(kind, &numbers, 1, 0), random(&mut seed) < 0.0)
+    };
+    let known: Vec<Option<Given>> = kinds
+        .iter()
+        .map(|&kind| Some(draw(kind)).filter(|(_, known)| *known).map(|(given, _)| given))
+        .collect();
+    let fixed = fixed(program, &known);
+    let parameter = (0..kinds.len()).find(|&i| known[i].is_none() && kinds[i].size() == 1);
+    let mut beside = runner.beside::<ROWS>(&known, parameter);
+    for _ in 0..4 {
+        let mut rows: Vec<[Given; ROWS]> =
+            kinds.iter().map(|&kind| [(); ROWS].map(|()| draw(kind).0)).collect();
+        for (row, known) in rows.iter_mut().zip(&known) {
+            row.iter_mut().for_each(|given| *given = known.unwrap_or(*given));
+        }
+        if let Some(i) = parameter {
+            let (other, shared) = draw(kinds[i]);
+            if shared {
+                rows[i] = [rows[i][0]; ROWS];
+            }
+            if let Some(beside) = &mut beside {
+                let numbers = rows[i].each_ref().map(|given| given.numbers()[0]);
+                if draw(kinds[i]).1 {
+                    beside.foresee([other.numbers()[0], numbers[0], numbers[0], numbers[7]].into_iter());
+                }
+                beside.set_parameter(i, &numbers);
+            }
+        }
+        if let Some(beside) = &mut beside {
+            for i in (0..kinds.len()).filter(|&i| known[i].is_none() && Some(i) != parameter) {
+                for (row, given) in rows[i].iter().enumerate() {
+                    let lanes = beside.input(i).iter_mut();
+                    lanes.zip(given.numbers()).for_each(|(lane, x)| lane.0[row] = *x);
+                }
+            }
+            beside.run();
+        }
+        for row in 0..ROWS {
+            let one: Vec<Given> = rows.iter().map(|rows| rows[row]).collect();
+            let values = runner.value(&one);
+            let Some(beside) = &beside else {
+                assert!(values.is_err(), "a known step fails on lanes only");
+                continue;
+            };
+            for (number, &id) in program.results.concat().iter().enumerate() {
+                let found: Vec<f64> = beside.result(number).iter().map(|lane| lane.0[row]).collect();
+                match &values {
+                    Ok(values) => {
+                        let alone = values[id].components();
+                        assert!(found.iter().zip(alone).all(same), "row {row}: {found:?}, alone {alone:?}");
+                    }
+                    Err(error) => {
+                        assert!(fixed[id] || found.iter().all(|x| x.is_nan()), "{error:?}: {found:?}")
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Whether each step has the same value for all rows.
+fn fixed(program: &Program, known: &[Option<Given>]) -> Vec<bool> {
+    let mut fixed: Vec<bool> = Vec::new();
+    for step in &program.steps {
+        let own = match step.op {
+            Op::Input(input) | Op::Map { input, .. } => known[input].is_some(),
+            _ => true,
+        };
+        fixed.push(own && step.op.operands().all(|id| fixed[id]));
+    }
+    fixed
 }
 
 /// Each product of two steps, by the table; a step keeps some grades of it.

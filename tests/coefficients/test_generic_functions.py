@@ -142,6 +142,16 @@ def test_float32_is_as_accurate_as_it_can_be():
         assert np.all(difference(got, expected) <= 64 * 2.0**-23 * np.linalg.norm(expected, axis=-1) * 4)
 
 
+def test_roots_across_the_cut_square_to_their_argument(floating):
+    # The eigenvalues −1 ± size (1 + I): their roots nearly cancel.
+    m = np.array([[-1, 0, 0, size, 0, 0, size, 0] for size in (0.1, 1e-3, 1e-6)])
+    x = floating(m)
+    root = np.asarray(call("sqrt", of(x), x, ALL)[0])
+    square = multiplied(of(root), root, ALL, root, ALL)
+    assert np.all(difference(square, m) <= 32 * EPS)
+    assert np.all(root[:, 0] > 0), "the principal root"
+
+
 SPECIAL = [
     ("log", 0b0001, [-1.0], [0, 0, 0, np.pi]),
     ("log", ALL, [-1.0, 0, 0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0, np.pi, 0]),

@@ -21,6 +21,7 @@ fn element(parts: &[(usize, f64)]) -> Multivector {
 /// Places of the components.
 const E1: usize = 1;
 const E2: usize = 2;
+const E3: usize = 3;
 const E23: usize = 4;
 const E12: usize = 6;
 const I: usize = 7;
@@ -78,6 +79,22 @@ fn logarithms_across_the_cut_invert_exponentials() {
         assert!(log.0[E23].abs() > 2.0, "half a turn is part of it: {log:?}");
     }
     assert!(close(element(&[(0, -1.0)]).log().unwrap(), element(&[(E12, PI)]), 4.0));
+}
+
+/// Their eigenvalues `−1 ± size (1 + I)` lie on both sides of the cut of the root, and the roots of these nearly cancel. V is a
+/// number times e3, so that the root is as large as those: its square differs by a few roundings.
+#[test]
+fn roots_across_the_cut_square_to_their_argument() {
+    for size in [0.1, 1e-3, 1e-6] {
+        for m in [
+            element(&[(0, -1.0), (E3, size), (E12, size)]),
+            element(&[(0, -1.0), (E3, -size), (E12, -size), (I, -size)]) * 2000.0,
+        ] {
+            let root = m.sqrt().unwrap();
+            assert!(close(root * root, m, 32.0), "{m:?}: {root:?}");
+            assert!(root.0[0] > 0.0, "the principal root: {root:?}");
+        }
+    }
 }
 
 /// Scaled so that the largest component is in [1, 2), `1 + (1 − δ) e1` has the eigenvalues δ and 2 − δ. Their product over

@@ -210,9 +210,12 @@ def sqrt(d: Numeric, m: Components, mask: int) -> Components:
     safe, _, u = _near_quotients(d, near, zeta, w)
     inner = complex_sqrt(d, Complex(1.0 - u.re, -u.im))
     sum_near = complex_sqrt(d, safe) * complex_sqrt(d, Complex(2.0 + 2.0 * inner.re, 2.0 * inner.im))
-    sum_far = complex_sqrt(d, choose(d, near, 1.0, zeta + root)) + complex_sqrt(
-        d, choose(d, near, 1.0, zeta - root)
-    )
+    plus, minus = (complex_sqrt(d, choose(d, near, 1.0, z)) for z in (zeta + root, zeta - root))
+    sum_far, difference = plus + minus, plus - minus
+    # Across the cut the sum cancels; λ+ − λ− = 2√w does not.
+    across = sum_far.square() < 0.25 * difference.square()
+    quotient = choose(d, across, root.times(2), 1.0).over(choose(d, across, difference, 1.0))
+    sum_far = choose(d, across, quotient, sum_far)
     total = choose(d, near, sum_near, sum_far)
     regular = total.square() > singular(d) * d.sqrt(squares(d, m))
     d.require(regular | zero, "no square root: the multivector is singular to rounding")

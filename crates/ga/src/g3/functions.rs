@@ -184,7 +184,12 @@ impl Multivector {
         }
         let (zeta, v, w) = split(m);
         let root = w.sqrt();
-        let sum = (zeta + root).sqrt() + (zeta - root).sqrt();
+        let (plus, minus) = ((zeta + root).sqrt(), (zeta - root).sqrt());
+        let (mut sum, difference) = (plus + minus, plus - minus);
+        if sum.norm() < 0.5 * difference.norm() {
+            // λ± lie on both sides of the cut and the sum cancels; λ+ − λ− = 2√w does not.
+            sum = root.scale(2.0) / difference;
+        }
         if sum.norm() * sum.norm() <= SINGULAR * (zeta.norm() + v.norm()) {
             return Err(MathError::NoSquareRoot);
         }

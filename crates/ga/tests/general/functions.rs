@@ -112,7 +112,51 @@ fn g3_has_one_set_of_functions() {
     }
 }
 
-/// Boost and turn in planes that commute, both large: each has its closed form.
+/// Odd elements, of all odd grades, and elements near a versor: `M X = 1` to rounding.
+#[test]
+fn odd_and_nearly_simple_elements_have_their_inverse() {
+    for (p, q, r) in [(3, 0, 0), (4, 0, 0), (1, 3, 0), (3, 0, 1), (5, 0, 0), (2, 2, 1)] {
+        let space = Space::new(p, q, r);
+        let blades = space.algebra.blades();
+        let general: Vec<f64> = (0..space.size()).map(|i| (3.7 * i as f64 + 0.4).sin()).collect();
+        let odd: Vec<f64> =
+            (0..space.size()).map(|i| if blades[i].grade() % 2 == 1 { general[i] } else { 0.0 }).collect();
+        let versor = space.sum(&[(3.0, &[1]), (0.5, &[2])]);
+        let near: Vec<f64> = versor.iter().zip(&general).map(|(v, x)| v + 1e-9 * x).collect();
+        for m in [odd, near] {
+            let inverse = space.calculus.inverse(&m).unwrap();
+            let error = distance(&space.product(&m, &inverse), &space.scalar(1.0));
+            let condition = norm(&m) * norm(&inverse) * (space.size() as f64).sqrt();
+            assert!(error <= 4.0 * EPS * condition, "{p} {q} {r} {error:e}");
+        }
+    }
+    // A nearly null vector with a small part beside it, by which no conjugate makes it a number.
+    let space = Space::new(1, 1, 0);
+    let m = space.sum(&[(1.0, &[1]), (1.0 - 1e-4, &[2]), (1e-6, &[1, 2]), (1e-6, &[])]);
+    let inverse = space.calculus.inverse(&m).unwrap();
+    assert!(
+        distance(&space.product(&m, &inverse), &space.scalar(1.0)) <= 8.0 * EPS * norm(&m) * norm(&inverse)
+    );
+}
+
+/// `(s + e1)⁻¹ = (s − e1)/(s² − 1)`, of condition `(1 + s)/(1 − s)`: an error where rounding may have made it up.
+#[test]
+fn nearly_singular_elements_are_an_error() {
+    let space = Space::new(3, 0, 0);
+    let with = |gap: f64| space.calculus.inverse(&space.sum(&[(1.0 - gap, &[]), (1.0, &[1])]));
+    for gap in [EPS, 2.0 * EPS] {
+        let error = with(gap).unwrap_err();
+        assert!(
+            matches!(error, MathError::IllConditioned { reciprocal_condition: c } if (c / (0.5 * gap) - 1.0).abs() < 1e-6),
+            "{error:?} {gap:e}"
+        );
+    }
+    let gap = 2f64.powi(-40);
+    let (inverse, square) = (with(gap).unwrap(), (gap - 2.0) * gap);
+    let expected = space.sum(&[((1.0 - gap) / square, &[]), (-1.0 / square, &[1])]);
+    assert!(distance(&inverse, &expected) <= 4.0 * EPS * norm(&expected) / gap);
+}
+
 /// Where the principal logarithm ends: a whole turn in a plane, alone or with what commutes with it.
 #[test]
 fn what_has_no_value_is_an_error() {
@@ -211,6 +255,11 @@ fn values_keep_to_their_grades() {
                 );
             }
         }
+    }
+    // The inverse of a bivector is one while its square has only one part besides the scalar, and so are three planes'.
+    for n in 2..8 {
+        let kept = if n <= 5 { Grades::BIVECTOR } else { Grades(0x55 & ((1 << (n + 1)) - 1)) };
+        assert_eq!(Space::new(n, 0, 0).calculus.grades(Function::Inverse, Grades::BIVECTOR), kept, "{n}");
     }
     let projective = Space::new(3, 0, 1).calculus;
     assert_eq!(projective.grades(Function::Exp, Grades(0b100)), Grades(0b10101));

@@ -41,6 +41,13 @@ fn closed_forms() {
             assert!((log[i] - b[i]).abs() <= 16.0 * EPS * size, "{angle} {d} {log:?}");
         }
     }
+    // Parts with one null generator so small that scaling both to 1 would leave the range.
+    let null = Space::new(2, 0, 2);
+    let b = null.sum(&[(1e-200, &[1, 3]), (1e-250, &[2, 4])]);
+    let mut motor = b.clone();
+    motor[0] = 1.0;
+    assert_eq!(null.calculus.exp(&b).unwrap(), motor);
+    assert_eq!(null.calculus.log(&motor).unwrap(), b);
     // Boosts up to the end of the range.
     let spacetime = Space::new(1, 3, 0);
     for rapidity in [1e-8, 1.0, 30.0, -700.0] {
@@ -51,6 +58,11 @@ fn closed_forms() {
         assert!(distance(&spacetime.calculus.log(&boost).unwrap(), &b) <= 8.0 * EPS * rapidity.abs());
     }
     assert_eq!(spacetime.calculus.exp(&spacetime.sum(&[(800.0, &[1, 2])])), Err(MathError::Overflow));
+    // A boost beside a null generator: above 18 the rounding of R~R hides that it is 1.
+    let plane = Space::new(1, 1, 1);
+    let boost = plane.sum(&[(f64::cosh(20.0), &[]), (f64::sinh(20.0), &[1, 2])]);
+    let b = plane.sum(&[(20.0, &[1, 2])]);
+    assert!(distance(&plane.calculus.log(&boost).unwrap(), &b) <= 8.0 * EPS * 20.0);
     // A null rotation, e1e2 + e2e3 with square 0.
     let null = spacetime.sum(&[(1e5, &[1, 2]), (1e5, &[2, 3])]);
     let mut turned = null.clone();
@@ -104,19 +116,35 @@ fn whole_turns_have_logarithms_where_a_plane_is_left() {
         let rotor = space.sum(&terms);
         (space, rotor)
     });
-    for (space, rotor) in cases {
+    // A boost seen from a frame that moves along e3: the plane of the turn that commutes with it moves too.
+    let spacetime = Space::new(1, 3, 0);
+    // Their components are dyadic, so that nothing rounds.
+    let frame = spacetime.sum(&[(1.25, &[]), (0.75, &[1, 3])]);
+    let boost = spacetime.sum(&[(-1.25, &[]), (-0.75, &[1, 2])]);
+    let moving = spacetime.product(&spacetime.product(&frame, &boost), &spacetime.reverse(&frame));
+    for (space, rotor) in cases.into_iter().chain([(spacetime, moving)]) {
         let log = space.calculus.log(&rotor).unwrap();
         let back = space.calculus.exp(&log).unwrap();
         assert!(distance(&back, &rotor) <= 32.0 * EPS * norm(&rotor) * norm(&log), "{rotor:?} {log:?}");
         let root = space.calculus.sqrt(&rotor).unwrap();
         assert!(distance(&space.product(&root, &root), &rotor) <= 32.0 * EPS * norm(&rotor) * norm(&log));
     }
-    let none: [(Space, Vec<f64>); 5] = [
+    let none: [(Space, Vec<f64>); 7] = [
         ((1, 1, 0), vec![(-f64::cosh(0.8), &[][..]), (f64::sinh(0.8), &[1, 2][..])]),
         ((1, 1, 0), vec![(1.0, &[1, 2][..])]),
         ((2, 1, 0), vec![(-1.0, &[][..]), (1.0, &[1, 2][..]), (1.0, &[1, 3][..])]),
         ((2, 0, 1), vec![(-1.0, &[][..]), (1.0, &[1, 3][..])]),
         ((1, 3, 0), vec![(-1.0, &[][..]), (1.0, &[1, 2][..]), (1.0, &[2, 3][..])]),
+        ((1, 2, 0), vec![(-1.0, &[][..]), (1e-9, &[1, 2][..])]),
+        // A boost in a moving plane of two space dimensions, which leaves no plane to turn in.
+        (
+            (1, 2, 0),
+            vec![
+                (-f64::cosh(2.0), &[][..]),
+                (1.25 * f64::sinh(2.0), &[1, 2][..]),
+                (0.75 * f64::sinh(2.0), &[2, 3][..]),
+            ],
+        ),
     ]
     .map(|((p, q, r), terms)| {
         let space = Space::new(p, q, r);
@@ -125,6 +153,22 @@ fn whole_turns_have_logarithms_where_a_plane_is_left() {
     });
     for (space, rotor) in none {
         assert_eq!(space.calculus.log(&rotor), Err(MathError::NoBivectorLogarithm), "{rotor:?}");
+    }
+}
+
+/// Nearly a whole turn with a small boost: C is nearly −1, and 1 + C would cancel.
+#[test]
+fn nearly_whole_turns_keep_their_digits() {
+    for (space, boost) in [(Space::new(1, 3, 0), &[1, 2][..]), (Space::new(4, 1, 0), &[2, 5])] {
+        for (gap, rapidity) in [(1e-3, 2e-3), (1e-5, 2e-5), (1e-7, 1e-6)] {
+            let angle = PI - gap;
+            let b = space.sum(&[(angle, &[3, 4]), (rapidity, boost)]);
+            let turn = space.sum(&[(angle.cos(), &[]), (angle.sin(), &[3, 4])]);
+            let boost = space.sum(&[(rapidity.cosh(), &[]), (rapidity.sinh(), boost)]);
+            let log = space.calculus.log(&space.product(&turn, &boost)).unwrap();
+            // The sine of the gap has the rounding of π.
+            assert!(distance(&log, &b) <= 16.0 * EPS, "{gap} {}", distance(&log, &b));
+        }
     }
 }
 

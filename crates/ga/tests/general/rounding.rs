@@ -207,13 +207,41 @@ fn what_is_not_a_versor_stays_an_error() {
     // Without a rotor there is nothing that the null parts could be of.
     let null = Space::new(2, 0, 2).sum(&[(1.0, &[1, 3]), (0.5, &[1, 4]), (0.3, &[1, 2, 3, 4])]);
     assert_eq!(Space::new(2, 0, 2).calculus.log(&null), Err(MathError::NoLogarithm));
+    // Two null planes whose square is not a number.
+    let planes = Space::new(2, 0, 2).sum(&[(1.0, &[1, 3]), (1.0, &[2, 4])]);
+    assert_eq!(Space::new(2, 0, 2).calculus.log(&planes), Err(MathError::NoLogarithm));
     let light = Space::new(1, 1, 1).sum(&[(1.0, &[]), (1.0, &[1, 2]), (0.3, &[1, 3])]);
     assert_eq!(Space::new(1, 1, 1).calculus.log(&light), Err(MathError::NoLogarithm));
     let four = Space::new(4, 0, 0);
     let rotor = four.sum(&[(1.0, &[]), (1e-3, &[1, 2, 3, 4])]);
     let single = four.calculus.clone().rounded_to(f64::from(f32::EPSILON));
     assert!(matches!(single.log(&rotor), Err(MathError::NotVersor { .. })));
+    // `M~M = 1 + 2e·e1e2e3e4 + e²`: thousands of roundings are a versor, half of the digits of a float32 are not.
+    let with = |e: f64| four.sum(&[(1.0, &[]), (e, &[1, 2, 3, 4])]);
+    assert!(four.calculus.log(&with(1e-13)).is_ok());
+    assert!(matches!(four.calculus.log(&with(1e-11)), Err(MathError::NotVersor { .. })));
+    assert!(single.log(&with(2e-5)).is_ok());
+    assert!(matches!(single.log(&with(1.2e-4)), Err(MathError::NotVersor { .. })));
     assert!(projective.calculus.log(&projective.sum(&[(1e-17, &[1, 4])])).is_err());
+}
+
+/// A product of thousands of rotors, each of which rounds, still is a versor, and a large angle loosens its logarithm's check.
+#[test]
+fn thousands_of_products_leave_a_versor() {
+    for (p, q, r) in [(4, 0, 0), (5, 0, 0), (6, 0, 0), (3, 0, 1)] {
+        let space = Space::new(p, q, r);
+        let planes = p * (p - 1) / 2;
+        let b = space.of_grade(
+            2,
+            &(0..28).map(|i| if i < planes { (i as f64 + 0.3).sin() } else { 0.0 }).collect::<Vec<_>>(),
+        );
+        let b = scaled(&b, 2.0 / norm(&b));
+        let rotor = exp(&space, &b);
+        // The error of n products is at most that of each, n times; this is it at its largest.
+        let worst: Vec<f64> =
+            rotor.iter().enumerate().map(|(i, x)| x * (1.0 + 1e-13 * (1.7 * i as f64).sin())).collect();
+        undone(&space, &worst, 1.0).unwrap();
+    }
 }
 
 /// Null parts of rounding do not count in the condition of the inverse, whose own null parts they make.

@@ -99,6 +99,9 @@ proptest! {
             let sign = j.iter().zip(&join).map(|(a, b)| a * b).sum::<f64>().signum();
             prop_assert!(distance(&scaled(&join, sign * norm(&j)), &j) <= 1e-12 * norm(&j));
             prop_assert!(distance(&scaled(&meet, sign * norm(&shared)), &shared) <= 1e-12 * norm(&shared));
+            // Of the largest components the first, here the only one, is positive.
+            let largest = join.iter().copied().fold(0.0, |a: f64, x| if x.abs() > a.abs() { x } else { a });
+            prop_assert!(largest > 0.0, "{join:?}");
             if common + left + right == n {
                 let vee = space.calculus.vee(&a, &b);
                 prop_assert!(distance(&scaled(&meet, norm(&vee)), &vee) <= 1e-12 * norm(&vee));

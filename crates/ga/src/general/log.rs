@@ -169,24 +169,20 @@ impl Calculus {
         (norm(&square[1..]) / size.powi(2)).max(norm(&part(m, |k| k % 2 == 1)) / size)
     }
 
-    /// The versor with the same part `M₀` without null generators. `M = M₀(1 + X)` with X nilpotent, and of a
-    /// versor `log(1 + X) = X − X²/2 + …` is a bivector: `M₀ exp⟨log(1 + X)⟩₂`. Both series end with the
-    /// power r, the number of null generators.
+    /// The versor with the same part `M₀` without null generators. `M = M₀(1 + X)` with X nilpotent, and of a versor
+    /// `log(1 + X) = X − X²/2 + …` is a bivector: `M₀ exp⟨X⟩₂`. The powers of X have no bivector part, because a product
+    /// of two parts with one null generator each is one only if both have the same other generators; these two
+    /// anticommute, and the square of X has their sum. The series of exp ends with the power r, the number of null
+    /// generators.
     fn nearest_in_null(&self, m: &[f64]) -> Vec<f64> {
         let rotor = self.without_null(m);
         let mut null = m.to_vec();
         add_scaled(&mut null, &rotor, -1.0);
         let square = self.scalar_product(&rotor, &reverse(&rotor));
-        let x = scaled(&self.product(&reverse(&rotor), &null), 1.0 / square);
-        let most = self.null.count_ones();
-        let (mut power, mut log) = (x.clone(), part(&x, |k| k == 2));
-        for k in 2..=most {
-            power = scaled(&self.product(&power, &x), -1.0);
-            add_scaled(&mut log, &part(&power, |k| k == 2), 1.0 / f64::from(k));
-        }
+        let bivector = scaled(&part(&self.product(&reverse(&rotor), &null), |k| k == 2), 1.0 / square);
         let mut exp = self.scalar(1.0);
-        for k in (1..=most).rev() {
-            exp = scaled(&self.product(&log, &exp), 1.0 / f64::from(k));
+        for k in (1..=self.null.count_ones()).rev() {
+            exp = scaled(&self.product(&bivector, &exp), 1.0 / f64::from(k));
             exp[0] += 1.0;
         }
         self.product(&rotor, &exp)

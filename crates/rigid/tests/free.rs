@@ -187,3 +187,27 @@ fn the_separatrix_ends_in_the_middle_axis() {
         }
     }
 }
+
+/// On the separatrix, whose series has no period: L in space stays, and `R' = −½ R Ω`, which also shows the turn about L. The
+/// middle moment is not a power of two.
+#[test]
+fn rotors_turn_with_the_spin_on_the_separatrix() {
+    let (i, h) = ([3.75, 5.0, 7.5], 1e-4);
+    for signs in 0..8 {
+        let sign = |k: usize| if signs >> k & 1 == 1 { -1.0 } else { 1.0 };
+        let omega = Bivector([2.0 * sign(0), 0.5 * sign(1), sign(2)]);
+        let motion = FreeMotion::in_principal_axes(i, start(), omega);
+        assert_eq!(motion.describe().regime, Regime::Separatrix);
+        let first = start().apply_bivector(momentum(i, omega));
+        for t in [-20.0, -1.5, 0.75, 3.0, 1e3] {
+            let (rotor, omega) = motion.at(t);
+            let change = rotor.apply_bivector(momentum(i, omega)) - first;
+            assert!(change.norm() <= 16.0 * EPS * first.norm(), "{signs} {t} {:e}", change.norm());
+            // Between t − h and t + h it turns by 2hΩ, up to h³ times second derivatives of Ω.
+            let turn = motion.at(t - h).0.reverse() * motion.at(t + h).0;
+            let [_, x, y, z] = turn.components();
+            let apart = Bivector([x, y, z]) / -h - omega;
+            assert!(apart.norm() <= 1e-6, "{signs} {t} {:e}", apart.norm());
+        }
+    }
+}

@@ -103,6 +103,26 @@ fn damped_limits() {
     assert!(matches!(bad, Err(SimulateError::BadValue { what: "the damping g", .. })));
 }
 
+/// The phase is that of the free body at `τ = (1 − e^{−gt})/g`, so it is accurate while |τ| is within the free body's horizon
+/// T: for `t` from `−ln(1 + gT)/g` to `−ln(1 − gT)/g`, and forever if g T > 1.
+#[test]
+fn damped_horizons() {
+    let [past, most] = damped(0.0).horizons();
+    assert!(past == most && most.is_finite());
+    for part in [1e-6, 0.5, 0.999] {
+        let g = part / most;
+        let expected = [part.ln_1p() / g, -(-part).ln_1p() / g];
+        let reversed = [expected[1], expected[0]];
+        for (found, expected) in [(damped(g).horizons(), expected), (damped(-g).horizons(), reversed)] {
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!((found / expected - 1.0).abs() <= 1e-12, "{part} {found:e} {expected:e}");
+            }
+        }
+    }
+    assert_eq!(damped(1.5 / most).horizons()[1], f64::INFINITY);
+    assert_eq!(damped(-1.5 / most).horizons()[0], f64::INFINITY);
+}
+
 fn sphere() -> LarmorSphere {
     let inertia = Inertia::from_principal_moments([2.0; 3]).unwrap();
     LarmorSphere::new(&inertia, start(), Bivector([0.5, 1.0, 0.25]), Vector([0.125, 0.5, 1.0])).unwrap()

@@ -172,7 +172,14 @@ fn neglected_asymmetry() {
     // Upright and unstable: λ² = c/i1 − (i3 ω3/2i1)².
     let falling = top(even, [off, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0]);
     let growth = (1.0 - 0.75f64 * 0.75).sqrt();
-    assert!(falling.neglected(40.0) >= off * (growth * 40.0).exp());
+    let angle = falling.neglected(40.0);
+    assert!(angle >= off * (growth * 40.0).exp() && angle <= off * 1e4 * (growth * 40.0).exp(), "{angle:e}");
+    // Asleep above ω3 = 2 √(c i1)/i3, where it does not grow.
+    let inertia = Inertia::from_principal_moments(even).unwrap();
+    let turning = Bivector([0.0, 0.0, 5.0]);
+    let asleep = LagrangeTop::new(&inertia, Rotor::IDENTITY, turning, Vector([off, 0.0, 1.0])).unwrap();
+    let angle = asleep.neglected(1e6);
+    assert!(angle >= off * 1e6 && angle <= off * 1e8, "{angle:e}");
 }
 
 #[test]
@@ -184,4 +191,66 @@ fn horizon_and_regime() {
     assert!(!top.describe().sleeps && top.horizon() > 1e16);
     let top = LagrangeTop::new(&inertia, Rotor::IDENTITY, Bivector([0.5, 0.0, 3.0]), up).unwrap();
     assert!(top.horizon() > 1e16 && top.horizon() < 1e18);
+    // Without weight the tilt is that of e3 of the body, too.
+    let tilted = Rotor::from_components([3f64.sqrt(), 1.0, 0.0, 0.0]).unwrap();
+    let top = LagrangeTop::new(&inertia, tilted, Bivector([0.0, 0.0, 3.0]), Vector::default()).unwrap();
+    assert!((top.describe().tilt_min - std::f64::consts::FRAC_PI_3).abs() <= 4.0 * EPS);
+}
+
+/// Through the lower pole `L_z = −L3`, so that the rate of precession `(L_z − L3 u)/i1(1 − u²) = −L3/i1(1 − u)` never changes
+/// its sign; the same at the upper one with `L3/i1(1 + u)`.
+#[test]
+fn tops_through_a_pole_precess_one_way() {
+    let inertia = Inertia::from_principal_moments([1.0, 1.0, 0.5]).unwrap();
+    let up = Vector([0.0, 0.0, 1.0]);
+    let hanging = Rotor::from_components([0.0, 1.0, 0.0, 0.0]).unwrap();
+    for spin in [3.0, -3.0] {
+        for (rotor, side) in [(hanging, -1.0), (Rotor::IDENTITY, 1.0)] {
+            let top = LagrangeTop::new(&inertia, rotor, Bivector([1.0, 0.0, spin]), up).unwrap();
+            let found = top.describe();
+            assert_eq!(found.regime, LagrangeRegime::Waves);
+            let rate = |tilt: f64| side * 0.5 * spin / (1.0 + side * tilt.cos());
+            let (one, other) = (rate(found.tilt_min), rate(found.tilt_max));
+            let mean = found.precession_rate.unwrap();
+            assert!(mean > one.min(other) && mean < one.max(other), "{one} {mean} {other}");
+            // Beside the pole, where the rate is large and not zero.
+            for tilt in [1e-4, -1e-4, 1e-8, -1e-8] {
+                let beside = rotor * Rotor::from_components([1.0, tilt, 2.0 * tilt, 0.0]).unwrap();
+                let top = LagrangeTop::new(&inertia, beside, Bivector([1.0, 0.0, spin]), up).unwrap();
+                let regime = top.describe().regime;
+                assert!(
+                    matches!(regime, LagrangeRegime::Waves | LagrangeRegime::Loops),
+                    "{regime:?} {tilt:e}"
+                );
+            }
+        }
+    }
+}
+
+/// With `L_z = L3` and the energy of the upright top it rises for ever: from `1 + u = L3²/2c i1`, here the horizontal, where
+/// it precesses with `L3/i1`. Energy and `L_z` stay, and `R' = −½ R Ω`.
+#[test]
+fn a_spinning_top_rises_for_ever_on_the_separatrix() {
+    let (moments, c, h) = ([1.0, 1.0, 0.5], 2.0, 1e-4);
+    let inertia = Inertia::from_principal_moments(moments).unwrap();
+    for (x, precession, spin) in [(1.0, 2.0, 4.0), (-1.0, -2.0, 4.0), (1.0, -2.0, -4.0), (-1.0, 2.0, -4.0)] {
+        let rotor = Rotor::from_components([1.0, x, 0.0, 0.0]).unwrap();
+        let omega = Bivector([0.0, -precession, spin]);
+        let top = LagrangeTop::new(&inertia, rotor, omega, Vector([0.0, 0.0, c])).unwrap();
+        assert_eq!(top.describe().regime, LagrangeRegime::Separatrix);
+        for t in [-30.0, -2.0, 0.0, 0.5, 3.0, 12.0] {
+            let (rotor, omega) = top.at(t);
+            let u = rotor.apply(Vector([0.0, 0.0, 1.0])).0[2];
+            let momentum = Bivector([0, 1, 2].map(|k| moments[k] * omega.0[k]));
+            let energy = 0.5 * (0..3).map(|k| moments[k] * omega.0[k] * omega.0[k]).sum::<f64>() + c * u;
+            assert!((energy - 6.0).abs() <= 64.0 * EPS, "{t} {energy}");
+            let vertical = rotor.apply_bivector(momentum).0[2];
+            assert!((vertical - 0.5 * spin).abs() <= 64.0 * EPS, "{t} {vertical}");
+            assert!(u >= -8.0 * EPS && (t.abs() < 10.0 || u > 1.0 - 1e-6), "{t} {u}");
+            // Between t − h and t + h it turns by 2hΩ, up to h³ times second derivatives of Ω.
+            let [_, x, y, z] = (top.at(t - h).0.reverse() * top.at(t + h).0).components();
+            let apart = Bivector([x, y, z]) / -h - omega;
+            assert!(apart.norm() <= 1e-6, "{t} {:e}", apart.norm());
+        }
+    }
 }

@@ -29,7 +29,7 @@ CASES = {
     "tiny wobble": ((1, 2, 3), (2**-30, 2**-31, 1.0)),
     "long axis, steady": ((1, 2, 3), (-2.0, 0.0, 0.0)),
     "middle axis, steady": ((1, 2, 3), (0.0, 1.0, 0.0)),
-    "symmetric, across": ((2, 2, 1), (3.0, 4.0, 0.0)),
+    "symmetric, across": ((2, 2, 0.5), (3.0, 4.0, 0.0)),
     "rest": ((1, 2, 3), (0.0, 0.0, 0.0)),
 }
 every_case = pytest.mark.parametrize(("i", "w"), CASES.values(), ids=CASES.keys())

@@ -4,8 +4,11 @@
 //! conserved quantity changes by roundings of its terms, any other by a thousandth of them.
 
 use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::Inertia;
 use polhode_rigid::laws::conserved::Conserved;
 use polhode_rigid::laws::torque::{Orbit, Torque, total, turn_from, wheel};
+use polhode_rigid::methods::Method;
+use polhode_rigid::run::{Options, Problem};
 use polhode_rigid::state::phase::{Gyrostat, Phase};
 
 const STEP: f64 = 1e-3;
@@ -243,4 +246,29 @@ fn the_shorter_turn_is_taken() {
         let expected = Bivector([0.6, 0.0, -0.8]) * shorter;
         assert!((found - expected).norm() <= 8.0 * f64::EPSILON * (1.0 + shorter.abs()), "{angle}");
     }
+}
+
+/// The implicit midpoint rule lets the energy oscillate. Its changes at the output times are `(E − E0)` by the
+/// size of its terms, the kinetic energy and the largest torque; the largest at the steps is what the certificate reports.
+#[test]
+fn changes_of_the_energy_are_those_of_its_terms() {
+    let inertia = Inertia::from_principal_moments([1.5, 2.0, 3.0]).unwrap();
+    let c = Vector([0.0, 0.0, 4.0]);
+    let rotor = Rotor::from_components([4.0, 1.0, -2.0, 1.0]).unwrap();
+    let problem = Problem::new(&inertia, rotor, Bivector([0.5, -2.0, 1.5]), &[Torque::Heavy(c)]);
+    let times: Vec<f64> = (0..=40).map(|k| f64::from(k) * 0.125).collect();
+    let options = Options { method: Some(Method::Midpoint), step: Some(0.125), ..Options::default() };
+    let motion = problem.simulate(&times, options, &mut |_| true).unwrap();
+    let states = motion.states();
+    let drifts = motion.drifts();
+    let (_, changes) = drifts.iter().find(|(quantity, _)| quantity.name() == "energy").unwrap();
+    let (_, first, drift) = motion.certificate.drifts.iter().find(|(q, _, _)| q.name() == "energy").unwrap();
+    assert!((first - states.energies[0]).abs() <= 1e-14 * first.abs());
+    let size = first - rotor.apply(c).0[2] + c.norm();
+    for (change, energy) in changes.iter().zip(&states.energies) {
+        assert!((change - (energy - first) / size).abs() <= 1e-13, "{change:e} {energy}");
+    }
+    let largest = changes.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    assert!(largest > 1e-6 && (drift - largest).abs() <= 1e-13, "{largest:e} {drift:e}");
+    assert!(changes.last().unwrap().abs() < largest);
 }

@@ -2,8 +2,11 @@
 
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
+use polhode_rigid::Inertia;
 use polhode_rigid::exact::free::FreeMotion;
 use polhode_rigid::exact::regime::Regime;
+use polhode_rigid::methods::Method;
+use polhode_rigid::run::{Options, Problem};
 use proptest::prelude::*;
 
 const EPS: f64 = f64::EPSILON;
@@ -210,4 +213,39 @@ fn rotors_turn_with_the_spin_on_the_separatrix() {
             assert!(apart.norm() <= 1e-6, "{signs} {t} {:e}", apart.norm());
         }
     }
+}
+
+/// At 1e16 s after its start the time since then is a multiple of 2 s and a rest, in which the body turns by radians: the
+/// states are those of the motion that goes on from the first.
+#[test]
+fn a_motion_long_after_its_start_keeps_its_phase() {
+    let (i, omega) = ([1.25, 1.75, 2.5], Bivector([2.0, -11.0, 16.0]));
+    let inertia = Inertia::from_principal_moments(i).unwrap();
+    let problem = Problem::new(&inertia, start(), omega, &[]).starting_at(-1e16);
+    let times = [0.0, 0.125, 0.625, 0.9375, 1.5];
+    let states = problem.simulate(&times, Options::default(), &mut |_| true).unwrap().states();
+    let from_zero = FreeMotion::in_principal_axes(i, states.rotors[0], states.omegas[0]);
+    for (k, &t) in times.iter().enumerate() {
+        let (rotor, omega) = from_zero.at(t);
+        let change = largest((0..4).map(|c| rotor.components()[c] - states.rotors[k].components()[c]));
+        assert!(change <= 1e-12, "rotor off by {change:e} at {t}");
+        assert!((omega - states.omegas[k]).norm() <= 1e-12 * omega.norm(), "{t}");
+    }
+}
+
+/// The modified moments of the Moser–Veselov step leave an error of order 4 in the phase, for moments of any size.
+#[test]
+fn moser_veselov_follows_the_free_top_to_fourth_order() {
+    let (i, omega) = ([1.25, 1.75, 2.5], Bivector([0.5, -0.75, 1.0]));
+    let inertia = Inertia::from_principal_moments(i).unwrap();
+    let exact = FreeMotion::in_principal_axes(i, start(), omega).at(4.0);
+    let error = |step: f64| {
+        let options = Options { method: Some(Method::MoserVeselov), step: Some(step), ..Options::default() };
+        let motion =
+            Problem::new(&inertia, start(), omega, &[]).simulate(&[4.0], options, &mut |_| true).unwrap();
+        let states = motion.states();
+        largest((0..4).map(|c| exact.0.components()[c] - states.rotors[0].components()[c]))
+    };
+    let (coarse, fine) = (error(0.1), error(0.05));
+    assert!(coarse < 1e-4 && (coarse / fine).log2() > 3.8, "{coarse:e} {fine:e}");
 }

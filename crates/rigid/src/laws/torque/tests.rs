@@ -34,3 +34,64 @@ fn the_first_time_without_a_value_is_reported() {
     let (time, error) = law.values(&BODY, &state(), &[1.0, 3.0, 3.0, 4.0]).expect_err("infinite at 3 s");
     assert!(time == 3.0 && error.0.contains("division by zero"), "{error:?}");
 }
+
+/// Over all attitudes, here some thousand, a torque stays within its size and a potential within its range; those of single
+/// fields and springs are reached.
+#[test]
+fn sizes_and_ranges_bound_torques_and_potentials() {
+    let body = Gyrostat::rigid([1.0, 2.0, 2.5]);
+    let rest = Rotor::from_components([1.0, 0.2, 0.3, -0.1]).expect("a rotor");
+    let orbit = Orbit::new(3.0, 0.3, 0.0).expect("an ellipse");
+    let laws = [
+        (Torque::Heavy(Vector([0.5, 3.0, -1.0])), true),
+        (Torque::Magnetic { dipole: Vector([0.1, 0.2, 2.5]), field: Vector([3.0, -0.5, 1.0]) }, true),
+        (Torque::TorsionSpring { stiffness: -3.0, rest }, true),
+        (Torque::GravityGradient(orbit), false),
+    ];
+    for (law, reached) in laws {
+        let (mut most, mut low, mut high) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
+        for k in 0..4000 {
+            // Points of the unit 3-sphere with irrational steps.
+            let [a, b, c] = [0.000_25, 0.618_034, 0.754_878].map(|step| (f64::from(k) + 0.5) * step % 1.0);
+            let turn = std::f64::consts::TAU;
+            let (s, t) = (a.sqrt(), (1.0 - a).sqrt());
+            let components =
+                [s * (turn * b).cos(), s * (turn * b).sin(), t * (turn * c).cos(), t * (turn * c).sin()];
+            let rotor = Rotor::from_unit_components(components);
+            // At the periapsis.
+            let at = Phase { rotor, momentum: Bivector::default(), time: 0.0 };
+            most = most.max(law.value(&body, &at).expect("a torque").norm());
+            let potential = law.potential(&body, &at).unwrap_or(0.0);
+            (low, high) = (low.min(potential), high.max(potential));
+        }
+        let (size, range) = (law.size(&body), law.potential_range());
+        assert!(
+            most <= size * (1.0 + 1e-12) && high - low <= range * (1.0 + 1e-12),
+            "{most} {low} {high} {law:?}"
+        );
+        assert!(
+            !reached || (most >= 0.97 * size && high - low >= 0.95 * range),
+            "{most} {low} {high} {law:?}"
+        );
+    }
+}
+
+/// At the periapsis the direction turns fastest and the attraction is largest.
+#[test]
+fn the_periapsis_is_the_fastest_and_nearest_place() {
+    for (rate, eccentricity) in [(1.2, 0.3), (-0.4, 0.7), (2.5, 0.0)] {
+        let orbit = Orbit::new(rate, eccentricity, 0.0).expect("an orbit");
+        let turn = |time: f64| {
+            let h = 1e-4;
+            let [u, v] = [time - h, time + h].map(|t| orbit.place(t).0);
+            u.cross(v).norm() / (2.0 * h)
+        };
+        assert!((turn(0.0) / orbit.fastest_turn() - 1.0).abs() <= 1e-6, "{rate} {eccentricity}");
+        assert!((orbit.place(0.0).1 / orbit.largest_nearness() - 1.0).abs() <= 1e-12);
+        for k in 1..100 {
+            let time = 0.1 * f64::from(k);
+            assert!(turn(time) <= orbit.fastest_turn() * (1.0 + 1e-6));
+            assert!(orbit.place(time).1 <= orbit.largest_nearness() * (1.0 + 1e-12));
+        }
+    }
+}

@@ -57,3 +57,31 @@ fn means_agree_with_symmetric_forms() {
     }
     assert_eq!(mean(0.0), 0.0);
 }
+
+/// The duplication theorem (Carlson 1995, eq. 2.2), for arguments so near to each other that the left side is the series at its
+/// full spread, and the right one at a quarter of it.
+#[test]
+fn the_series_agrees_with_a_duplication() {
+    for [x, y, z, p] in [
+        [1.0, 1.001_1, 0.999_3, 1.000_9],
+        [1.001_1, 1.001_0, 1.000_9, 0.998_9],
+        [0.999, 0.998_9, 1.000_2, 1.001_6],
+        [1.0, 1.0, 1.001, 1.001],
+    ] {
+        let [sx, sy, sz, sp] = [x, y, z, p].map(f64::sqrt);
+        let (d, lambda) = ((sp + sx) * (sp + sy) * (sp + sz), sx * sy + sx * sz + sy * sz);
+        let [a, b, c, e] = [x, y, z, p].map(|x: f64| 0.25 * (x + lambda));
+        let beside = (p - x) * (p - y) * (p - z) / (d * d);
+        let expected = 0.25 * r_j(a, b, c, e) + 6.0 / d * (1.0 - beside / 3.0);
+        assert!((r_j(x, y, z, p) / expected - 1.0).abs() <= 1e-15, "{x} {y} {z} {p}");
+    }
+}
+
+/// `R_J(1, 1, 1, p) = 3/(1 − p) · (R_C(1, p) − 1)`, with `R_C(1, p) = artanh √(1 − p) / √(1 − p)` for p < 1.
+#[test]
+fn elementary_values_below_the_mean() {
+    for p in [0.01, 0.25, 0.75f64] {
+        let root = (1.0 - p).sqrt();
+        close(r_j(1.0, 1.0, 1.0, p), 3.0 / (1.0 - p) * (root.atanh() / root - 1.0));
+    }
+}

@@ -345,3 +345,18 @@ fn errors_of_impossible_bodies() {
     );
     assert_eq!(points(&[0.0], &[origin]), "mass must be positive and finite, got 0.0 kg");
 }
+
+/// A point has no moments, whatever is beside it without mass; masses apart have some, unless these underflow.
+#[test]
+fn masses_at_one_place_are_a_point() {
+    let (at, beside) = (Vector([3.0, 0.0, 0.0]), Vector([1.0, 0.0, 0.0]));
+    for (masses, positions) in
+        [(vec![2.0], vec![at]), (vec![0.5, 1.5], vec![at, at]), (vec![0.0, 2.0], vec![beside, at])]
+    {
+        let body = Body::from_points(&masses, &positions).unwrap();
+        assert_eq!((body.mass, body.center_of_mass), (2.0, at));
+        assert_eq!(body.inertia.principal_moments(), [0.0; 3]);
+    }
+    let near = [Vector::default(), Vector([1e-200, 0.0, 0.0])];
+    assert!(matches!(Body::from_points(&[1.0, 1.0], &near), Err(BodyError::TooSmall { .. })));
+}

@@ -139,20 +139,24 @@ def test_a_motion_continues_with_its_wheels():
     np.testing.assert_allclose(rest.wheel_speed[0], whole.wheel_speed[1], rtol=1e-9)
 
 
-def test_the_gradient_acts_on_the_wheels_too():
+@pytest.mark.parametrize("eccentricity", [0.0, 0.3])
+def test_the_gradient_acts_on_the_wheels_too(eccentricity):
     # Idle wheels with H = 0 turn freely about their axes, and belong to the mass on which the field acts.
-    # A wheel along the only axis of rotation: I* ω' = 3n² (i1 − i2) u1 u2 with all of I.
+    # A wheel along the only axis of rotation: I* ω' = 3n² (a/r)³ (i1 − i2) u1 u2 with all of I, and for the
+    # true anomaly Kepler's second law, f' = n √(1 − e²) (a/r)².
     rate, body = 0.5, ph.Inertia.from_principal_moments(2, 3, 4)
     axes, J = [[0, 0, 1], [1, 0, 0]], [1.0, 0.8]
-    law = T.reaction_wheels(axes, J) + T.gravity_gradient(rate)
+    law = T.reaction_wheels(axes, J) + T.gravity_gradient(rate, eccentricity)
     state = ph.State(ph.Rotor.from_rotation_vector([0, 0, 0.3]), [0, 0, 0])
     motion = ph.simulate(body, state, np.linspace(0, 5, 11), law)
 
     def slope(t, y):
-        u = np.array([np.cos(rate * t - y[0]), np.sin(rate * t - y[0])])
-        return [y[1], 3 * rate**2 * (3 - 2) * u[0] * u[1] / (4 - 1.0)]
+        u = np.array([np.cos(y[2] - y[0]), np.sin(y[2] - y[0])])
+        near = (1 + eccentricity * np.cos(y[2])) / (1 - eccentricity**2)
+        push = 3 * rate**2 * near**3 * (3 - 2) * u[0] * u[1] / (4 - 1.0)
+        return [y[1], push, rate * np.sqrt(1 - eccentricity**2) * near**2]
 
-    y = solve_ivp(slope, (0, 5), [0.3, 0.0], "DOP853", rtol=1e-12, atol=1e-12, t_eval=motion.time).y
+    y = solve_ivp(slope, (0, 5), [0.3, 0.0, 0.0], "DOP853", rtol=1e-12, atol=1e-12, t_eval=motion.time).y
     np.testing.assert_allclose(motion.omega_body.components[:, 2], y[1], atol=1e-9, rtol=0)
 
 

@@ -145,3 +145,6 @@ pub(crate) fn fastest_rate(body: &Gyrostat, torques: &[Torque], start: &Phase) -
     let omega = body.omega(start.momentum).norm().max(body.wheel.norm() / smallest);
     omega.hypot((2.0 * torque / smallest).sqrt()) + damping_rate(torques).abs()
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,4 +1,6 @@
 use super::*;
+use crate::state::center::Center;
+use crate::state::phase::{Gyrostat, Phase};
 
 #[test]
 fn roots_are_found_to_the_spacing() {
@@ -126,5 +128,18 @@ fn roots_of_smooth_functions_take_few_values() {
         let found = root((low, high), (f(low), f(high)), 1e-14, counted).unwrap();
         assert!((found - 2.0_f64.cbrt()).abs() <= 2e-14, "{found}");
         assert!(count <= 20, "{count} values from {low} to {high}");
+    }
+}
+
+/// The component of Ω along a plane is that of the axial vectors, in all three directions.
+#[test]
+fn the_spin_about_a_plane_is_a_component() {
+    let body = Gyrostat::rigid([1.0, 2.0, 2.5]);
+    let omega = Bivector([0.5, -0.25, 1.5]);
+    let phase = Phase { rotor: Rotor::IDENTITY, momentum: body.momentum(omega), time: 0.0 };
+    let at = Point { body: &body, mass: 1.0, phase: &phase, center: &Center::default() };
+    for plane in [Bivector([1.0, 0.0, 0.0]), Bivector([0.0, 2.0, 0.0]), Bivector([3.0, -1.0, 2.0])] {
+        let spin = Quantity::Spin { plane, level: 0.125 };
+        assert_eq!(spin.value(&at), Ok(omega.dual().dot(plane.dual()) - 0.125));
     }
 }

@@ -135,6 +135,16 @@ fn heavy_bodies() {
         "vertical_angular_momentum",
         "spin_angular_momentum",
     ]);
+    // On a sphere the axis is that of the weight, and the quantity the component of L along it.
+    let sphere = case([1.1; 3], vec![heavy([3.0, 0.0, 4.0])]);
+    let spin = Conserved::under(&sphere.body, &sphere.torques, &sphere.start).last().unwrap();
+    let expected = sphere.start.momentum.dual().dot(Vector([0.6, 0.0, 0.8]));
+    assert!((spin.value(&sphere.body, &sphere.torques, &sphere.start) - expected).abs() <= 1e-15);
+    // A torque that is constant in the body, across the axis of symmetry or not.
+    let across = case(SYMMETRIC, vec![Torque::ConstantBody(Bivector([0.3, -0.2, 0.0]))]);
+    across.holds(&["spin_angular_momentum"]);
+    let along = case(SYMMETRIC, vec![Torque::ConstantBody(Bivector([0.3, -0.2, 0.1]))]);
+    along.breaks(&across, "spin_angular_momentum");
     let mixed = case(ASYMMETRIC, vec![heavy([0.5, 0.25, 1.0]), Torque::Damping(0.1)]);
     assert!(mixed.names().is_empty());
     mixed.breaks(&case(ASYMMETRIC, vec![heavy([0.5, 0.25, 1.0])]), "energy");
@@ -223,11 +233,13 @@ fn satellites() {
 /// The scale of a quantity that vanishes, or of a body at rest, is the size its terms reach.
 #[test]
 fn scales_do_not_vanish() {
-    let mut top = case([2.0, 2.0, 1.0], vec![heavy([1.0, 0.0, 0.0])]);
-    top.start.momentum = Bivector::default();
-    top.holds(&["energy", "vertical_angular_momentum", "kovalevskaya_integral"]);
-    for quantity in Conserved::under(&top.body, &top.torques, &top.start) {
-        assert!(quantity.scale(&top.body, &top.torques, &top.start) >= 1.0, "{}", quantity.name());
+    for (i, integral) in [(2.0, "kovalevskaya_integral"), (4.0, "goryachev_chaplygin_integral")] {
+        let mut top = case([i, i, 1.0], vec![heavy([1.0, 0.0, 0.0])]);
+        top.start.momentum = Bivector::default();
+        top.holds(&["energy", "vertical_angular_momentum", integral]);
+        for quantity in Conserved::under(&top.body, &top.torques, &top.start) {
+            assert!(quantity.scale(&top.body, &top.torques, &top.start) >= 1.0, "{}", quantity.name());
+        }
     }
 }
 

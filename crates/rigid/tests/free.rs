@@ -2,11 +2,11 @@
 
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use polhode_rigid::Inertia;
 use polhode_rigid::exact::free::FreeMotion;
 use polhode_rigid::exact::regime::Regime;
-use polhode_rigid::methods::Method;
+use polhode_rigid::methods::{Method, methods};
 use polhode_rigid::run::{Options, Problem};
+use polhode_rigid::{Inertia, SimulateError};
 use proptest::prelude::*;
 
 const EPS: f64 = f64::EPSILON;
@@ -248,4 +248,61 @@ fn moser_veselov_follows_the_free_top_to_fourth_order() {
     };
     let (coarse, fine) = (error(0.1), error(0.05));
     assert!(coarse < 1e-4 && (coarse / fine).log2() > 3.8, "{coarse:e} {fine:e}");
+}
+
+/// A motion is known up to a number of turns from its start, wherever that is on the axis of time.
+#[test]
+fn horizons_begin_at_the_start() {
+    let inertia = Inertia::from_principal_moments([1.25, 1.75, 2.5]).unwrap();
+    let omega = Bivector([2.0, -11.0, 16.0]);
+    let most = FreeMotion::in_principal_axes([1.25, 1.75, 2.5], start(), omega).horizon();
+    let solve = |from: f64, to: f64| {
+        let problem = Problem::new(&inertia, start(), omega, &[]).starting_at(from);
+        problem.simulate(&[to], Options::default(), &mut |_| true).map(|_| ())
+    };
+    for sign in [1.0, -1.0] {
+        assert_eq!(solve(0.6 * most * sign, 1.2 * most * sign), Ok(()));
+        let beyond = solve(-0.6 * most * sign, 0.6 * most * sign);
+        assert!(matches!(beyond, Err(SimulateError::BeyondHorizon { index: 0, .. })), "{beyond:?}");
+    }
+}
+
+#[test]
+fn times_and_options_must_be_valid() {
+    let inertia = Inertia::from_principal_moments([1.25, 1.75, 2.5]).unwrap();
+    let solve = |from: f64, times: &[f64], options: Options| {
+        let problem = Problem::new(&inertia, start(), Bivector([0.5, 1.0, 0.25]), &[]).starting_at(from);
+        problem.simulate(times, options, &mut |_| true).map(|_| ())
+    };
+    for (times, bad) in [(&[1.0, 0.5][..], 1), (&[0.0, 1.0, f64::NAN], 2), (&[f64::INFINITY], 0)] {
+        let refused = solve(0.0, times, Options::default());
+        assert!(matches!(refused, Err(SimulateError::BadTime { index, .. }) if index == bad), "{refused:?}");
+    }
+    assert_eq!(solve(0.0, &[-1.0, 0.0, 0.0, 2.0], Options::default()), Ok(()));
+    let refused = solve(f64::NAN, &[1.0], Options::default());
+    assert!(matches!(refused, Err(SimulateError::BadValue { what: "the time of the start", .. })));
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        for (what, options) in [
+            ("step", Options { step: Some(value), ..Options::default() }),
+            ("rtol", Options { rtol: Some(value), ..Options::default() }),
+            ("max_step", Options { max_step: Some(value), ..Options::default() }),
+            ("max_steps", Options { max_steps: Some(value), ..Options::default() }),
+        ] {
+            let refused = solve(0.0, &[1.0], options);
+            assert!(matches!(refused, Err(SimulateError::BadValue { what: named, .. }) if named == what));
+        }
+    }
+}
+
+/// In a step the classical method evaluates the torque four times, the Störmer–Verlet method before and after the drift.
+#[test]
+fn certificates_count_evaluations() {
+    let inertia = Inertia::from_principal_moments([1.25, 1.75, 2.5]).unwrap();
+    let problem = Problem::new(&inertia, start(), Bivector([0.5, 1.0, 0.25]), &[]);
+    let strang = methods().find(|method| method.name() == "strang").unwrap();
+    for (method, each) in [(Method::Classical, 4), (strang, 2)] {
+        let options = Options { method: Some(method), step: Some(0.125), ..Options::default() };
+        let certificate = problem.simulate(&[1.0], options, &mut |_| true).unwrap().certificate;
+        assert_eq!((certificate.steps, certificate.evaluations), (8, 8 * each), "{method:?}");
+    }
 }

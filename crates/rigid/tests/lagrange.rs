@@ -4,6 +4,8 @@ use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::exact::lagrange::{LagrangeRegime, LagrangeTop};
+use polhode_rigid::laws::torque::Torque;
+use polhode_rigid::run::{Options, Problem};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -180,6 +182,25 @@ fn neglected_asymmetry() {
     let asleep = LagrangeTop::new(&inertia, Rotor::IDENTITY, turning, Vector([off, 0.0, 1.0])).unwrap();
     let angle = asleep.neglected(1e6);
     assert!(angle >= off * 1e6 && angle <= off * 1e8, "{angle:e}");
+}
+
+/// What is neglected is the error estimate of the motion, and too much for a smaller tolerance.
+#[test]
+fn a_neglected_asymmetry_is_an_error_estimate() {
+    let (off, omega) = (4.0 * EPS, Bivector([0.5, 0.0, 3.0]));
+    let solve = |moments: [f64; 3], rtol: Option<f64>, t: f64| {
+        let inertia = Inertia::from_principal_moments(moments).unwrap();
+        let weight = Torque::Heavy(Vector([0.0, 0.0, 1.0]));
+        let problem = Problem::new(&inertia, Rotor::IDENTITY, omega, &[weight]);
+        let options = Options { rtol, ..Options::default() };
+        problem.simulate(&[t], options, &mut |_| true).unwrap().certificate
+    };
+    let long = solve([1.0, 1.0 + off, 0.5], None, 1e6);
+    assert_eq!(long.method, "exact");
+    let estimate = long.error_estimate.unwrap();
+    assert!(estimate >= off * 3.0 * 1e6 && estimate <= off * 1e8, "{estimate:e}");
+    assert_eq!(solve([1.0, 1.0 + off, 0.5], Some(1e-12), 1.0).method, "exact");
+    assert_eq!(solve([1.0, 1.0, 0.5], None, 1e6).error_estimate, None);
 }
 
 #[test]

@@ -100,3 +100,6 @@ impl Magnification {
         SAFETY * self.per_step.max(1.0)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -70,3 +70,14 @@ fn parts_and_sums_follow_the_basis() {
     assert_eq!(Graded::new(&[1.0, 2.0], Grades::SCALAR), None);
     assert_eq!(Graded::new(&[1.0], Grades(16)), None);
 }
+
+/// 3-d space has no grade above 3, also where a set of such grades would have no components.
+#[test]
+fn grades_above_three_are_refused() {
+    for grades in [16, 17, 24, 0x8000] {
+        for count in 0..=8 {
+            assert_eq!(Graded::new(&vec![0.0; count], Grades(grades)), None, "{grades} {count}");
+        }
+    }
+    assert!(Graded::new(&[1.0], Grades(8)).is_some());
+}

@@ -144,7 +144,7 @@ def test_float32_is_as_accurate_as_it_can_be():
 
 def test_roots_across_the_cut_square_to_their_argument(floating):
     # The eigenvalues −1 ± size (1 + I): their roots nearly cancel.
-    m = np.array([[-1, 0, 0, size, 0, 0, size, 0] for size in (0.1, 1e-3, 1e-6)])
+    m = np.array([[-1, 0, 0, size, 0, 0, size, 0] for size in (0.1, 1e-3, 1e-6, 1e-9, 1e-12)])
     x = floating(m)
     root = np.asarray(call("sqrt", of(x), x, ALL)[0])
     square = multiplied(of(root), root, ALL, root, ALL)

@@ -85,7 +85,7 @@ fn logarithms_across_the_cut_invert_exponentials() {
 /// number times e3, so that the root is as large as those: its square differs by a few roundings.
 #[test]
 fn roots_across_the_cut_square_to_their_argument() {
-    for size in [0.1, 1e-3, 1e-6] {
+    for size in [0.1, 1e-3, 1e-6, 1e-9, 1e-12] {
         for m in [
             element(&[(0, -1.0), (E3, size), (E12, size)]),
             element(&[(0, -1.0), (E3, -size), (E12, -size), (I, -size)]) * 2000.0,

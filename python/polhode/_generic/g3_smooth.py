@@ -212,12 +212,14 @@ def sqrt(d: Numeric, m: Components, mask: int) -> Components:
     sum_near = complex_sqrt(d, safe) * complex_sqrt(d, Complex(2.0 + 2.0 * inner.re, 2.0 * inner.im))
     plus, minus = (complex_sqrt(d, choose(d, near, 1.0, z)) for z in (zeta + root, zeta - root))
     sum_far, difference = plus + minus, plus - minus
-    # Across the cut the sum cancels; λ+ − λ− = 2√w does not.
+    # Across the cut the sum cancels; λ+ − λ− = 2√w does not, unless w or V is rounding.
     across = sum_far.square() < 0.25 * difference.square()
     quotient = choose(d, across, root.times(2), 1.0).over(choose(d, across, difference, 1.0))
     sum_far = choose(d, across, quotient, sum_far)
     total = choose(d, near, sum_near, sum_far)
     regular = total.square() > singular(d) * d.sqrt(squares(d, m))
+    size_of_v = squares(d, m[1:7])
+    regular = regular | across & (w.square() > (singular(d) * size_of_v) ** 2) & (w.square() > d.eps**4)
     d.require(regular | zero, "no square root: the multivector is singular to rounding")
 
     safe_total = choose(d, zero, 1.0, total)

@@ -186,11 +186,14 @@ impl Multivector {
         let root = w.sqrt();
         let (plus, minus) = ((zeta + root).sqrt(), (zeta - root).sqrt());
         let (mut sum, difference) = (plus + minus, plus - minus);
-        if sum.norm() < 0.5 * difference.norm() {
-            // λ± lie on both sides of the cut and the sum cancels; λ+ − λ− = 2√w does not.
+        let singular = if sum.norm() < 0.5 * difference.norm() {
+            // λ± lie on both sides of the cut and the sum cancels; λ+ − λ− = 2√w does not, unless w or V is rounding.
             sum = root.scale(2.0) / difference;
-        }
-        if sum.norm() * sum.norm() <= SINGULAR * (zeta.norm() + v.norm()) {
+            w.norm() <= (SINGULAR * v.norm_squared()).max(f64::EPSILON * f64::EPSILON)
+        } else {
+            sum.norm() * sum.norm() <= SINGULAR * (zeta.norm() + v.norm())
+        };
+        if singular {
             return Err(MathError::NoSquareRoot);
         }
         Ok(join(sum.scale(0.5), v, Complex::ONE / sum) * scale.sqrt())

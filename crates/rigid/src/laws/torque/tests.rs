@@ -95,3 +95,20 @@ fn the_periapsis_is_the_fastest_and_nearest_place() {
         }
     }
 }
+
+/// The limit of a wheel's speed is one in space, whatever its moment, and the torque of the motors is what it exerts.
+#[test]
+fn wheels_start_within_their_limits() {
+    let wheel =
+        Wheel { axis: Vector([0.0, 0.0, 1.0]), inertia: 0.1, max_torque: f64::INFINITY, max_speed: 10.0 };
+    let wheels = |speed: f64, omega: f64, torque: f64| {
+        Wheels::new(vec![wheel], &[speed], Bivector([0.0, 0.0, omega]), &[0.0], &[vec![torque]])
+    };
+    for sign in [1.0, -1.0] {
+        assert!(wheels(sign * 10.0, 0.0, 0.2).is_ok() && wheels(sign * 8.0, sign * 2.0, 0.2).is_ok());
+        assert!(wheels(sign * 10.5, 0.0, 0.2).is_err() && wheels(sign * 8.0, sign * 2.5, 0.2).is_err());
+    }
+    let running = wheels(1.0, 0.0, -0.2).expect("within the limit");
+    assert!(!running.is_idle() && wheels(1.0, 0.0, 0.0).expect("within the limit").is_idle());
+    assert_eq!(Torque::Wheels(running.into()).size(&BODY), 0.2);
+}

@@ -112,3 +112,15 @@ fn wheels_start_within_their_limits() {
     assert!(!running.is_idle() && wheels(1.0, 0.0, 0.0).expect("within the limit").is_idle());
     assert_eq!(Torque::Wheels(running.into()).size(&BODY), 0.2);
 }
+
+/// In other axes gains map what these see: `G'(B) = ~F G(F B ~F) F`, also where two of them are equal.
+#[test]
+fn gains_turn_with_the_axes() {
+    let frame = Rotor::from_components([2.0, 1.0, -1.0, 0.5]).expect("a rotor");
+    let b = Bivector([0.3, -0.7, 1.1]);
+    for along in [[1.0, 1.0, 2.0], [1.0, 2.0, 2.0], [2.0, 1.0, 2.0], [3.0; 3], [1.0, 2.0, 3.0]] {
+        let gains = Gains::new(along);
+        let expected = frame.reverse().apply_bivector(gains.times(frame.apply_bivector(b)));
+        assert!((gains.in_axes(frame).times(b) - expected).norm() <= 1e-14, "{along:?}");
+    }
+}

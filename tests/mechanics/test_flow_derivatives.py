@@ -132,12 +132,14 @@ def reference_cases():
     return [pytest.param(case, id=case["name"]) for case in cases]
 
 
+# The nearer time is within the addition theorems.
+@pytest.mark.parametrize("turn", [4.0, 0.5])
 @pytest.mark.parametrize("case", reference_cases())
-def test_derivatives_agree_with_differences(case):
+def test_derivatives_agree_with_differences(case, turn):
     """Of the free motion: by time, attitude, angular velocity and moments."""
     i, w, c = (np.array([float(x) for x in case[key]]) for key in ("inertia", "omega0", "R0"))
     spin, rotor = np.linalg.norm(w) or 1.0, ph.Rotor.from_components(c)
-    t, unit = 4.0 / spin, units(i, w)
+    t, unit = turn / spin, units(i, w)
     d, found = motion_of(i, w, rotor).derivatives(t), jacobian(motion_of(i, w, rotor), t) * unit
 
     def state(omega=w, body=i, start=rotor, time=t):

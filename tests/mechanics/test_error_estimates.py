@@ -1,5 +1,7 @@
 """Error estimates of random motions against references of extended precision."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -148,6 +150,25 @@ def test_a_motion_dominated_by_rounding_is_rejected():
         ph.simulate(ASYMMETRIC, ph.State(ONE, [1, -1, 5]), [50.0], law, rtol=1e-6)
     many = ph.simulate(ASYMMETRIC, ph.State(ONE, [[1, -1, 5], [0, 0, 0.1]]), [50.0], law, rtol=1e-6)
     assert [failure.index for failure in many.failures] == [(0,)]
+
+
+def test_the_error_of_a_tolerance_below_rounding_names_one_that_is_reached():
+    problem = ASYMMETRIC, ph.State(ONE, [1.0, 0.7, 0.4]), [10.0], ph.torque.heavy([0.3, 0.2, 1.5])
+    with pytest.raises(ValueError, match="because the motion amplifies rounding") as refused:
+        ph.simulate(*problem, rtol=1e-14)
+    least = float(re.search("use rtol >= (.*) or", str(refused.value))[1])
+    assert least < 1e-12
+    assert ph.simulate(*problem, rtol=least).certificate.error_estimate <= least
+
+
+@pytest.mark.parametrize("max_step", [0.1, 0.2])
+def test_steps_shorter_than_the_tolerance_needs_have_an_estimate(max_step):
+    """A smaller tolerance does not shorten them, so the sum of the errors of all steps is the estimate."""
+    problem = ASYMMETRIC, ph.State(ONE, [1.0, 0.7, 0.4]), [10.0], ph.torque.heavy([0.3, 0.2, 1.5])
+    exact = ph.simulate(*problem, rtol=1e-12).rotor.components
+    found = ph.simulate(*problem, method="dop853", rtol=1e-3, max_step=max_step)
+    error = np.abs(found.rotor.components - exact).max()
+    assert 1e-13 < error <= found.certificate.error_estimate <= 1e-3
 
 
 def test_chaotic_motion_is_rejected_or_reported():

@@ -280,7 +280,8 @@ impl Convergence {
             if error <= self.accuracy.acceptable && self.magnification.is_some() {
                 return Ok(Some(self.converged(fine, error)));
             }
-            let reached = error.max(if rounding > LINEAR { 1.0 } else { 0.0 });
+            let least = if stuck { error } else { self.floor(error / rounding, fine.steps) };
+            let reached = least.max(if rounding > LINEAR { 1.0 } else { 0.0 });
             return Err(SimulateError::NotConverged {
                 rtol: self.accuracy.goal,
                 reached,
@@ -300,6 +301,12 @@ impl Convergence {
             }
         };
         self.refine(fine)
+    }
+
+    /// The rounding error where further sweeps would end: of the steps whose truncation is smaller by this factor.
+    fn floor(&self, factor: f64, steps: u64) -> f64 {
+        let more = factor.max(1.0).powf(1.0 / f64::from(self.accuracy.order));
+        self.magnification.map_or(0.0, |known| known.rounding_error((more * steps as f64) as u64))
     }
 
     /// The truncation of the finer of two sweeps, and its refinement factor if its steps are shorter.

@@ -185,3 +185,41 @@ fn errors_of_impossible_solids() {
     assert!(error(Solid::Sphere { radius: 1e200 }, mass).contains("i1 is inf"));
     assert!(error(Solid::Sphere { radius: 1e-200 }, mass).contains("below the range of floating point"));
 }
+
+/// The solids for a box reach its sides: with two equal sides those about e3, in a cube spheres too.
+#[test]
+fn solids_fill_a_box() {
+    let filling = |kind: &str, sides: [f64; 3]| Solid::filling(kind, sides).unwrap();
+    let near = |x: f64, y: f64| (x - y).abs() <= 4.0 * f64::EPSILON;
+    let (width, height) = (1.2, 1.6);
+    let about_e3 = [width, width, height];
+    assert!(matches!(filling("box", [1.0, 2.0, 3.0]), Solid::Box { lengths: [1.0, 2.0, 3.0] }));
+    assert!(matches!(filling("ellipsoid", [1.0, 2.0, 3.0]), Solid::Ellipsoid { semi_axes: [0.5, 1.0, 1.5] }));
+    for kind in ["sphere", "hollow_sphere"] {
+        let (outer, inner) = match filling(kind, [width; 3]) {
+            Solid::Sphere { radius } => (radius, 0.0),
+            Solid::HollowSphere { outer_radius, inner_radius } => (outer_radius, inner_radius),
+            other => panic!("{other:?}"),
+        };
+        assert!(near(2.0 * outer, width) && inner < outer && (inner > 0.0) == (kind == "hollow_sphere"));
+    }
+    for kind in ["cylinder", "cone", "capsule"] {
+        let (radius, length) = match filling(kind, about_e3) {
+            Solid::Cylinder { radius, height } | Solid::Cone { radius, height } => (radius, height),
+            Solid::Capsule { radius, height } => (radius, height + 2.0 * radius),
+            other => panic!("{other:?}"),
+        };
+        assert!(near(2.0 * radius, width) && near(length, height), "{kind}");
+    }
+    // A capsule in a flat box is nearly a sphere, and a torus in a high one keeps its hole.
+    assert!(matches!(filling("capsule", [width, width, 0.1]), Solid::Capsule { height, .. } if height > 0.0));
+    for height in [0.2, 10.0] {
+        let Solid::Torus { major_radius, minor_radius } = filling("torus", [width, width, height]) else {
+            panic!("a torus")
+        };
+        assert!(near(2.0 * (major_radius + minor_radius), width));
+        assert!(2.0 * minor_radius <= height && major_radius > minor_radius);
+    }
+    assert!(matches!(filling("rod", [1.0, 3.0, 2.0]), Solid::Rod { length: 3.0 }));
+    assert!(Solid::filling("cube", about_e3).is_none());
+}

@@ -166,7 +166,7 @@ impl Rounded<'_> {
         Ok(places.map(|place| value[place]))
     }
 
-    /// As [`Rounded::general`], NaN if there is none.
+    /// As [`Rounded::general`], NaN for a row without a value.
     fn any(self, f: Function, row: &[f64]) -> [f64; SIZE] {
         self.general(f, row).unwrap_or([f64::NAN; SIZE])
     }

@@ -12,7 +12,7 @@ const BLOCK: usize = 512;
 /// Multiplies each component of rows by the number of its place, 1 or −1.
 ///
 /// # Panics
-/// If there are no signs, or the result is not as long as the rows, a whole number of them.
+/// If there are no signs, if `rows` and `out` differ in length, or if they are not whole rows.
 pub fn with_signs<T: Element>(threads: Threads, rows: &[T], signs: &[T], out: &mut [T]) {
     assert_eq!(rows.len(), out.len(), "a number for each");
     let size = signs.len();

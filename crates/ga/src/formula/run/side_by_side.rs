@@ -173,7 +173,8 @@ impl<const W: usize> Parameter<'_, W> {
             }
             return values.iter().any(|x| x.is_nan());
         }
-        self.compute(numbers);
+        self.steps.set_parameter(self.input, numbers);
+        self.steps.run();
         let mut missing = false;
         for (number, range) in given.iter().enumerate() {
             let values = self.steps.result(number);
@@ -183,21 +184,17 @@ impl<const W: usize> Parameter<'_, W> {
         missing
     }
 
-    fn compute(&mut self, numbers: &[f64; W]) {
-        self.steps.input(self.input)[0].0 = *numbers;
-        self.steps.run();
-    }
-
     fn foresee(&mut self, numbers: impl Iterator<Item = f64>) {
-        self.values.clear();
-        let numbers = self.foreseen.announce(numbers).to_vec();
-        for numbers in numbers.chunks(W) {
+        let Parameter { input, steps, foreseen, values, .. } = self;
+        values.clear();
+        for numbers in foreseen.announce(numbers).chunks(W) {
             let mut rows = [numbers[0]; W];
             rows[..numbers.len()].copy_from_slice(numbers);
-            self.compute(&rows);
+            steps.set_parameter(*input, &rows);
+            steps.run();
             for row in 0..numbers.len() {
-                let results = (0..self.steps.results.len()).flat_map(|number| self.steps.result(number));
-                self.values.extend(results.map(|lane| lane.0[row]));
+                let results = (0..steps.results.len()).flat_map(|number| steps.result(number));
+                values.extend(results.map(|lane| lane.0[row]));
             }
         }
     }

@@ -34,6 +34,8 @@ export class Grip {
     button.id = id;
     button.className = "grip";
     button.textContent = text;
+    // Until a frame places it.
+    button.hidden = true;
     layer.append(button);
     // Where the pointer is off the middle of the button.
     let off: Vector2 | null = null;

@@ -156,23 +156,27 @@ impl Graded {
 
     /// `R A ~R`: vector and bivector each turn as three numbers, scalar and trivector stay.
     pub fn turned(&self, rotor: Rotor) -> Graded {
-        let mut out = *self;
-        out.turn(rotor);
+        let mut out = Graded::default();
+        out.set_turned(rotor, self);
         out
     }
 
     /// Assigns `R A ~R`.
     #[inline]
-    pub(crate) fn turn(&mut self, rotor: Rotor) {
+    pub(crate) fn set_turned(&mut self, rotor: Rotor, value: &Graded) {
+        *self = Graded { components: [0.0; 8], grades: value.grades };
         let mut next = 0;
-        for k in (0..4).filter(|&k| self.grades.contains(k)) {
+        for k in (0..4).filter(|&k| value.grades.contains(k)) {
             if k % 3 == 0 {
+                self.components[next & 7] = value.components[next & 7];
                 next += 1;
                 continue;
             }
-            let [x, y, z] = [next, next + 1, next + 2].map(|i| self.components[i & 7]);
-            self.components[next..next + 3].copy_from_slice(&rotor.apply(Vector([x, y, z])).0);
-            next += 3;
+            let Vector(turned) = rotor.apply(Vector([next, next + 1, next + 2].map(|i| value.components[i & 7])));
+            for x in turned {
+                self.components[next & 7] = x;
+                next += 1;
+            }
         }
     }
 }

@@ -78,14 +78,15 @@ mod _native {
     #[pymodule_export]
     const NOT_FINITE: &str = session::NOT_FINITE;
 
-    /// Adds the types of values, which are not classes of pyo3.
+    /// Adds the types of values and of calls, which are not classes of pyo3.
     #[pymodule_init]
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
         use pyo3::types::PyModuleMethods as _;
 
         let [multivector, rotor] = crate::algebra::slots::create_types(module.py())?;
         module.add("Multivector", multivector)?;
-        module.add("Rotor", rotor)
+        module.add("Rotor", rotor)?;
+        module.add("FormulaCaller", crate::formula::caller::create_type(module.py())?)
     }
 
     /// The version of the package.

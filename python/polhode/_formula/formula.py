@@ -26,7 +26,7 @@ _G3 = algebra_of(3)
 _LANGUAGES = ("python", "c", "rust", "glsl")
 
 
-class Formula:
+class Formula(_native.FormulaCaller):
     """A formula as written on paper: ``f = ph.formula("R (x·Ω) ~R")``, then ``f(R=R, x=x, Ω=Ω)``.
 
     Juxtaposition is the geometric product; ``∧`` (``^``), ``·`` (``|``) and ``×``, the commutator, bind
@@ -53,16 +53,8 @@ class Formula:
     (1,)
     """
 
-    # A native function in this slot makes calls fast; JAX needs weak references.
-    __slots__ = ("__call__", "__weakref__", "_core")
-    __call__: Callable[..., Any]
-    _core: _native.Formula
-
-    def __init__(self, core: _native.Formula) -> None:
-        if not isinstance(core, _native.Formula):
-            raise TypeError("create a Formula with ph.formula(text)")
-        self._core = core
-        self.__call__ = core.caller()
+    # JAX needs weak references.
+    __slots__ = ("__weakref__",)
 
     @property
     def text(self) -> str:

@@ -4,8 +4,8 @@
 use super::operators::{
     One, difference, exponential, logarithm, negative, product_of, reversed, sum_of, turned_by,
 };
-use super::types::{self, Types};
-use super::value::{Multivector, Operand, Rotor, Storage};
+use super::types;
+use super::value::{Multivector, Rotor, Storage};
 use crate::support::arrays::bad;
 use polhode_ga::product::Product;
 use pyo3::exceptions::PyImportError;
@@ -138,30 +138,6 @@ fn method(
     })
 }
 
-/// An operand: a single value, a float, or anything else.
-///
-/// # Safety
-///
-/// The object is alive for the lifetime of the result.
-#[inline]
-unsafe fn seen<'a>(types: &Types, object: *mut PyObject) -> Operand<'a> {
-    // SAFETY: objects of exactly these types have a value at this offset; the others are only asked for their type, or
-    // are floats.
-    unsafe {
-        let class = ffi::Py_TYPE(object);
-        if class == types.rotor || class == types.multivector {
-            return match &*object.byte_add(types.offset).cast::<Multivector>() {
-                Multivector { storage: Storage::One(value), unit } => Operand::Value(value, *unit),
-                _ => Operand::Other,
-            };
-        }
-        if class == &raw mut ffi::PyFloat_Type {
-            return Operand::Number(ffi::PyFloat_AsDouble(object));
-        }
-    }
-    Operand::Other
-}
-
 /// A new reference to the result, or `None` without one; NULL, with Python's error set, when memory runs out.
 ///
 /// # Safety
@@ -191,7 +167,7 @@ macro_rules! binary {
             let (Some(types), Some(general)) = (types::get(), GENERAL.get()) else { return null_mut() };
             // SAFETY: the caller is Python.
             unsafe {
-                let result = given($f(seen(types, a), seen(types, b)));
+                let result = given($f(types.operand(a), types.operand(b)));
                 result.unwrap_or_else(|| (general.$base)(a, b))
             }
         }
@@ -207,7 +183,7 @@ macro_rules! unary {
         unsafe extern "C" fn $name(a: *mut PyObject) -> *mut PyObject {
             let (Some(types), Some(general)) = (types::get(), GENERAL.get()) else { return null_mut() };
             // SAFETY: the caller is Python.
-            unsafe { given($f(seen(types, a))).unwrap_or_else(|| (general.$base)(a)) }
+            unsafe { given($f(types.operand(a))).unwrap_or_else(|| (general.$base)(a)) }
         }
     };
 }
@@ -233,7 +209,7 @@ unsafe extern "C" fn turn(
     unsafe {
         let single = named.is_null() && ffi::PyTuple_Size(arguments) == 1;
         let result = single
-            .then(|| turned_by(seen(types, rotor), seen(types, ffi::PyTuple_GetItem(arguments, 0))))
+            .then(|| turned_by(types.operand(rotor), types.operand(ffi::PyTuple_GetItem(arguments, 0))))
             .flatten();
         given(result).unwrap_or_else(|| (general.call)(rotor, arguments, named))
     }
@@ -254,7 +230,7 @@ macro_rules! method {
             let (Some(types), Some(general)) = (types::get(), GENERAL.get()) else { return null_mut() };
             // SAFETY: the caller is Python.
             unsafe {
-                let result = if count == 0 && names.is_null() { $f(seen(types, value)) } else { None };
+                let result = if count == 0 && names.is_null() { $f(types.operand(value)) } else { None };
                 given(result).unwrap_or_else(|| called(&general.$name, value, arguments, count, names))
             }
         }

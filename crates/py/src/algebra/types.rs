@@ -52,6 +52,48 @@ unsafe impl Send for Types {}
 // SAFETY: as above; nothing writes to the fields.
 unsafe impl Sync for Types {}
 
+impl Types {
+    /// An operand: a single value, a float, or anything else; objects of derived types are anything else.
+    ///
+    /// # Safety
+    ///
+    /// The object is alive for the lifetime of the result.
+    #[inline]
+    pub unsafe fn operand<'a>(&self, object: *mut PyObject) -> Operand<'a> {
+        // SAFETY: objects of exactly these types have a value at this offset; the others are only asked for their type, or
+        // are floats.
+        unsafe {
+            let class = ffi::Py_TYPE(object);
+            if class == self.rotor || class == self.multivector {
+                return match &*object.byte_add(self.offset).cast::<Multivector>() {
+                    Multivector { storage: Storage::One(value), unit } => Operand::Value(value, *unit),
+                    _ => Operand::Other,
+                };
+            }
+            if class == &raw mut ffi::PyFloat_Type {
+                return Operand::Number(ffi::PyFloat_AsDouble(object));
+            }
+        }
+        Operand::Other
+    }
+}
+
+/// An operand: a single value and whether it is a rotor, a number, or anything else.
+pub(crate) enum Operand<'a> {
+    Value(&'a Graded, bool),
+    Number(f64),
+    Other,
+}
+
+impl<'a> Operand<'a> {
+    /// Of exactly the types here, or a float; other operands are [`Operand::Other`].
+    #[inline]
+    pub fn exactly(object: &'a Bound<'_, PyAny>) -> Operand<'a> {
+        // SAFETY: the object is alive while it is borrowed.
+        TYPES.get().map_or(Operand::Other, |types| unsafe { types.operand(object.as_ptr()) })
+    }
+}
+
 static TYPES: OnceLock<Types> = OnceLock::new();
 
 /// Creates the types `Multivector` and `Rotor` with some slots beside those of objects.

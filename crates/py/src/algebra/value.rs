@@ -4,7 +4,7 @@
 
 use super::signature::{Algebra, g3};
 use super::types;
-pub(crate) use super::types::{Multivector, Rotor, Storage};
+pub(crate) use super::types::{Multivector, Operand, Rotor, Storage};
 use crate::support::arrays::bad;
 use numpy::{PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
@@ -40,14 +40,13 @@ pub(crate) fn number(x: &Bound<'_, PyAny>) -> Option<f64> {
     }
 }
 
-/// An operand: a single value and whether it is a rotor, a number, or anything else.
-pub(crate) enum Operand<'a> {
-    Value(&'a Graded, bool),
-    Number(f64),
-    Other,
-}
-
+/// What an object is as an operand.
 pub(crate) fn operand<'a>(x: &'a Bound<'_, PyAny>) -> Operand<'a> {
+    // Nearly all are of these types, which are found without asking for the bases.
+    match Operand::exactly(x) {
+        Operand::Other => {}
+        found => return found,
+    }
     if let Ok(value) = x.cast::<Multivector>() {
         let value = value.get();
         return match &value.storage {

@@ -19,7 +19,7 @@ use std::sync::Mutex;
 const KEPT: usize = 8;
 
 /// A value, after its name.
-pub(crate) type Named<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+pub(crate) type Named<'a, 'py> = (Borrowed<'a, 'py, PyAny>, Borrowed<'a, 'py, PyAny>);
 
 /// The calls, the latest first.
 #[derive(Default)]
@@ -44,26 +44,29 @@ pub(crate) enum Argument {
 
 impl Calls {
     /// The value for single values with their names; `None` if no such call is cached.
-    pub fn value<'py, Values: ExactSizeIterator<Item = Named<'py>>>(
+    pub fn value<'a, 'py: 'a, Values: ExactSizeIterator<Item = Named<'a, 'py>>>(
         &self,
         py: Python<'py>,
         values: impl Fn() -> Values,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let found = {
-            // Locked only if a finalizer, which Python may run anywhere, calls the formula within a call of it.
-            let Ok(mut calls) = self.0.try_lock() else { return Ok(None) };
-            let place = calls.iter_mut().position(|call| call.takes(values()).is_some());
-            place.and_then(|i| {
-                calls[..=i].rotate_right(1);
-                let Call { program, inputs, values, .. } = &mut calls[0];
-                Some(program.get().value(inputs, values)?.map_err(|error| (error, program.clone_ref(py))))
-            })
+        // Locked only if a finalizer, which Python may run anywhere, calls the formula within a call of it.
+        let Ok(mut calls) = self.0.try_lock() else { return Ok(None) };
+        let Some(place) = calls.iter_mut().position(|call| call.takes(values()).is_some()) else {
+            return Ok(None);
         };
-        match found {
-            None => Ok(None),
-            Some(Ok((value, unit))) => wrap(py, Storage::One(value), unit).map(Some),
-            Some(Err((error, program))) => Err(program.get().row_error(py, &error, &[])),
+        if place > 0 {
+            calls[..=place].rotate_right(1);
         }
+        let Call { program, inputs, values, .. } = &mut calls[0];
+        let error = match program.get().value(inputs, values) {
+            None => return Ok(None),
+            // A new value has no finalizer, and does not start the garbage collector.
+            Some(Ok((&value, unit))) => return wrap(py, Storage::One(value), unit).map(Some),
+            Some(Err(error)) => error,
+        };
+        let program = program.clone_ref(py);
+        drop(calls);
+        Err(program.get().row_error(py, &error, &[]))
     }
 
     /// Caches a call; false if it is not one of single values of 3-d space, or if the formula is an equation.
@@ -96,7 +99,7 @@ impl Calls {
 
 impl Call {
     /// Takes the values for inputs, if their names and kinds are those of this call.
-    fn takes<'py>(&mut self, values: impl ExactSizeIterator<Item = Named<'py>>) -> Option<()> {
+    fn takes<'a, 'py: 'a>(&mut self, values: impl ExactSizeIterator<Item = Named<'a, 'py>>) -> Option<()> {
         if values.len() != self.arguments.len() {
             return None;
         }

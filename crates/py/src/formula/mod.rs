@@ -1,6 +1,7 @@
 //! Formulas in Python: parsing, programs for values of given kinds, and calls.
 
 pub(crate) mod batches;
+pub(crate) mod caller;
 pub(crate) mod calls;
 pub(crate) mod line;
 mod magnitude;
@@ -10,6 +11,7 @@ use crate::algebra::signature::{Algebra, g3, largest};
 use crate::algebra::value::Object;
 use crate::support::arrays::bad;
 use crate::support::face::CALL_FORMULA;
+use caller::pairs;
 use calls::Calls;
 use polhode_ga::formula::{
     Kind, Language, Meaning, Names, Node, RowRunner, Runner, Space, Style, Tree, Type, canonical, compile,
@@ -20,7 +22,7 @@ use polhode_ga::table::Signature;
 use program::{Place, Program, characters, error};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyCFunction, PyDict, PyMapping, PyString, PyTuple};
+use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
 use std::collections::HashMap;
 use std::sync::Mutex;
 
@@ -149,15 +151,6 @@ impl Formula {
         }
         programs.insert(key, program.clone_ref(py));
         Ok(program)
-    }
-
-    /// The function that evaluates the formula, for a slot of a Python type, where calls are fast.
-    fn caller<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyCFunction>> {
-        let formula = slf.clone().unbind();
-        let call = move |arguments: &Bound<'_, PyTuple>, named: Option<&Bound<'_, PyDict>>| {
-            called(formula.bind(arguments.py()), arguments, named).map(Bound::unbind)
-        };
-        PyCFunction::new_closure(slf.py(), Some(c"formula"), None, call)
     }
 
     /// The tree as nested dictionaries, for values of these kinds; without any, with open names.
@@ -330,8 +323,8 @@ fn called<'py>(
         };
     }
     if named.is_none() && arguments.len() == own.arguments.len() {
-        let names = || own.arguments.iter().map(|name| name.bind(py).clone().into_any());
-        if let Some(value) = own.calls.value(py, || names().zip(arguments.iter()))? {
+        let names = || own.arguments.iter().map(|name| name.bind(py).as_any().as_borrowed());
+        if let Some(value) = own.calls.value(py, || names().zip(arguments.iter_borrowed()))? {
             return Ok(value);
         }
     }
@@ -357,11 +350,11 @@ fn called<'py>(
 fn called_by_name<'py>(formula: &Bound<'py, Formula>, named: &Bound<'py, PyDict>) -> Object<'py> {
     let py = formula.py();
     let own = formula.get();
-    if let Some(value) = own.calls.value(py, || named.iter())? {
+    if let Some(value) = own.calls.value(py, || pairs(named))? {
         return Ok(value);
     }
     if own.calls.keep(own, named)?
-        && let Some(value) = own.calls.value(py, || named.iter())?
+        && let Some(value) = own.calls.value(py, || pairs(named))?
     {
         return Ok(value);
     }

@@ -200,16 +200,15 @@ impl Program {
 
     /// The value for single values, and whether it is a rotor; `None` for other algebras. `values` receives the values of
     /// all steps.
-    pub(crate) fn value(
+    pub(crate) fn value<'v>(
         &self,
         inputs: &[Given],
-        values: &mut Vec<Graded>,
-    ) -> Option<Result<(Graded, bool), RowError>> {
+        values: &'v mut Vec<Graded>,
+    ) -> Option<Result<(&'v Graded, bool), RowError>> {
         let &[result] = &self.program.results.first()?[..] else { return None };
-        let unit = self.program.steps[result].ty.unit;
         let done = self.runner.as_ref()?.value_to(inputs, values);
         let failed = |(step, error)| RowError { row: 0, step, error };
-        Some(done.map(|()| (values[result], unit)).map_err(failed))
+        Some(done.map(|()| (&values[result], self.program.steps[result].ty.unit)).map_err(failed))
     }
 
     /// The exception for a row without a value.

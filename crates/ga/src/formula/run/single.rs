@@ -5,6 +5,7 @@ use crate::MathError;
 use crate::formula::compile::program::{Id, InputKind, Program};
 use crate::graded::Graded;
 use crate::table::G3;
+use std::borrow::Borrow;
 
 /// A program of 3-d space, ready to run.
 pub struct Runner {
@@ -40,7 +41,7 @@ impl Runner {
     /// As [`Runner::value`].
     pub fn value_to(&self, inputs: &[Given], values: &mut Vec<Graded>) -> Result<(), (Id, MathError)> {
         assert_eq!(inputs.len(), self.inputs.len(), "a value for each input");
-        self.values_to(values, |i| inputs[i], |_| true)
+        self.values_to(values, |i| &inputs[i], |_| true)
     }
 
     /// The values of the steps that are wanted; others are 0.
@@ -53,10 +54,10 @@ impl Runner {
         self.values_to(&mut values, input, wanted).map(|()| values)
     }
 
-    fn values_to(
+    fn values_to<G: Borrow<Given>>(
         &self,
         values: &mut Vec<Graded>,
-        input: impl Fn(usize) -> Given,
+        input: impl Fn(usize) -> G,
         wanted: impl Fn(Id) -> bool,
     ) -> Result<(), (Id, MathError)> {
         values.resize(self.steps.len(), Graded::default());

@@ -13,6 +13,7 @@ use crate::rows::rotor_functions::{self, Cos, Exp, Log, Power, Sin, Tan};
 use crate::simd::map::{self, Map};
 use crate::simd::{Kernel, Lane, Path, by_eights};
 use crate::table::G3;
+use std::borrow::Borrow;
 use std::f64::consts::PI;
 
 /// The value of an input.
@@ -132,16 +133,19 @@ impl Ready {
 
     /// Computes the value from those of earlier steps.
     #[inline]
-    pub fn set(
+    pub fn set<G: Borrow<Given>>(
         &self,
         out: &mut Graded,
         values: &[Graded],
-        input: impl Fn(usize) -> Given,
+        input: impl Fn(usize) -> G,
     ) -> Result<(), MathError> {
         let operand = |k: usize| &values[self.operands[k]];
         let value = match &self.work {
-            Work::Input(i) => match input(*i) {
-                Given::Value(value) if value.grades() == self.grades => value,
+            Work::Input(i) => match input(*i).borrow() {
+                Given::Value(value) if value.grades() == self.grades => {
+                    out.assign(value);
+                    return Ok(());
+                }
                 other => panic!("input {i} is a value of the grades {:?}, got {other:?}", self.grades),
             },
             Work::Constant(value) => *value,
@@ -159,8 +163,7 @@ impl Ready {
                 Graded::from_fn(self.grades, |k| product[k])
             }
             Work::Turn => {
-                *out = *operand(1);
-                out.turn(rotor(operand(0)));
+                out.set_turned(rotor(operand(0)), operand(1));
                 return Ok(());
             }
             Work::Divide => {
@@ -180,7 +183,7 @@ impl Ready {
             Work::Sin => known(Sin.value([number(operand(0))], []), self.grades)?,
             Work::Cos => known(Cos.value([number(operand(0))], []), self.grades)?,
             Work::Tan => known(Tan.value([number(operand(0))], []), self.grades)?,
-            Work::Map(i) => match input(*i) {
+            Work::Map(i) => match input(*i).borrow() {
                 Given::Matrix(m) => {
                     let [x, y, z] = three(operand(0));
                     Graded::from_fn(self.grades, |k| m[3 * k] * x + m[3 * k + 1] * y + m[3 * k + 2] * z)

@@ -172,7 +172,8 @@ impl Graded {
                 next += 1;
                 continue;
             }
-            let Vector(turned) = rotor.apply(Vector([next, next + 1, next + 2].map(|i| value.components[i & 7])));
+            let Vector(turned) =
+                rotor.apply(Vector([next, next + 1, next + 2].map(|i| value.components[i & 7])));
             for x in turned {
                 self.components[next & 7] = x;
                 next += 1;

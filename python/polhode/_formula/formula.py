@@ -13,6 +13,7 @@ from polhode._algebra.algebra import Algebra
 from polhode._algebra.algebra import algebra as algebra_of
 from polhode._algebra.coefficients import kind_of
 from polhode._algebra.multivector import Multivector
+from polhode._algebra.native import joins
 from polhode._algebra.rotor import Rotor
 from polhode._formula.agreement import Agreement, agreement
 from polhode._formula.arguments import Given, compiled, given, kinds_of
@@ -26,6 +27,7 @@ _G3 = algebra_of(3)
 _LANGUAGES = ("python", "c", "rust", "glsl")
 
 
+@joins(_native.FormulaCaller)
 class Formula(_native.FormulaCaller):
     """A formula as written on paper: ``f = ph.formula("R (x·Ω) ~R")``, then ``f(R=R, x=x, Ω=Ω)``.
 
@@ -52,9 +54,6 @@ class Formula(_native.FormulaCaller):
     >>> f.grades(a=1, b=1, c=1)
     (1,)
     """
-
-    # JAX needs weak references.
-    __slots__ = ("__weakref__",)
 
     @property
     def text(self) -> str:

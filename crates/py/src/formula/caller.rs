@@ -1,24 +1,32 @@
-//! The call of a formula, in a slot of the type from which the class in Python derives.
+//! The type of formulas in Python, whose calls take no detour.
 //!
-//! A formula of single values takes some 50 ns. A method `__call__` that Python finds, and pyo3's conversion of the
-//! arguments, would take twice as long; a class without such a method inherits the function in the slot of its base.
+//! A formula of single values takes some 50 ns, finding a method `__call__` and storing the arguments in a tuple and a
+//! dictionary twice as long. So the type has the vectorcall protocol (PEP 590): the arguments stay where Python has them.
 #![allow(unsafe_code)]
 
-use super::calls::Named;
 use super::{Formula, called};
 use pyo3::exceptions::PyTypeError;
 use pyo3::ffi::{self, PyObject, ternaryfunc};
 use pyo3::panic::PanicException;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use std::ffi::c_void;
+use std::ffi::{c_ulong, c_void};
+use std::mem::offset_of;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
 
-/// What a formula in Python consists of. A base of the type with the call.
-#[pyclass(frozen, subclass, module = "polhode._native")]
+/// What a formula in Python consists of. A base of the type in Python.
+#[pyclass(frozen, subclass, weakref, module = "polhode._native")]
 pub(crate) struct FormulaCaller {
+    /// Where Python looks for the function to call.
+    call: ffi::vectorcallfunc,
     formula: Py<Formula>,
+}
+
+impl FormulaCaller {
+    fn of(formula: Py<Formula>) -> FormulaCaller {
+        FormulaCaller { call: vectorcall, formula }
+    }
 }
 
 #[pymethods]
@@ -26,7 +34,7 @@ impl FormulaCaller {
     #[new]
     fn new(formula: &Bound<'_, PyAny>) -> PyResult<FormulaCaller> {
         match formula.cast::<Formula>() {
-            Ok(formula) => Ok(FormulaCaller { formula: formula.clone().unbind() }),
+            Ok(formula) => Ok(FormulaCaller::of(formula.clone().unbind())),
             Err(_) => Err(PyTypeError::new_err("create a Formula with ph.formula(text)")),
         }
     }
@@ -38,32 +46,93 @@ impl FormulaCaller {
     }
 }
 
-/// Creates the type with the call.
+/// The flag of types with the protocol, which headers before Python 3.12 do not have for the stable interface.
+const HAVE_VECTORCALL: c_ulong = 1 << 11;
+
+/// Creates the type.
 pub(crate) fn create_type(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    let sample = Bound::new(py, FormulaCaller::of(Py::new(py, Formula::default())?))?;
+    let start = (&raw const *sample.get()).addr() - sample.as_ptr().addr();
+    let mut members = [
+        ffi::PyMemberDef {
+            name: c"__vectorcalloffset__".as_ptr(),
+            type_code: ffi::Py_T_PYSSIZET,
+            offset: (start + offset_of!(FormulaCaller, call)) as ffi::Py_ssize_t,
+            flags: ffi::Py_READONLY,
+            ..ffi::PyMemberDef::default()
+        },
+        ffi::PyMemberDef::default(),
+    ];
     let mut slots = [
         ffi::PyType_Slot { slot: ffi::Py_tp_call, pfunc: call as ternaryfunc as *mut c_void },
+        ffi::PyType_Slot { slot: ffi::Py_tp_members, pfunc: members.as_mut_ptr().cast() },
         ffi::PyType_Slot::default(),
     ];
     let mut spec = ffi::PyType_Spec {
-        name: c"polhode._native.FormulaCaller".as_ptr(),
+        name: c"polhode.Formula".as_ptr(),
         basicsize: 0, // that of the base
         itemsize: 0,
-        flags: (ffi::Py_TPFLAGS_DEFAULT | ffi::Py_TPFLAGS_BASETYPE) as _,
+        flags: (ffi::Py_TPFLAGS_DEFAULT | ffi::Py_TPFLAGS_BASETYPE | HAVE_VECTORCALL) as _,
         slots: slots.as_mut_ptr(),
     };
     let bases = PyTuple::new(py, [py.get_type::<FormulaCaller>()])?;
-    // SAFETY: the slots end with zeros, and have what their numbers say; they and the name live during the call.
-    unsafe {
-        Bound::from_owned_ptr_or_err(py, ffi::PyType_FromSpecWithBases(&raw mut spec, bases.as_ptr()))
-    }
+    // SAFETY: the tables end with zeros, and have what their numbers say; they and the names live during the call, and
+    // Python copies what it needs.
+    unsafe { Bound::from_owned_ptr_or_err(py, ffi::PyType_FromSpecWithBases(&raw mut spec, bases.as_ptr())) }
 }
 
-/// `f(…)`
+/// `f(…)` for arguments in a row: those by position, then one for each of `names`, NULL or a tuple.
 ///
 /// # Safety
 ///
-/// As all slots: called by Python, with an object of the type, a tuple, and NULL or a dictionary, which live longer than
-/// the call.
+/// As all calls: called by Python, with an object of the type and arguments that live longer than the call.
+unsafe extern "C" fn vectorcall(
+    this: *mut PyObject,
+    arguments: *const *mut PyObject,
+    count: usize,
+    names: *mut PyObject,
+) -> *mut PyObject {
+    // SAFETY: the caller is Python.
+    let py = unsafe { Python::assume_attached() };
+    returned(py, || {
+        // SAFETY: the caller says so; the objects are of these types.
+        let (this, names) = unsafe {
+            (
+                Borrowed::from_ptr(py, this).cast_unchecked::<FormulaCaller>(),
+                Borrowed::from_ptr_or_opt(py, names).map(|names| names.cast_unchecked::<PyTuple>()),
+            )
+        };
+        let formula = this.get().formula.bind(py);
+        // The highest bit only says that Python may write before the first.
+        let count = count & (usize::MAX >> 1);
+        let of_names = names.map_or(0, |names| names.len());
+        // SAFETY: as above.
+        let at = |i: usize| unsafe { Borrowed::from_ptr(py, *arguments.add(i)) };
+        let value = match names {
+            None => by_position(formula, || (0..count).map(at))?,
+            Some(names) if count == 0 => {
+                let pair = |i: usize| (names.get_borrowed_item(i).expect("there are so many"), at(i));
+                formula.get().calls.value(py, || (0..of_names).map(pair))?
+            }
+            _ => None,
+        };
+        if let Some(value) = value {
+            return Ok(value);
+        }
+        let named = names.map(|names| {
+            let named = PyDict::new(py);
+            let pairs = names.iter_borrowed().zip((count..count + of_names).map(at));
+            pairs.into_iter().try_for_each(|(name, value)| named.set_item(name, value)).map(|()| named)
+        });
+        called(formula, &PyTuple::new(py, (0..count).map(at))?, named.transpose()?.as_ref())
+    })
+}
+
+/// `f(…)` for a tuple of arguments and NULL or a dictionary.
+///
+/// # Safety
+///
+/// As [`vectorcall`].
 unsafe extern "C" fn call(
     this: *mut PyObject,
     arguments: *mut PyObject,
@@ -71,19 +140,40 @@ unsafe extern "C" fn call(
 ) -> *mut PyObject {
     // SAFETY: the caller is Python.
     let py = unsafe { Python::assume_attached() };
-    let value = || {
+    returned(py, || {
         // SAFETY: the caller says so; the objects are of these types.
         let (this, arguments, named) = unsafe {
             (
-                Bound::from_borrowed_ptr(py, this).cast_into_unchecked::<FormulaCaller>(),
-                Bound::from_borrowed_ptr(py, arguments).cast_into_unchecked::<PyTuple>(),
-                Bound::from_borrowed_ptr_or_opt(py, named),
+                Borrowed::from_ptr(py, this).cast_unchecked::<FormulaCaller>(),
+                Borrowed::from_ptr(py, arguments).cast_unchecked::<PyTuple>(),
+                Borrowed::from_ptr_or_opt(py, named).map(|named| named.cast_unchecked::<PyDict>()),
             )
         };
-        // SAFETY: as above.
-        let named = named.map(|named| unsafe { named.cast_into_unchecked::<PyDict>() });
-        called(this.get().formula.bind(py), &arguments, named.as_ref())
-    };
+        let formula = this.get().formula.bind(py);
+        let of_tuple = || arguments.iter_borrowed();
+        match if named.is_none() { by_position(formula, of_tuple)? } else { None } {
+            Some(value) => Ok(value),
+            None => called(formula, &arguments, named.as_deref()),
+        }
+    })
+}
+
+/// The value for single values by position; `None` if no such call is cached.
+#[inline]
+fn by_position<'a, 'py: 'a, Values: ExactSizeIterator<Item = Borrowed<'a, 'py, PyAny>>>(
+    formula: &'a Bound<'py, Formula>,
+    values: impl Fn() -> Values,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let Formula { arguments, calls, .. } = formula.get();
+    let py = formula.py();
+    if arguments.is_empty() || values().len() != arguments.len() {
+        return Ok(None);
+    }
+    calls.value(py, || arguments.iter().map(|name| name.bind(py).as_any().as_borrowed()).zip(values()))
+}
+
+/// A new reference to the value; NULL, with Python's error set, for an error or a panic.
+fn returned<'py>(py: Python<'py>, value: impl FnOnce() -> PyResult<Bound<'py, PyAny>>) -> *mut PyObject {
     let value = catch_unwind(AssertUnwindSafe(value)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
@@ -96,20 +186,4 @@ unsafe extern "C" fn call(
         },
         Bound::into_ptr,
     )
-}
-
-/// The names and values of the keywords of a call, without references of their own. Nobody changes them meanwhile: the
-/// dictionary belongs to the call, and nothing that reads single values runs Python code.
-pub(super) fn pairs<'a, 'py>(
-    named: &'a Bound<'py, PyDict>,
-) -> impl ExactSizeIterator<Item = Named<'a, 'py>> + use<'a, 'py> {
-    let mut place = 0;
-    (0..named.len()).map(move |_| {
-        let (mut name, mut value) = (null_mut(), null_mut());
-        // SAFETY: there are as many entries as asked for, so that both are set; the dictionary keeps them alive.
-        unsafe {
-            ffi::PyDict_Next(named.as_ptr(), &raw mut place, &raw mut name, &raw mut value);
-            (Borrowed::from_ptr(named.py(), name), Borrowed::from_ptr(named.py(), value))
-        }
-    })
 }

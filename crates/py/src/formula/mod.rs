@@ -11,7 +11,6 @@ use crate::algebra::signature::{Algebra, g3, largest};
 use crate::algebra::value::Object;
 use crate::support::arrays::bad;
 use crate::support::face::CALL_FORMULA;
-use caller::pairs;
 use calls::Calls;
 use polhode_ga::formula::{
     Kind, Language, Meaning, Names, Node, RowRunner, Runner, Space, Style, Tree, Type, canonical, compile,
@@ -33,6 +32,7 @@ pub(crate) type NameKind = (String, u16, u8);
 const KEPT: usize = 64;
 
 /// A formula.
+#[derive(Default)]
 #[pyclass(frozen, module = "polhode._native")]
 pub(crate) struct Formula {
     text: String,
@@ -322,12 +322,6 @@ fn called<'py>(
             None => general(formula, arguments, named),
         };
     }
-    if named.is_none() && arguments.len() == own.arguments.len() {
-        let names = || own.arguments.iter().map(|name| name.bind(py).as_any().as_borrowed());
-        if let Some(value) = own.calls.value(py, || names().zip(arguments.iter_borrowed()))? {
-            return Ok(value);
-        }
-    }
     // A mapping of values by name, or an error.
     if arguments.len() > own.arguments.len() || arguments.get_item(0)?.cast::<PyMapping>().is_ok() {
         return general(formula, arguments, named);
@@ -350,11 +344,13 @@ fn called<'py>(
 fn called_by_name<'py>(formula: &Bound<'py, Formula>, named: &Bound<'py, PyDict>) -> Object<'py> {
     let py = formula.py();
     let own = formula.get();
-    if let Some(value) = own.calls.value(py, || pairs(named))? {
+    let pairs: Vec<_> = named.iter().collect();
+    let borrowed = || pairs.iter().map(|(name, value)| (name.as_borrowed(), value.as_borrowed()));
+    if let Some(value) = own.calls.value(py, borrowed)? {
         return Ok(value);
     }
     if own.calls.keep(own, named)?
-        && let Some(value) = own.calls.value(py, || pairs(named))?
+        && let Some(value) = own.calls.value(py, borrowed)?
     {
         return Ok(value);
     }

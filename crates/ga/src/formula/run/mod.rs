@@ -27,6 +27,9 @@ const FEW: usize = 8;
 /// product, since all inputs are read at once.
 const STREAMED: usize = 8 << 20;
 
+/// From this many bytes on, more than the second-level cache keeps beside other data, inputs are prefetched.
+const PREFETCHED: usize = 1 << 20;
+
 /// This many lanes of 128 rows leave room in the first-level cache. Each step of a block has an overhead of some
 /// nanoseconds, so large blocks are faster.
 const FEW_LANES: usize = 24;
@@ -99,10 +102,11 @@ impl Runner {
         };
         targets.iter_mut().zip(&schedule.results).for_each(|(target, &at)| target.at = at);
         let streamed = path.streams() && bytes >= STREAMED;
-        let sweep = Sweep { runner: self, schedule, path, streamed, failure: Mutex::new(None) };
+        let far = bytes >= PREFETCHED;
+        let sweep = Sweep { runner: self, schedule, path, far, streamed, failure: Mutex::new(None) };
         match sweep.schedule.lanes {
             // Small blocks interleave memory access and arithmetic more finely.
-            0..=FEW_LANES if !streamed => sweep.run::<T, 128>(threads, &factors, targets, rows.len()),
+            0..=FEW_LANES if !far => sweep.run::<T, 128>(threads, &factors, targets, rows.len()),
             0..=MANY_LANES => sweep.run::<T, 64>(threads, &factors, targets, rows.len()),
             _ => sweep.run::<T, 16>(threads, &factors, targets, rows.len()),
         }
@@ -156,6 +160,8 @@ struct Sweep<'a> {
     runner: &'a Runner,
     schedule: Schedule,
     path: Path,
+    /// Whether inputs are prefetched, and whether results bypass the caches.
+    far: bool,
     streamed: bool,
     failure: Mutex<Option<RowError>>,
 }
@@ -215,12 +221,12 @@ impl Sweep<'_> {
         result
     }
 
-    /// Beyond the caches, the cache lines of a block that each task prefetches, of some inputs. Memory serves a limited
+    /// Far inputs: the cache lines of a block that each task prefetches, of some inputs. Memory serves a limited
     /// number of requests at a time, and would idle during the arithmetic.
     fn ahead<T: Element, const W: usize>(&self, factors: &[Factor<T>]) -> Vec<Vec<(usize, Range<usize>)>> {
         let tasks = self.schedule.tasks.len();
         let lines = |factor: &Factor<T>| W * size_of_val(factor.rows(0, 1)) / 64;
-        let rows = factors.iter().enumerate().filter(|(_, factor)| self.streamed && !factor.one);
+        let rows = factors.iter().enumerate().filter(|(_, factor)| self.far && !factor.one);
         let lines: Vec<_> =
             rows.flat_map(|(i, factor)| (0..lines(factor)).map(move |line| (i, line))).collect();
         let share = |task: usize| {

@@ -107,8 +107,9 @@ fn single(runner: &Runner) {
 fn main() {
     let runner = Runner::new(&program()).expect("it is of 3-d space");
     println!("{:>14}{:>12}{:>12}{:>12}{:>8}", "", "ours", "separate", "copy", "ratio");
-    for rows in [100, 1_000, 10_000, 100_000, 1_000_000] {
+    let only = std::env::args().nth(1).and_then(|rows| rows.parse().ok());
+    for rows in only.map_or(vec![100, 1_000, 10_000, 100_000, 1_000_000], |rows| vec![rows]) {
         many(&runner, rows);
     }
-    single(&runner);
+    if only.is_none() { single(&runner); }
 }

@@ -111,5 +111,7 @@ fn main() {
     for rows in only.map_or(vec![100, 1_000, 10_000, 100_000, 1_000_000], |rows| vec![rows]) {
         many(&runner, rows);
     }
-    if only.is_none() { single(&runner); }
+    if only.is_none() {
+        single(&runner);
+    }
 }

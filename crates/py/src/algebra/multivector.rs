@@ -5,10 +5,10 @@ use super::operators::{
     turned,
 };
 use super::signature::{Algebra, g3};
-use super::single;
 use super::value::{
     Any, Multivector, Object, Rotor, Storage, This, number, one, operand, row, storage, wrap,
 };
+use super::{batch, single};
 use numpy::PyArray1;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
@@ -126,23 +126,23 @@ impl Multivector {
     }
 
     fn __add__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        let row = || single::zipped(slf, other, |x, y| x + y);
-        or_method(sum_of(operand(slf), operand(other)), row, slf, "_add", (other,))
+        let rows = || zipped(slf, other, |x, y| x + y);
+        or_method(sum_of(operand(slf), operand(other)), rows, slf, "_add", (other,))
     }
 
     fn __radd__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        let row = || single::zipped(slf, other, |x, y| x + y);
-        or_method(sum_of(operand(other), operand(slf)), row, slf, "_add", (other,))
+        let rows = || zipped(slf, other, |x, y| x + y);
+        or_method(sum_of(operand(other), operand(slf)), rows, slf, "_add", (other,))
     }
 
     fn __sub__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        let row = || single::zipped(slf, other, |x, y| x - y);
-        or_method(difference(operand(slf), operand(other)), row, slf, "_subtract", (other,))
+        let rows = || zipped(slf, other, |x, y| x - y);
+        or_method(difference(operand(slf), operand(other)), rows, slf, "_subtract", (other,))
     }
 
     fn __rsub__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
-        let row = || single::zipped(slf, other, |x, y| y - x);
-        or_method(difference(operand(other), operand(slf)), row, slf, "_subtract_from", (other,))
+        let rows = || zipped(slf, other, |x, y| y - x);
+        or_method(difference(operand(other), operand(slf)), rows, slf, "_subtract_from", (other,))
     }
 
     fn __truediv__<'py>(slf: This<'_, 'py>, other: Any<'_, 'py>) -> Object<'py> {
@@ -155,7 +155,8 @@ impl Multivector {
     }
 
     fn __neg__<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        or_method(negative(operand(slf)), || single::mapped(slf, |x| -x), slf, "_negated", ())
+        let rows = || single::mapped(slf, |x| -x).or_else(|| batch::signed(slf, |_| true));
+        or_method(negative(operand(slf)), rows, slf, "_negated", ())
     }
 
     fn __invert__<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
@@ -169,7 +170,8 @@ impl Multivector {
     /// >>> ~(1 + ph.e1 + (ph.e1 ^ ph.e2) + ph.I)
     /// 1 + e1 - e1∧e2 - I
     fn reverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        or_method(reversed(operand(slf)), || single::reversed(slf), slf, "_reversed", ())
+        let rows = || single::reversed(slf).or_else(|| batch::signed(slf, |k| k % 4 > 1));
+        or_method(reversed(operand(slf)), rows, slf, "_reversed", ())
     }
 
     /// Return the part of one grade or of several, ``grade(2)`` or ``grade(1, 3)``; zeros where absent.
@@ -417,6 +419,15 @@ impl Rotor {
         let here = if out.is_none() { turned(slf, x) } else { None };
         here.unwrap_or_else(|| slf.call_method1(intern!(slf.py(), "_turn"), (x, out)))
     }
+}
+
+/// `f` of each component of single values of any algebra, or of batches.
+fn zipped<'py>(
+    left: This<'_, 'py>,
+    right: Any<'_, 'py>,
+    f: impl Copy + Fn(f64, f64) -> f64,
+) -> Option<Object<'py>> {
+    single::zipped(left, right, f).or_else(|| batch::zipped(left, right, f))
 }
 
 fn no_constructor(cls: &Bound<'_, PyType>) -> PyErr {

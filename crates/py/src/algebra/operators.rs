@@ -1,6 +1,6 @@
 //! Operators of single values of 3-d space, and of other algebras; the Python half of the type handles all other operands.
-use super::single;
 use super::value::{Any, Object, Operand, Rotor, Storage, This, number, operand, scalar, unit_rotor, wrap};
+use super::{batch, single};
 use crate::support::arrays::bad;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
@@ -104,21 +104,24 @@ pub(crate) fn product<'py>(
 ) -> Object<'py> {
     match product_of(product, operand(left), operand(right)) {
         Some(result) => result.object(left.py()),
-        None => single::product(left, product, right).unwrap_or_else(fallback),
+        None => single::product(left, product, right)
+            .or_else(|| batch::product(left, product, right))
+            .unwrap_or_else(fallback),
     }
 }
 
-/// A result for single values of 3-d space, or one for those of other algebras, or that of a method of the Python half.
+/// A result for single values of 3-d space, or one for those of other algebras and for batches, or that of a method of the
+/// Python half.
 pub(super) fn or_method<'py>(
     result: Option<One>,
-    of_row: impl FnOnce() -> Option<Object<'py>>,
+    of_rows: impl FnOnce() -> Option<Object<'py>>,
     value: This<'_, 'py>,
     name: &str,
     arguments: impl pyo3::call::PyCallArgs<'py>,
 ) -> Object<'py> {
     match result {
         Some(result) => result.object(value.py()),
-        None => of_row().unwrap_or_else(|| value.call_method1(name, arguments)),
+        None => of_rows().unwrap_or_else(|| value.call_method1(name, arguments)),
     }
 }
 
@@ -133,6 +136,7 @@ pub(crate) fn infix_right<'py>(right: This<'_, 'py>, kind: Product, left: Any<'_
     match product_of(kind, number, operand(right)) {
         Some(result) => result.object(right.py()),
         None => single::product_from(right, kind, left)
+            .or_else(|| batch::product(left, kind, right))
             .unwrap_or_else(|| right.call_method1(intern!(right.py(), "_product_from"), (kind.name(), left))),
     }
 }
@@ -184,7 +188,10 @@ pub(crate) fn equal(left: This<'_, '_>, right: Any<'_, '_>) -> Option<bool> {
     }
 }
 
-/// `R X ~R` of single values.
+/// `R X ~R` of single values, and of batches.
 pub(crate) fn turned<'py>(rotor: &Bound<'py, Rotor>, x: Any<'_, 'py>) -> Option<Object<'py>> {
-    Some(turned_by(operand(rotor), operand(x))?.object(x.py()))
+    match turned_by(operand(rotor), operand(x)) {
+        Some(one) => Some(one.object(x.py())),
+        None => batch::turned(rotor, x),
+    }
 }

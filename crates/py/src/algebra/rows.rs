@@ -84,14 +84,36 @@ fn fill<T: Element + numpy::Element>(
     let (a, b): (Rows<'_, T>, Rows<'_, T>) = (a.extract()?, b.extract()?);
     let mut out: RowsToFill<'_, T> = out.extract()?;
     let (a, b, out) = (numbers(&a)?, numbers(&b)?, numbers_to_fill(&mut out)?);
+    fill_numbers(py, (na, nb, nout), a, b, out, work)
+}
+
+/// Results of fewer numbers are computed at once, without a check for signals.
+const FEW: usize = 1 << 12;
+
+/// Fills rows from those of two others, of numbers in C order. Python may interrupt.
+pub(super) fn fill_numbers<T: Element>(
+    py: Python<'_>,
+    (na, nb, nout): (usize, usize, usize),
+    a: &[T],
+    b: &[T],
+    out: &mut [T],
+    work: impl Fn(Threads, &[T], &[T], &mut [T]) + Sync,
+) -> PyResult<()> {
     let rows = out.len() / nout;
     for (length, size) in [(a.len(), na), (b.len(), nb)] {
         check_rows(length, size, rows)?;
     }
-    let threads = threads(out.len())?;
+    if rows == 0 {
+        return Ok(());
+    }
     // A number of a result takes as many operations as the smaller factor has numbers, or fewer.
-    let first = (WORK / (nout * na.min(nb)).max(1)).max(1);
-    in_pieces(py, rows, first, |piece| {
+    let each = (nout * na.min(nb)).max(1);
+    if rows.saturating_mul(each) < FEW {
+        work(Threads::ONE, a, b, out);
+        return Ok(());
+    }
+    let threads = threads(out.len())?;
+    in_pieces(py, rows, (WORK / each).max(1), |piece| {
         let (a, b) = (part(a, na, rows, &piece), part(b, nb, rows, &piece));
         py.detach(|| work(threads, a, b, &mut out[nout * piece.start..nout * piece.end]));
         Ok(())

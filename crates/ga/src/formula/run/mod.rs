@@ -106,7 +106,9 @@ impl Runner {
         let sweep = Sweep { runner: self, schedule, path, far, streamed, failure: Mutex::new(None) };
         match sweep.schedule.lanes {
             // Small blocks interleave memory access and arithmetic more finely.
-            0..=FEW_LANES if !far && rows.len() > 64 => sweep.run::<T, 128>(threads, &factors, targets, rows.len()),
+            0..=FEW_LANES if !far && rows.len() > 64 => {
+                sweep.run::<T, 128>(threads, &factors, targets, rows.len())
+            }
             0..=MANY_LANES if rows.len() > 16 => sweep.run::<T, 64>(threads, &factors, targets, rows.len()),
             _ => sweep.run::<T, 16>(threads, &factors, targets, rows.len()),
         }

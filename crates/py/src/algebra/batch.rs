@@ -1,0 +1,161 @@
+//! Operators of batches of float64 of one shape, also with a single value or a number. All other batches are those of the
+//! Python half, which takes some microseconds longer.
+#![allow(unsafe_code)]
+
+use super::rows::fill_numbers;
+use super::signature::{Algebra, g3};
+use super::value::{Any, Multivector, Object, Storage, This, number, wrap};
+use crate::support::pool;
+use numpy::npyffi::NPY_ARRAY_WRITEABLE;
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use polhode_ga::product::{Grades, Product};
+use polhode_ga::rows::compose::compose;
+use polhode_ga::rows::product::turn;
+use polhode_ga::simd::threads::Threads;
+use pyo3::prelude::*;
+use std::borrow::Cow;
+use std::iter::zip;
+
+/// Sums and signs of more numbers are left to the Python half: NumPy's loops are as fast.
+const FEW: usize = 1 << 12;
+
+/// The rows of a value.
+struct Rows<'a> {
+    numbers: Cow<'a, [f64]>,
+    /// The shape of the batch, empty for a single value.
+    shape: &'a [usize],
+    grades: Grades,
+    unit: bool,
+    /// That of a number is any.
+    algebra: Option<&'a Py<Algebra>>,
+}
+
+impl<'a> Rows<'a> {
+    fn of(value: This<'a, '_>) -> Option<Rows<'a>> {
+        let (py, Multivector { storage, unit }) = (value.py(), value.get());
+        let (numbers, shape, grades, algebra) = match storage {
+            Storage::One(one) => (one.components(), &[][..], one.grades(), g3(py).ok()?),
+            Storage::Many { data, grades, algebra } => {
+                let data =
+                    data.bind(py).cast::<PyArrayDyn<f64>>().ok().filter(|data| data.is_c_contiguous())?;
+                let (_, shape) = data.shape().split_last()?;
+                // SAFETY: arrays of values are read-only.
+                (unsafe { data.as_slice().ok()? }, shape, *grades, algebra)
+            }
+        };
+        Some(Rows { numbers: numbers.into(), shape, grades, unit: *unit, algebra: Some(algebra) })
+    }
+
+    /// A value or a number.
+    fn operand(x: Any<'a, '_>) -> Option<Rows<'a>> {
+        match x.cast::<Multivector>() {
+            Ok(value) => Rows::of(value),
+            Err(_) => {
+                let numbers = vec![number(x)?].into();
+                Some(Rows { numbers, shape: &[], grades: Grades::SCALAR, unit: false, algebra: None })
+            }
+        }
+    }
+
+    /// The shape of the result of an operator and its algebra; `None` for two single values, and for values of several
+    /// shapes or algebras.
+    fn together(&self, other: &Rows<'a>) -> Option<(&'a [usize], &'a Py<Algebra>)> {
+        let algebra = self.algebra.or(other.algebra)?;
+        let same = [self, other].iter().all(|rows| rows.algebra.is_none_or(|own| own.is(algebra)));
+        let shape = if self.shape.is_empty() { other.shape } else { self.shape };
+        let fits = [self, other].iter().all(|rows| rows.shape.is_empty() || rows.shape == shape);
+        (same && fits && !shape.is_empty()).then_some((shape, algebra))
+    }
+}
+
+/// What a result consists of, but its numbers.
+struct Kind<'a> {
+    shape: &'a [usize],
+    size: usize,
+    grades: Grades,
+    unit: bool,
+    algebra: &'a Py<Algebra>,
+}
+
+/// A new Python value, whose numbers a function fills.
+fn filled<'py>(
+    py: Python<'py>,
+    kind: Kind<'_>,
+    fill: impl FnOnce(&mut [f64]) -> PyResult<()>,
+) -> Object<'py> {
+    let Kind { shape, size, grades, unit, algebra } = kind;
+    let data = pool::array(py, &[shape, &[size]].concat())?;
+    // SAFETY: nothing else refers to the array.
+    unsafe {
+        fill(data.as_slice_mut()?)?;
+        (*data.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE;
+    }
+    let (data, algebra) = (data.into_any().unbind(), algebra.clone_ref(py));
+    wrap(py, Storage::Many { data, grades, algebra }, unit)
+}
+
+/// A product.
+pub(super) fn product<'py>(left: Any<'_, 'py>, kind: Product, right: Any<'_, 'py>) -> Option<Object<'py>> {
+    let (a, b) = (Rows::operand(left)?, Rows::operand(right)?);
+    let (shape, algebra) = a.together(&b)?;
+    let py = left.py();
+    if a.unit && b.unit && kind == Product::Geometric {
+        let kind = Kind { shape, size: 4, grades: Grades::EVEN, unit: true, algebra };
+        return Some(filled(py, kind, |out| {
+            fill_numbers(py, (4, 4, 4), &a.numbers, &b.numbers, out, compose)
+        }));
+    }
+    let plan = algebra.get().plan_of(kind, a.grades, b.grades).ok()?;
+    let kind = Kind { shape, size: plan.sizes.2, grades: plan.grades, unit: false, algebra };
+    let work = |threads, a: &[f64], b: &[f64], out: &mut [f64]| plan.run(threads, a, b, out);
+    Some(filled(py, kind, |out| fill_numbers(py, plan.sizes, &a.numbers, &b.numbers, out, work)))
+}
+
+/// `R X ~R` for rotors R.
+pub(super) fn turned<'py>(rotor: Any<'_, 'py>, x: Any<'_, 'py>) -> Option<Object<'py>> {
+    let (r, x) = (Rows::of(rotor.cast().ok()?)?, Rows::of(x.cast().ok()?)?);
+    let (shape, algebra) = r.together(&x)?;
+    let (py, size) = (rotor.py(), x.grades.indices(&algebra.get().table).len());
+    let kind = Kind { shape, size, grades: x.grades, unit: x.unit, algebra };
+    let work = |threads: Threads, r: &[f64], v: &[f64], out: &mut [f64]| turn(threads, r, v, x.grades, out);
+    Some(filled(py, kind, |out| fill_numbers(py, (4, size, size), &r.numbers, &x.numbers, out, work)))
+}
+
+/// `f` of each component of two values of the same grades, such as their sum.
+pub(super) fn zipped<'py>(
+    left: This<'_, 'py>,
+    right: Any<'_, 'py>,
+    f: impl Fn(f64, f64) -> f64,
+) -> Option<Object<'py>> {
+    let (a, b) = (Rows::of(left)?, Rows::operand(right)?);
+    let (shape, algebra) = a.together(&b)?;
+    if a.grades != b.grades || a.shape != b.shape || a.numbers.len() > FEW {
+        return None;
+    }
+    let size = a.grades.indices(&algebra.get().table).len();
+    let kind = Kind { shape, size, grades: a.grades, unit: false, algebra };
+    let pairs = zip(&*a.numbers, &*b.numbers);
+    Some(filled(left.py(), kind, |out| {
+        zip(out, pairs).for_each(|(out, (&x, &y))| *out = f(x, y));
+        Ok(())
+    }))
+}
+
+/// The value with the sign of the grades reversed for which `negative` holds.
+pub(super) fn signed<'py>(value: This<'_, 'py>, negative: impl Fn(usize) -> bool) -> Option<Object<'py>> {
+    let a = Rows::of(value)?;
+    if a.shape.is_empty() || a.numbers.len() > FEW {
+        return None;
+    }
+    let (grades, algebra) = (a.grades, a.algebra?);
+    let blades = algebra.get().table.blades().iter().map(|blade| blade.grade());
+    let signs: Vec<bool> = blades.filter(|&k| grades.contains(k)).map(negative).collect();
+    let kind = Kind { shape: a.shape, size: signs.len(), grades, unit: a.unit, algebra };
+    Some(filled(value.py(), kind, |out| {
+        for (out, row) in zip(out.chunks_exact_mut(signs.len()), a.numbers.chunks_exact(signs.len())) {
+            zip(out, zip(row, &signs))
+                .for_each(|(out, (&x, &negative))| *out = if negative { -x } else { x });
+        }
+        Ok(())
+    }))
+}

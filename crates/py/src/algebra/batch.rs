@@ -20,18 +20,18 @@ use std::iter::zip;
 const FEW: usize = 1 << 12;
 
 /// The rows of a value.
-struct Rows<'a> {
-    numbers: Cow<'a, [f64]>,
+pub(crate) struct Rows<'a> {
+    pub numbers: Cow<'a, [f64]>,
     /// The shape of the batch, empty for a single value.
-    shape: &'a [usize],
-    grades: Grades,
-    unit: bool,
+    pub shape: &'a [usize],
+    pub grades: Grades,
+    pub unit: bool,
     /// That of a number is any.
-    algebra: Option<&'a Py<Algebra>>,
+    pub algebra: Option<&'a Py<Algebra>>,
 }
 
 impl<'a> Rows<'a> {
-    fn of(value: This<'a, '_>) -> Option<Rows<'a>> {
+    fn of<'py: 'a>(value: Borrowed<'a, 'py, Multivector>) -> Option<Rows<'a>> {
         let (py, Multivector { storage, unit }) = (value.py(), value.get());
         let (numbers, shape, grades, algebra) = match storage {
             Storage::One(one) => (one.components(), &[][..], one.grades(), g3(py).ok()?),
@@ -46,12 +46,12 @@ impl<'a> Rows<'a> {
         Some(Rows { numbers: numbers.into(), shape, grades, unit: *unit, algebra: Some(algebra) })
     }
 
-    /// A value or a number.
-    fn operand(x: Any<'a, '_>) -> Option<Rows<'a>> {
+    /// A value or a number; `None` for anything else, and for values that are not of float64.
+    pub fn operand<'py: 'a>(x: Borrowed<'a, 'py, PyAny>) -> Option<Rows<'a>> {
         match x.cast::<Multivector>() {
             Ok(value) => Rows::of(value),
             Err(_) => {
-                let numbers = vec![number(x)?].into();
+                let numbers = vec![number(&x)?].into();
                 Some(Rows { numbers, shape: &[], grades: Grades::SCALAR, unit: false, algebra: None })
             }
         }
@@ -69,16 +69,16 @@ impl<'a> Rows<'a> {
 }
 
 /// What a result consists of, but its numbers.
-struct Kind<'a> {
-    shape: &'a [usize],
-    size: usize,
-    grades: Grades,
-    unit: bool,
-    algebra: &'a Py<Algebra>,
+pub(crate) struct Kind<'a> {
+    pub shape: &'a [usize],
+    pub size: usize,
+    pub grades: Grades,
+    pub unit: bool,
+    pub algebra: &'a Py<Algebra>,
 }
 
 /// A new Python value, whose numbers a function fills.
-fn filled<'py>(
+pub(crate) fn filled<'py>(
     py: Python<'py>,
     kind: Kind<'_>,
     fill: impl FnOnce(&mut [f64]) -> PyResult<()>,
@@ -96,7 +96,7 @@ fn filled<'py>(
 
 /// A product.
 pub(super) fn product<'py>(left: Any<'_, 'py>, kind: Product, right: Any<'_, 'py>) -> Option<Object<'py>> {
-    let (a, b) = (Rows::operand(left)?, Rows::operand(right)?);
+    let (a, b) = (Rows::operand(left.as_borrowed())?, Rows::operand(right.as_borrowed())?);
     let (shape, algebra) = a.together(&b)?;
     let py = left.py();
     if a.unit && b.unit && kind == Product::Geometric {
@@ -113,7 +113,7 @@ pub(super) fn product<'py>(left: Any<'_, 'py>, kind: Product, right: Any<'_, 'py
 
 /// `R X ~R` for rotors R.
 pub(super) fn turned<'py>(rotor: Any<'_, 'py>, x: Any<'_, 'py>) -> Option<Object<'py>> {
-    let (r, x) = (Rows::of(rotor.cast().ok()?)?, Rows::of(x.cast().ok()?)?);
+    let (r, x) = (Rows::of(rotor.as_borrowed().cast().ok()?)?, Rows::of(x.as_borrowed().cast().ok()?)?);
     let (shape, algebra) = r.together(&x)?;
     let (py, size) = (rotor.py(), x.grades.indices(&algebra.get().table).len());
     let kind = Kind { shape, size, grades: x.grades, unit: x.unit, algebra };
@@ -127,7 +127,7 @@ pub(super) fn zipped<'py>(
     right: Any<'_, 'py>,
     f: impl Fn(f64, f64) -> f64,
 ) -> Option<Object<'py>> {
-    let (a, b) = (Rows::of(left)?, Rows::operand(right)?);
+    let (a, b) = (Rows::of(left.as_borrowed())?, Rows::operand(right.as_borrowed())?);
     let (shape, algebra) = a.together(&b)?;
     if a.grades != b.grades || a.shape != b.shape || a.numbers.len() > FEW {
         return None;
@@ -143,7 +143,7 @@ pub(super) fn zipped<'py>(
 
 /// The value with the sign of the grades reversed for which `negative` holds.
 pub(super) fn signed<'py>(value: This<'_, 'py>, negative: impl Fn(usize) -> bool) -> Option<Object<'py>> {
-    let a = Rows::of(value)?;
+    let a = Rows::of(value.as_borrowed())?;
     if a.shape.is_empty() || a.numbers.len() > FEW {
         return None;
     }

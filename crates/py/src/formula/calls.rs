@@ -1,10 +1,11 @@
-//! Cached calls of formulas on single values.
+//! Cached calls of formulas on single values and on batches.
 //!
 //! A call with the names and kinds of an earlier one is recognized by the addresses of its names, which Python interns, at
 //! little cost beside the arithmetic. Linear maps are recognized by their addresses, and their matrices are cached.
 
 use super::program::Program;
-use super::{Formula, NameKind};
+use super::{Formula, NameKind, batches};
+use crate::algebra::batch::Rows;
 use crate::algebra::signature::g3;
 use crate::algebra::value::{Operand, Storage, operand, scalar, wrap};
 use crate::support::face::LINEAR_MAP;
@@ -43,11 +44,23 @@ pub(crate) enum Argument {
 }
 
 impl Calls {
-    /// The value for single values with their names; `None` if no such call is cached.
+    /// The value for values with their names; `None` if no such call is cached, and for batches of several shapes.
     pub fn value<'a, 'py: 'a, Values: ExactSizeIterator<Item = Named<'a, 'py>>>(
         &self,
         py: Python<'py>,
         values: impl Fn() -> Values,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        match self.value_of_ones(py, &values)? {
+            None => self.value_of_rows(py, &values),
+            value => Ok(value),
+        }
+    }
+
+    /// The value for single values.
+    fn value_of_ones<'a, 'py: 'a, Values: ExactSizeIterator<Item = Named<'a, 'py>>>(
+        &self,
+        py: Python<'py>,
+        values: &impl Fn() -> Values,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         // Locked only if a finalizer, which Python may run anywhere, calls the formula within a call of it.
         let Ok(mut calls) = self.0.try_lock() else { return Ok(None) };
@@ -69,7 +82,23 @@ impl Calls {
         Err(program.get().row_error(py, &error, &[]))
     }
 
-    /// Caches a call; false if it is not one of single values of 3-d space, or if the formula is an equation.
+    /// The value for batches of one shape, also with single values.
+    fn value_of_rows<'a, 'py: 'a, Values: ExactSizeIterator<Item = Named<'a, 'py>>>(
+        &self,
+        py: Python<'py>,
+        values: &impl Fn() -> Values,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let found = {
+            let Ok(calls) = self.0.try_lock() else { return Ok(None) };
+            let rows = |call: &Call| Some((call.rows(py, values())?, call.program.clone_ref(py)));
+            calls.iter().find_map(rows)
+        };
+        // Unlocked, since other threads may run meanwhile.
+        let Some((rows, program)) = found else { return Ok(None) };
+        batches::of_rows(py, program.get(), &rows.iter().collect::<Vec<_>>(), g3(py)?)
+    }
+
+    /// Caches a call; false if it is not one of values of 3-d space over float64, or if the formula is an equation.
     pub fn keep(&self, formula: &Formula, named: &Bound<'_, PyDict>) -> PyResult<bool> {
         let mut kinds = Vec::with_capacity(named.len());
         let mut arguments = Vec::with_capacity(named.len());
@@ -77,6 +106,10 @@ impl Calls {
             let Some(argument) = Argument::of(&value)? else { return Ok(false) };
             kinds.push(argument.named(name.extract()?));
             arguments.push((name.unbind(), argument));
+        }
+        let known = self.0.try_lock().is_ok_and(|calls| calls.iter().any(|call| call.is_of(&arguments)));
+        if known {
+            return Ok(true);
         }
         let Some(program) = formula.for_floats(named.py(), g3(named.py())?, kinds) else { return Ok(false) };
         let Program { order, program: steps, .. } = program.get();
@@ -122,6 +155,47 @@ impl Call {
     }
 }
 
+impl Call {
+    /// Whether these are its names and kinds.
+    fn is_of(&self, arguments: &[(Py<PyAny>, Argument)]) -> bool {
+        let same = |((a, x), (b, y)): (&(Py<PyAny>, Argument), &(Py<PyAny>, Argument))| {
+            a.is(b)
+                && match (x, y) {
+                    (Argument::Value(a, _), Argument::Value(b, _)) => {
+                        a.grades == b.grades && a.unit == b.unit
+                    }
+                    (Argument::Map(a, _), Argument::Map(b, _)) => a.is(b),
+                    _ => false,
+                }
+        };
+        self.arguments.len() == arguments.len() && self.arguments.iter().zip(arguments).all(same)
+    }
+
+    /// The rows of the inputs, if the names and kinds of the values are those of this call and none is a linear map.
+    fn rows<'a, 'py: 'a>(
+        &self,
+        py: Python<'py>,
+        values: impl ExactSizeIterator<Item = Named<'a, 'py>>,
+    ) -> Option<Vec<Rows<'a>>> {
+        if values.len() != self.arguments.len() {
+            return None;
+        }
+        let mut inputs: Vec<Option<Rows<'a>>> = self.inputs.iter().map(|_| None).collect();
+        for ((name, value), (known, argument)) in values.zip(&self.arguments) {
+            let Argument::Value(ty, place) = argument else { return None };
+            let rows = if name.is(known) { Rows::operand(value)? } else { return None };
+            let is_g3 = rows.algebra.is_none_or(|algebra| g3(py).is_ok_and(|g3| algebra.is(g3)));
+            if rows.grades != ty.grades || rows.unit != ty.unit || !is_g3 {
+                return None;
+            }
+            if let Some(place) = *place {
+                inputs[place] = Some(rows);
+            }
+        }
+        inputs.into_iter().collect()
+    }
+}
+
 impl Argument {
     /// A name of this kind.
     pub fn named(&self, name: String) -> NameKind {
@@ -131,7 +205,7 @@ impl Argument {
         }
     }
 
-    /// A single value of 3-d space over float64, a number, or a single linear map; `None` for anything else.
+    /// A value of 3-d space over float64, a number, or a single linear map; `None` for anything else.
     pub fn of(value: &Bound<'_, PyAny>) -> PyResult<Option<Argument>> {
         let py = value.py();
         match operand(value) {
@@ -140,6 +214,11 @@ impl Argument {
             }
             Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, None))),
             Operand::Other => {
+                if let Some(rows) = Rows::operand(value.as_borrowed()) {
+                    let own = rows.algebra.is_some_and(|algebra| g3(py).is_ok_and(|g3| algebra.is(g3)));
+                    let ty = Type { grades: rows.grades, unit: rows.unit };
+                    return Ok(own.then_some(Argument::Value(ty, None)));
+                }
                 let one =
                     LINEAR_MAP.is_class_of(value)? && value.getattr(intern!(py, "shape"))?.is_empty()?;
                 let grade = || value.getattr(intern!(py, "grade"))?.extract();

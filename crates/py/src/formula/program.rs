@@ -9,6 +9,7 @@ use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;
 use polhode_ga::formula::{self, Given, InputKind, Op, RowError, RowRunner, Runner, Span, Type, term_size};
 use polhode_ga::rows::product::Element;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::G3;
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
@@ -28,6 +29,9 @@ pub(crate) struct Program {
     /// In other algebras, if it has no functions.
     pub(crate) rows: Option<RowRunner>,
 }
+
+/// Work that is done at once, without a check for signals, as weights of rows.
+const FEW: usize = 1 << 14;
 
 /// Work before the first check for signals, as weights of rows: a millisecond.
 const PIECE: usize = 1 << 22;
@@ -160,6 +164,10 @@ impl Program {
         let fits = |(x, size): (&&[T], &usize)| x.len() == *size || x.len() == rows * size;
         if data.len() != kinds.len() || !data.iter().zip(&kinds).all(fits) || out.len() != rows * size {
             return Err(bad("the arrays do not fit the program"));
+        }
+        if rows.saturating_mul(runner.weight()) < FEW {
+            let done = runner.run(Threads::ONE, data, &mut [out], 0..rows);
+            return done.map_err(|error| self.row_error(py, &error, batch));
         }
         let threads = threads(rows.saturating_mul(runner.weight()) / 16)?;
         in_pieces(py, rows, PIECE / runner.weight(), |piece| {

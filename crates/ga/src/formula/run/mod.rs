@@ -96,9 +96,19 @@ impl Runner {
         }
         let known = factors.iter().enumerate();
         let known: Vec<_> = known.map(|(i, factor)| factor.one.then(|| self.given(&factors, i, 0))).collect();
-        let Ok(schedule) = self.schedule(&known, false, &self.whole()) else {
-            // An earlier step may fail in the first row too.
-            return self.by_rows(&factors, &mut targets, 1).map_err(late);
+        let varying = known.iter().all(Option::is_none);
+        let own;
+        let schedule = match self.varying.get().filter(|_| varying) {
+            Some(schedule) => schedule,
+            None => match self.schedule(&known, false, &self.whole()) {
+                Ok(schedule) if varying => self.varying.get_or_init(|| schedule),
+                Ok(schedule) => {
+                    own = schedule;
+                    &own
+                }
+                // An earlier step may fail in the first row too.
+                Err(_) => return self.by_rows(&factors, &mut targets, 1).map_err(late),
+            },
         };
         targets.iter_mut().zip(&schedule.results).for_each(|(target, &at)| target.at = at);
         let streamed = path.streams() && bytes >= STREAMED;
@@ -160,7 +170,7 @@ impl Runner {
 /// A sweep over all rows.
 struct Sweep<'a> {
     runner: &'a Runner,
-    schedule: Schedule,
+    schedule: &'a Schedule,
     path: Path,
     /// Whether inputs are prefetched, and whether results bypass the caches.
     far: bool,

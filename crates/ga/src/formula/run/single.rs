@@ -1,11 +1,13 @@
 //! Programs on single values.
 
+use super::schedule::Schedule;
 use super::steps::{Given, Ready};
 use crate::MathError;
 use crate::formula::compile::program::{Id, InputKind, Program};
 use crate::graded::Graded;
 use crate::table::G3;
 use std::borrow::Borrow;
+use std::sync::OnceLock;
 
 /// A program of 3-d space, ready to run.
 pub struct Runner {
@@ -13,6 +15,8 @@ pub struct Runner {
     pub(crate) steps: Vec<Ready>,
     /// The steps that are results.
     pub(crate) results: Vec<Id>,
+    /// The order of evaluation where all inputs have many rows.
+    pub(super) varying: OnceLock<Schedule>,
 }
 
 impl Runner {
@@ -22,6 +26,7 @@ impl Runner {
             inputs: program.inputs.iter().map(|input| input.kind).collect(),
             steps: Ready::steps(program),
             results: program.results.concat(),
+            varying: OnceLock::new(),
         })
     }
 

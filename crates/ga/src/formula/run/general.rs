@@ -3,8 +3,9 @@
 //! Each step has the bits of the operator: a product adds the same terms in the same order, and full products of large
 //! algebras go through the same tiles. Values stay in lanes between the steps, so only inputs and results meet the memory.
 
-use super::schedule::{Lanes, apart};
+use super::schedule::apart;
 use super::steps::{Divide, Selection, Sum};
+use super::tasks::Lanes;
 use crate::formula::compile::program::{Id, InputKind, Op, Program, Step};
 use crate::product::{Engine, Grades, Plan};
 use crate::simd::threads::{Threads, for_each};

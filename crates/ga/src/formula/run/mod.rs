@@ -5,6 +5,7 @@ pub(crate) mod schedule;
 pub(crate) mod side_by_side;
 pub(crate) mod single;
 pub(crate) mod steps;
+pub(crate) mod tasks;
 #[cfg(test)]
 mod tests;
 
@@ -14,11 +15,11 @@ use crate::graded::{Graded, size};
 use crate::simd::threads::{Threads, for_each};
 use crate::simd::traverse::{Factor, SHARED, Target, by_blocks};
 use crate::simd::{Element, Lane, Path};
-use schedule::Schedule;
 use single::Runner;
 use std::ops::{ControlFlow, Range};
 use std::sync::{Mutex, PoisonError};
 use steps::{Given, Work};
+use tasks::Schedule;
 
 /// Below this number of rows, transposing them into lanes does not pay.
 const FEW: usize = 8;

@@ -1,8 +1,9 @@
 //! Programs on lanes that the caller fills repeatedly, for bodies stepped side by side.
 
-use super::schedule::{Part, Schedule};
+use super::schedule::Part;
 use super::single::Runner;
 use super::steps::Given;
+use super::tasks::Schedule;
 use crate::formula::compile::program::Id;
 use crate::graded::size;
 use crate::simd::foreseen::Foreseen;

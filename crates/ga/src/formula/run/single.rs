@@ -1,7 +1,7 @@
 //! Programs on single values.
 
-use super::schedule::Schedule;
 use super::steps::{Given, Ready};
+use super::tasks::Schedule;
 use crate::MathError;
 use crate::formula::compile::program::{Id, InputKind, Program};
 use crate::graded::Graded;

@@ -23,7 +23,7 @@ const FEW: usize = 1 << 12;
 pub(crate) struct Rows<'a> {
     pub numbers: Cow<'a, [f64]>,
     /// The shape of the batch, empty for a single value.
-    pub shape: &'a [usize],
+    pub shape: Cow<'a, [usize]>,
     pub grades: Grades,
     pub unit: bool,
     /// That of a number is any.
@@ -43,29 +43,42 @@ impl<'a> Rows<'a> {
                 (unsafe { data.as_slice().ok()? }, shape, *grades, algebra)
             }
         };
-        Some(Rows { numbers: numbers.into(), shape, grades, unit: *unit, algebra: Some(algebra) })
+        let (numbers, shape) = (numbers.into(), shape.into());
+        Some(Rows { numbers, shape, grades, unit: *unit, algebra: Some(algebra) })
     }
 
-    /// A value or a number; `None` for anything else, and for values that are not of float64.
+    /// A value, a number, or an array of few numbers as a batch of scalars; `None` for anything else, and for values that
+    /// are not of float64.
     pub fn operand<'py: 'a>(x: Borrowed<'a, 'py, PyAny>) -> Option<Rows<'a>> {
         match x.cast::<Multivector>() {
             Ok(value) => Rows::of(value),
             Err(_) => {
-                let numbers = vec![number(&x)?].into();
-                Some(Rows { numbers, shape: &[], grades: Grades::SCALAR, unit: false, algebra: None })
+                let (numbers, shape) = match number(&x) {
+                    Some(x) => (vec![x], Vec::new()),
+                    None => numbers_of(&x)?,
+                };
+                let (numbers, shape) = (numbers.into(), shape.into());
+                Some(Rows { numbers, shape, grades: Grades::SCALAR, unit: false, algebra: None })
             }
         }
     }
 
     /// The shape of the result of an operator and its algebra; `None` for two single values, and for values of several
     /// shapes or algebras.
-    fn together(&self, other: &Rows<'a>) -> Option<(&'a [usize], &'a Py<Algebra>)> {
+    fn together<'s>(&'s self, other: &'s Rows<'a>) -> Option<(&'s [usize], &'a Py<Algebra>)> {
         let algebra = self.algebra.or(other.algebra)?;
         let same = [self, other].iter().all(|rows| rows.algebra.is_none_or(|own| own.is(algebra)));
-        let shape = if self.shape.is_empty() { other.shape } else { self.shape };
-        let fits = [self, other].iter().all(|rows| rows.shape.is_empty() || rows.shape == shape);
+        let shape = if self.shape.is_empty() { &*other.shape } else { &*self.shape };
+        let fits = [self, other].iter().all(|rows| rows.shape.is_empty() || *rows.shape == *shape);
         (same && fits && !shape.is_empty()).then_some((shape, algebra))
     }
+}
+
+/// A copy of the numbers of an array, which Python may change, and its shape; `None` for many, and for other types.
+fn numbers_of(array: Any<'_, '_>) -> Option<(Vec<f64>, Vec<usize>)> {
+    let array = array.cast::<PyArrayDyn<f64>>().ok().filter(|array| array.len() <= FEW)?;
+    let numbers = array.try_readonly().ok()?.as_array().iter().copied().collect();
+    Some((numbers, array.shape().to_vec()))
 }
 
 /// What a result consists of, but its numbers.
@@ -141,6 +154,18 @@ pub(super) fn zipped<'py>(
     }))
 }
 
+/// `f` of each component; never a rotor.
+pub(super) fn mapped<'py>(value: This<'_, 'py>, f: impl Fn(f64) -> f64) -> Option<Object<'py>> {
+    let Rows { numbers, shape, grades, algebra, .. } = Rows::of(value.as_borrowed())?;
+    let algebra = algebra.filter(|_| !shape.is_empty() && numbers.len() <= FEW)?;
+    let size = grades.indices(&algebra.get().table).len();
+    let kind = Kind { shape: &shape, size, grades, unit: false, algebra };
+    Some(filled(value.py(), kind, |out| {
+        zip(out, &*numbers).for_each(|(out, &x)| *out = f(x));
+        Ok(())
+    }))
+}
+
 /// The value with the sign of the grades reversed for which `negative` holds.
 pub(super) fn signed<'py>(value: This<'_, 'py>, negative: impl Fn(usize) -> bool) -> Option<Object<'py>> {
     let a = Rows::of(value.as_borrowed())?;
@@ -150,7 +175,7 @@ pub(super) fn signed<'py>(value: This<'_, 'py>, negative: impl Fn(usize) -> bool
     let (grades, algebra) = (a.grades, a.algebra?);
     let blades = algebra.get().table.blades().iter().map(|blade| blade.grade());
     let signs: Vec<bool> = blades.filter(|&k| grades.contains(k)).map(negative).collect();
-    let kind = Kind { shape: a.shape, size: signs.len(), grades, unit: a.unit, algebra };
+    let kind = Kind { shape: &a.shape, size: signs.len(), grades, unit: a.unit, algebra };
     Some(filled(value.py(), kind, |out| {
         for (out, row) in zip(out.chunks_exact_mut(signs.len()), a.numbers.chunks_exact(signs.len())) {
             zip(out, zip(row, &signs))

@@ -149,7 +149,10 @@ impl Multivector {
         let general = || slf.call_method1(intern!(slf.py(), "_divide"), (other,));
         match (slf.get().single(), number(other)) {
             (Some(a), Some(x)) if x != 0.0 => one(slf.py(), a.map(|y| y / x)),
-            (None, Some(x)) if x != 0.0 => single::mapped(slf, |y| y / x).unwrap_or_else(general),
+            (None, Some(x)) if x != 0.0 => {
+                let rows = single::mapped(slf, |y| y / x).or_else(|| batch::mapped(slf, |y| y / x));
+                rows.unwrap_or_else(general)
+            }
             _ => general(),
         }
     }

@@ -46,7 +46,7 @@ pub(super) fn of_rows<'py>(
     inputs: &[&Rows<'_>],
     algebra: &Py<Algebra>,
 ) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let mut batches = inputs.iter().map(|rows| rows.shape).filter(|shape| !shape.is_empty());
+    let mut batches = inputs.iter().map(|rows| &*rows.shape).filter(|shape| !shape.is_empty());
     let (Some(Type { grades, unit }), Some(shape)) = (program.ty(), batches.next()) else { return Ok(None) };
     if !batches.all(|other| other == shape) {
         return Ok(None);

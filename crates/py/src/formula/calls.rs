@@ -215,7 +215,7 @@ impl Argument {
             Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, None))),
             Operand::Other => {
                 if let Some(rows) = Rows::operand(value.as_borrowed()) {
-                    let own = rows.algebra.is_some_and(|algebra| g3(py).is_ok_and(|g3| algebra.is(g3)));
+                    let own = rows.algebra.is_none_or(|algebra| g3(py).is_ok_and(|g3| algebra.is(g3)));
                     let ty = Type { grades: rows.grades, unit: rows.unit };
                     return Ok(own.then_some(Argument::Value(ty, None)));
                 }

@@ -1,12 +1,24 @@
 """Formulas themselves: values that are compared, pickled and printed, with trees, grades and steps."""
 
 import pickle
+import weakref
 
 import pytest
 
 import polhode as ph
 from polhode import e1, e2
 from samples import random_rotors
+
+
+def test_formulas_are_made_by_a_function():
+    f = ph.formula("a b")
+    assert isinstance(f, ph.Formula)
+    assert weakref.ref(f)() is f
+    for arguments in ((), ("a b",), (f,)):
+        with pytest.raises(TypeError, match=r"ph\.formula\(text\)|missing"):
+            type(f)(*arguments)
+    with pytest.raises(AttributeError):
+        f.other = 1
 
 
 def test_formulas_are_values():

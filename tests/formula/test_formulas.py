@@ -274,6 +274,22 @@ def test_values_are_given_by_position(arguments):
         for _ in range(2):  # the second call is cached
             for value in (f(R, a, b), f(R, a, b=b), f(R, b=b, a=a), f({"R": R, "a": a, "b": b})):
                 assert np.all(value == expected)
+            for value in (f.__call__(R, a, b), *map(f, [R], [a], [b]), f(**{"R": R, "a": a, "b": b})):
+                assert np.all(value == expected)
+
+
+def test_calls_alternate_between_single_values_and_batches():
+    """A call is recognized by names and kinds: values of one kind may be single, batches or arrays of numbers."""
+    f = ph.formula("s a∧b")
+    a, b, many = ph.vector([1.0, 2.0, 3.0]), ph.vector([0.5, 0.0, 2.0]), ph.vector(RNG.normal(size=(4, 1, 3)))
+    others = [ph.vector(RNG.normal(size=shape)) for shape in ((4, 1, 3), (5, 3), (0, 3), (4, 5, 3))]
+    for _ in range(3):
+        for x in (a, many):
+            for y in (b, *others):
+                for s in (2.0, 3, RNG.normal(size=(4, 1)), ph.scalar(0.5)):
+                    found, expected = f(s=s, a=x, b=y).components, (s * x.wedge(y)).components
+                    assert found.shape == expected.shape
+                    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14)
 
 
 def sympy_vector():

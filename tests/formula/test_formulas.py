@@ -274,12 +274,12 @@ def test_values_are_given_by_position(arguments):
         for _ in range(2):  # the second call is cached
             for value in (f(R, a, b), f(R, a, b=b), f(R, b=b, a=a), f({"R": R, "a": a, "b": b})):
                 assert np.all(value == expected)
-            for value in (f.__call__(R, a, b), *map(f, [R], [a], [b]), f(**{"R": R, "a": a, "b": b})):
+            for value in (f.__call__(R, a, b), *map(f, [R], [a], [b]), f(R=R, a=a, b=b)):
                 assert np.all(value == expected)
 
 
 def test_calls_alternate_between_single_values_and_batches():
-    """A call is recognized by names and kinds: values of one kind may be single, batches or arrays of numbers."""
+    """A call is recognized by names and kinds, whether values are single, batches or arrays of numbers."""
     f = ph.formula("s a∧b")
     a, b, many = ph.vector([1.0, 2.0, 3.0]), ph.vector([0.5, 0.0, 2.0]), ph.vector(RNG.normal(size=(4, 1, 3)))
     others = [ph.vector(RNG.normal(size=shape)) for shape in ((4, 1, 3), (5, 3), (0, 3), (4, 5, 3))]

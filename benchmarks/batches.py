@@ -7,6 +7,7 @@ with one object per value get smaller batches.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ import polhode as ph
 from contest import Pace, Row
 from peers import even, of_clifford, of_kingdon, of_pauli, of_quaternion, rotor_of
 
+FEW = 16
 OBJECTS = 2_000  # batch size for libraries with one object per value
 
 
@@ -33,6 +35,12 @@ def rows(rng: np.random.Generator, pace: Pace) -> Iterator[Row]:
     yield turn_all(rng, n)
     yield exponential(rng, n)
     yield logarithm(rng, n)
+
+
+def few_rows(rng: np.random.Generator, pace: Pace) -> Iterator[Row]:
+    """Yield rows of batches of few values, of which most time is that of the call; `pace` does not matter."""
+    for row in (product, wedge, composition, turn, turn_all, exponential, logarithm):
+        yield replace(row(rng, FEW), goal="", traffic=0)
 
 
 def product(rng: np.random.Generator, n: int) -> Row:

@@ -88,7 +88,10 @@ class Row:
     def enter(
         self, library: str, code: str, names: dict[str, Any], read: Read, count: int | None = None
     ) -> None:
-        """Add a library: `read` converts the value of `code`, evaluated with `names`, to (count, ...)."""
+        """Add a library: `read` converts the value of `code`, evaluated with `names`, to (count, ...).
+
+        `count` is smaller than that of the row for a library that gets only the first values.
+        """
         result = np.asarray(read(eval(code, dict(names))))
         if self.expected is None:
             self.expected = result
@@ -98,7 +101,8 @@ class Row:
             raise ValueError(f"gives shape {result.shape}, not {expected.shape}")
         if not (off := np.abs(result - expected).max(initial=0.0) / size) <= self.tolerance:
             raise ValueError(f"disagrees by {off:.1e} of the largest")
-        self.entries[library] = Entry(code, names, self.count if count is None else count)
+        number = self.count if count is None else min(count, self.count)
+        self.entries[library] = Entry(code, names, number)
 
     def peer(self, library: str) -> AbstractContextManager[None]:
         """Return a context for the set-up and entry of another library: a failure becomes a note."""

@@ -33,6 +33,7 @@ from polhode._support.files import write_atomically
 SECTIONS = {
     "One value": single.rows,
     "Batches": batches.rows,
+    "Batches of 16 values": batches.few_rows,
     "Formulas": compiled.rows,
     "Any signature": algebras.rows,
     "Motion": motion.rows,

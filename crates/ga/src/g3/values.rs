@@ -268,9 +268,12 @@ impl From<Trivector> for Multivector {
 
 operator!(Mul::mul(a: Multivector, b: Multivector) -> Multivector { Multivector(geometric(a.0, b.0)) });
 
-/// The geometric product written out, terms in order of the left factor's blades.
+/// The geometric product written out, terms in order of the left factor's blades; of numbers, or of several at once.
 #[inline(always)]
-pub(crate) fn geometric(m: [f64; 8], n: [f64; 8]) -> [f64; 8] {
+pub(crate) fn geometric<X>(m: [X; 8], n: [X; 8]) -> [X; 8]
+where
+    X: Copy + Add<Output = X> + Sub<Output = X> + Mul<Output = X>,
+{
     let [m0, m1, m2, m3, m4, m5, m6, m7] = m;
     let [n0, n1, n2, n3, n4, n5, n6, n7] = n;
     [

@@ -8,13 +8,16 @@ use super::value::{Any, Multivector, Object, Storage, This, number, wrap};
 use crate::support::pool;
 use numpy::npyffi::NPY_ARRAY_WRITEABLE;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
 use polhode_ga::rows::compose::compose;
 use polhode_ga::rows::product::turn;
+use polhode_ga::rows::rotor_functions;
 use polhode_ga::simd::threads::Threads;
 use pyo3::prelude::*;
 use std::borrow::Cow;
 use std::iter::zip;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Sums and signs of more numbers are left to the Python half: NumPy's loops are as fast.
 const FEW: usize = 1 << 12;
@@ -133,6 +136,29 @@ pub(super) fn turned<'py>(rotor: Any<'_, 'py>, x: Any<'_, 'py>) -> Option<Object
     let work = |threads: Threads, r: &[f64], v: &[f64], out: &mut [f64]| turn(threads, r, v, x.grades, out);
     Some(filled(py, kind, |out| fill_numbers(py, (4, size, size), &r.numbers, &x.numbers, out, work)))
 }
+
+/// `exp` of bivectors, or `log` of rotors, of 3-d space; `None` if some row has none.
+pub(super) fn function<'py>(value: This<'_, 'py>, f: Function) -> Option<Object<'py>> {
+    let a = Rows::of(value.as_borrowed())?;
+    let algebra = a.algebra.filter(|algebra| !a.shape.is_empty() && algebra.get().is_g3())?;
+    let (work, na, size, grades): (Work, _, _, _) = match f {
+        Function::Exp if a.grades == Grades::BIVECTOR => (rotor_functions::exp, 3, 4, Grades::EVEN),
+        Function::Log if a.unit => (rotor_functions::log, 4, 3, Grades::BIVECTOR),
+        _ => return None,
+    };
+    let py = value.py();
+    let kind = Kind { shape: &a.shape, size, grades, unit: f == Function::Exp, algebra };
+    let all = AtomicBool::new(true);
+    let value = filled(py, kind, |out| {
+        fill_numbers(py, (na, na, size), &a.numbers, &a.numbers, out, |threads, a, _: &[f64], out| {
+            all.fetch_and(work(threads, a, out).is_ok(), Ordering::Relaxed);
+        })
+    });
+    all.into_inner().then_some(value)
+}
+
+/// A function of rows, which fails with the first row without a value.
+type Work = fn(Threads, &[f64], &mut [f64]) -> Result<(), usize>;
 
 /// `f` of each component of two values of the same grades, such as their sum.
 pub(super) fn zipped<'py>(

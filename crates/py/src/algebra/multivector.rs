@@ -400,7 +400,8 @@ impl Rotor {
         if errors != "raise" {
             return function(slf.as_super(), Function::Log, errors);
         }
-        or_method(logarithm(operand(slf)), || None, slf.as_super(), "_log", ())
+        let rows = || batch::function(slf.as_super(), Function::Log);
+        or_method(logarithm(operand(slf)), rows, slf.as_super(), "_log", ())
     }
 
     fn __call__<'py>(slf: &Bound<'py, Self>, x: Any<'_, 'py>) -> Object<'py> {

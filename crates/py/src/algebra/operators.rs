@@ -161,7 +161,8 @@ pub(crate) fn function<'py>(value: This<'_, 'py>, f: Function, errors: &str) -> 
     }
     let Some(value) = value.get().single() else {
         let general = || value.call_method1(intern!(py, "_function"), (f.name(),));
-        return single::function(value, f).unwrap_or_else(general);
+        let rows = single::function(value, f).or_else(|| batch::function(value, f));
+        return rows.unwrap_or_else(general);
     };
     if f == Function::Exp
         && let Some(rotor) = exponential(Operand::Value(value, false))

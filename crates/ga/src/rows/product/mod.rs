@@ -4,6 +4,7 @@ use crate::g3::rotor::Rotor;
 use crate::g3::values::{Vector, geometric};
 use crate::product::{Engine, Grades, Plan, Term};
 pub use crate::simd::Element;
+use crate::simd::lanes::Lanes;
 use crate::simd::threads::Threads;
 use crate::simd::traverse::{beyond_caches, sweep};
 use crate::simd::{ByRow, Kernel, LANES, Lane, Path, Short, by_lanes};
@@ -67,6 +68,8 @@ fn add<const N: usize, const W: usize>(terms: &[Term], a: &[Lane<W>], b: &[Lane<
 pub(crate) struct Geometric<'a>(pub &'a Plan);
 
 impl ByRow for Geometric<'_> {
+    const FEW: usize = 5;
+
     fn row(&self, path: Path, a: &[f64], b: &[f64], out: &mut [f64]) {
         self.0.row(path, a, b, out);
     }
@@ -75,8 +78,18 @@ impl ByRow for Geometric<'_> {
 impl<const W: usize> Kernel<W> for Geometric<'_> {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
-        // A sum that begins with 0, as in the plan, is never −0.
-        by_lanes(a, b, out, |a, b| geometric(a, b).map(|x| x + 0.0));
+        let (a, b, out) = (&a[..8], &b[..8], &mut out[..8]);
+        for i in 0..W / 8 {
+            let (mut x, mut y) = ([Lanes::<8, false>::ZERO; 8], [Lanes::ZERO; 8]);
+            for k in 0..8 {
+                (x[k].0, y[k].0) = (a[k].0.as_chunks().0[i], b[k].0.as_chunks().0[i]);
+            }
+            let product = geometric(x, y);
+            for k in 0..8 {
+                // A sum that begins with 0, as in the plan, is never −0.
+                out[k].0.as_chunks_mut().0[i] = (product[k] + Lanes::ZERO).0;
+            }
+        }
     }
 }
 
@@ -168,6 +181,9 @@ impl Plan {
         match &self.engine {
             Engine::Terms => sweep::<_, LANES, _>(path, threads, self, a, b, out),
             // Small blocks mix reading and writing memory with the arithmetic more finely.
+            Engine::Geometric if out.0.len() <= 8 * nout => {
+                sweep::<_, 8, _>(path, threads, &Geometric(self), a, b, out)
+            }
             Engine::Geometric if large => sweep::<_, 32, _>(path, threads, &Geometric(self), a, b, out),
             Engine::Geometric => sweep::<_, 64, _>(path, threads, &Geometric(self), a, b, out),
             // Blocks of more rows leave the first-level cache; of few rows, one of eight is enough.

@@ -22,13 +22,16 @@ const KEPT: usize = 8;
 /// A value, after its name.
 pub(crate) type Named<'a, 'py> = (Borrowed<'a, 'py, PyAny>, Borrowed<'a, 'py, PyAny>);
 
+/// A name as the caller spells it, and its kind.
+type Kind = (Py<PyAny>, Argument);
+
 /// The calls, the latest first.
 #[derive(Default)]
 pub(crate) struct Calls(Mutex<Vec<Call>>);
 
 /// Names as the caller spells them, their kinds, and the program for these.
 struct Call {
-    arguments: Vec<(Py<PyAny>, Argument)>,
+    arguments: Vec<Kind>,
     program: Py<Program>,
     /// Memory for the inputs, and for the values of the steps.
     inputs: Vec<Given>,
@@ -157,17 +160,8 @@ impl Call {
 
 impl Call {
     /// Whether these are its names and kinds.
-    fn is_of(&self, arguments: &[(Py<PyAny>, Argument)]) -> bool {
-        let same = |((a, x), (b, y)): (&(Py<PyAny>, Argument), &(Py<PyAny>, Argument))| {
-            a.is(b)
-                && match (x, y) {
-                    (Argument::Value(a, _), Argument::Value(b, _)) => {
-                        a.grades == b.grades && a.unit == b.unit
-                    }
-                    (Argument::Map(a, _), Argument::Map(b, _)) => a.is(b),
-                    _ => false,
-                }
-        };
+    fn is_of(&self, arguments: &[Kind]) -> bool {
+        let same = |(own, other): (&Kind, &Kind)| own.0.is(&other.0) && own.1.is_as(&other.1);
         self.arguments.len() == arguments.len() && self.arguments.iter().zip(arguments).all(same)
     }
 
@@ -197,6 +191,15 @@ impl Call {
 }
 
 impl Argument {
+    /// Whether it is of the same kind.
+    fn is_as(&self, other: &Argument) -> bool {
+        match (self, other) {
+            (Argument::Value(a, _), Argument::Value(b, _)) => a.grades == b.grades && a.unit == b.unit,
+            (Argument::Map(a, _), Argument::Map(b, _)) => a.is(b),
+            _ => false,
+        }
+    }
+
     /// A name of this kind.
     pub fn named(&self, name: String) -> NameKind {
         match self {

@@ -35,7 +35,7 @@ class Formula(_native.FormulaCaller):
     tighter than it. One-letter names may run together: ``RaR̃`` is ``R a ~R``.
 
     Call it with values by name, as keywords or, for names such as ``R'`` and ``a∥``, in a mapping; or by
-    position, which is faster, in the order of `arguments` if the formula was made with these. Values are
+    position, in the order of `arguments` if the formula was made with these. Values are
     multivectors, rotors, linear maps, numbers, and arrays as batches of numbers. Batches broadcast,
     coefficients are of any kind, and grades are checked before anything is computed. Names that the formula
     does not use are ignored. The value of an equation is an `Agreement`.

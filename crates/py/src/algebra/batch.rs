@@ -7,7 +7,7 @@ use super::signature::{Algebra, g3};
 use super::value::{Any, Multivector, Object, Storage, This, number, wrap};
 use crate::support::pool;
 use numpy::npyffi::NPY_ARRAY_WRITEABLE;
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
 use polhode_ga::rows::compose::compose;
@@ -77,8 +77,12 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// A copy of the numbers of an array, which Python may change, and its shape; `None` for many, and for other types.
+/// A copy of the numbers of an array, which Python may change, and its shape; `None` for many, and for other types, also
+/// derived ones, such as masked arrays.
 fn numbers_of(array: Any<'_, '_>) -> Option<(Vec<f64>, Vec<usize>)> {
+    if !array.get_type().is(array.py().get_type::<PyUntypedArray>()) {
+        return None;
+    }
     let array = array.cast::<PyArrayDyn<f64>>().ok().filter(|array| array.len() <= FEW)?;
     let numbers = array.try_readonly().ok()?.as_array().iter().copied().collect();
     Some((numbers, array.shape().to_vec()))

@@ -66,11 +66,16 @@ impl<'a> Rows<'a> {
         }
     }
 
+    /// Whether it is a value of this algebra, or a number.
+    pub fn is_of(&self, algebra: &Py<Algebra>) -> bool {
+        self.algebra.is_none_or(|own| own.is(algebra))
+    }
+
     /// The shape of the result of an operator and its algebra; `None` for two single values, and for values of several
     /// shapes or algebras.
     fn together<'s>(&'s self, other: &'s Rows<'a>) -> Option<(&'s [usize], &'a Py<Algebra>)> {
         let algebra = self.algebra.or(other.algebra)?;
-        let same = [self, other].iter().all(|rows| rows.algebra.is_none_or(|own| own.is(algebra)));
+        let same = self.is_of(algebra) && other.is_of(algebra);
         let shape = if self.shape.is_empty() { &*other.shape } else { &*self.shape };
         let fits = [self, other].iter().all(|rows| rows.shape.is_empty() || *rows.shape == *shape);
         (same && fits && !shape.is_empty()).then_some((shape, algebra))

@@ -156,9 +156,7 @@ impl Call {
         }
         Some(())
     }
-}
 
-impl Call {
     /// Whether these are its names and kinds.
     fn is_of(&self, arguments: &[Kind]) -> bool {
         let same = |(own, other): (&Kind, &Kind)| own.0.is(&other.0) && own.1.is_as(&other.1);
@@ -178,8 +176,7 @@ impl Call {
         for ((name, value), (known, argument)) in values.zip(&self.arguments) {
             let Argument::Value(ty, place) = argument else { return None };
             let rows = if name.is(known) { Rows::operand(value)? } else { return None };
-            let is_g3 = rows.algebra.is_none_or(|algebra| g3(py).is_ok_and(|g3| algebra.is(g3)));
-            if rows.grades != ty.grades || rows.unit != ty.unit || !is_g3 {
+            if rows.grades != ty.grades || rows.unit != ty.unit || !rows.is_of(g3(py).ok()?) {
                 return None;
             }
             if let Some(place) = *place {
@@ -218,9 +215,8 @@ impl Argument {
             Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, None))),
             Operand::Other => {
                 if let Some(rows) = Rows::operand(value.as_borrowed()) {
-                    let own = rows.algebra.is_none_or(|algebra| g3(py).is_ok_and(|g3| algebra.is(g3)));
                     let ty = Type { grades: rows.grades, unit: rows.unit };
-                    return Ok(own.then_some(Argument::Value(ty, None)));
+                    return Ok(rows.is_of(g3(py)?).then_some(Argument::Value(ty, None)));
                 }
                 let one =
                     LINEAR_MAP.is_class_of(value)? && value.getattr(intern!(py, "shape"))?.is_empty()?;

@@ -2,7 +2,7 @@
 
 use super::columns::Record;
 use super::laws::{LaneForcing, Laws};
-use super::member::{Member, Plan, SIDE_BY_SIDE, of};
+use super::member::{Member, Plan, of};
 use super::monitor::{LaneMonitor, LanePoint};
 use super::observe::{LaneBodies, LanePhases, LanePoints};
 use super::scheduler::Scheduler;
@@ -28,15 +28,15 @@ use std::borrow::Cow;
 /// Steps between checks for finite states and calls of `progress`.
 const BETWEEN_CHECKS: u64 = 1024;
 
-/// Integration of at most [`SIDE_BY_SIDE`] bodies over all times.
-pub(super) struct FixedSteps<'a, 'b> {
+/// Integration of at most `W` bodies over all times.
+pub(super) struct FixedSteps<'a, 'b, const W: usize> {
     pub scheduler: &'b Scheduler<'a>,
     pub plan: Plan,
     pub members: Vec<Member<'a>>,
     pub progress: &'b mut dyn FnMut(Progress) -> bool,
 }
 
-impl Work for FixedSteps<'_, '_> {
+impl<const W: usize> Work for FixedSteps<'_, '_, W> {
     type Output = ();
 
     #[inline(always)]
@@ -52,51 +52,51 @@ impl Work for FixedSteps<'_, '_> {
             let fixed = |l: usize| fixed_momentum(laws(l), &of(members, l).start).map(|momentum| momentum.0);
             let turns = Turns::new(array::from_fn(|l| (gyrostats[l], damping(l), fixed(l))));
             let (stages, laws) = ((&stages[..], last), Laws::new(gyrostats, array::from_fn(laws)));
-            self.advance_all::<F, _>(&mut Kicks::<F> { turns, stages, laws }, &torques);
+            self.advance_all::<F, _>(&mut Kicks::<W, F> { turns, stages, laws }, &torques);
         } else {
             let bodies = Bodies::new(array::from_fn(|l| (gyrostats[l], damping(l))));
             match LaneForcing::new(gyrostats, array::from_fn(laws)) {
                 LaneForcing::NoForcing(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
                 }
                 LaneForcing::Weight(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
                 }
                 LaneForcing::Gradient(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
                 }
                 LaneForcing::Controller(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
                 }
                 LaneForcing::Formula(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
                 }
                 LaneForcing::Laws(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, F> { bodies, forcing }, &torques);
+                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
                 }
             }
         }
     }
 }
 
-impl FixedSteps<'_, '_> {
-    fn advance_all<const F: bool, S: Stepper>(self, stepper: &mut S, torques: &[Cow<[Torque]>]) {
+impl<const W: usize> FixedSteps<'_, '_, W> {
+    fn advance_all<const F: bool, S: Stepper<W>>(self, stepper: &mut S, torques: &[Cow<[Torque]>]) {
         let FixedSteps { scheduler, plan, mut members, progress } = self;
         let Plan { start, step, method, .. } = plan;
         let times = scheduler.times;
-        let (bodies, gyrostats): (_, Vec<Gyrostat>) =
+        let (bodies, gyrostats): (LaneBodies<W>, Vec<Gyrostat>) =
             (LaneBodies::new(&members), members.iter().map(|member| member.gyrostat).collect());
-        let point = |points: &LanePoints, l: usize, time: f64| {
+        let point = |points: &LanePoints<W>, l: usize, time: f64| {
             LanePoint::new(points, l, (&gyrostats[l], &torques[l]), time)
         };
-        let mut monitor = LaneMonitor::default();
+        let mut monitor = LaneMonitor::<W>::new();
         let at_start = bodies.points(LanePhases::starts(&members));
         (0..members.len()).for_each(|l| monitor.follow(l, &point(&at_start, l, start)));
         // Their products with the numbers of a moderate state are finite.
         let sizes = members.iter().flat_map(|m| m.gyrostat.moments.into_iter().chain(m.gyrostat.wheel.0));
         let are_moderate = moderate(sizes);
-        let mut failures: [Option<(f64, SimulateError)>; SIDE_BY_SIDE] = [const { None }; SIDE_BY_SIDE];
-        let mut norm_drifts = [0.0_f64; SIDE_BY_SIDE];
+        let mut failures: [Option<(f64, SimulateError)>; W] = [const { None }; W];
+        let mut norm_drifts = [0.0_f64; W];
         let (mut steps, mut longest, mut so_far) = (0, 0.0_f64, 0);
         let breaks = breaks(torques, &scheduler.options.breaks);
         let [begin, end] = span(times, start);
@@ -106,7 +106,7 @@ impl FixedSteps<'_, '_> {
         for (side, indices) in sides.into_iter().enumerate() {
             let mut state = stepper.start(&members);
             // A body that failed on one side of the start is integrated on the other.
-            let mut lost = [false; SIDE_BY_SIDE];
+            let mut lost = [false; W];
             let mut time = start;
             for index in indices {
                 for segment in segments(time, times[index], step, &breaks) {
@@ -115,7 +115,7 @@ impl FixedSteps<'_, '_> {
                         let last = segment.count.min(first + BETWEEN_CHECKS);
                         let (part, before) = (first..last, state);
                         let advance =
-                            Advance::<_, F> { stepper, state: &mut state, segment, steps: part.clone() };
+                            Advance::<_, W, F> { stepper, state: &mut state, segment, steps: part.clone() };
                         fastest(advance);
                         steps += last - first;
                         let are_finite = are_moderate && S::numbers(&state).all(|x| moderate(*x));

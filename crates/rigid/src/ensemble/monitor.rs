@@ -1,6 +1,5 @@
 //! Conserved quantities of bodies in lanes, measured as for a single body.
 
-use super::member::SIDE_BY_SIDE as W;
 use super::observe::LanePoints;
 use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
@@ -25,8 +24,8 @@ pub(super) struct LanePoint<'m> {
 }
 
 impl<'m> LanePoint<'m> {
-    pub fn new(
-        points: &LanePoints,
+    pub fn new<const W: usize>(
+        points: &LanePoints<W>,
         l: usize,
         (body, torques): (&'m Gyrostat, &'m [Torque]),
         time: f64,
@@ -67,11 +66,10 @@ impl<'m> LanePoint<'m> {
 }
 
 /// The conserved quantities of the bodies in the lanes.
-#[derive(Default)]
-pub(super) struct LaneMonitor(Vec<Tracked>);
+pub(super) struct LaneMonitor<const W: usize>(Vec<Tracked<W>>);
 
 /// A quantity of some lanes: its value at the start, the size of its terms, and its largest change so far.
-struct Tracked {
+struct Tracked<const W: usize> {
     number: usize,
     each: [Option<Conserved>; W],
     start: [f64; W],
@@ -79,7 +77,12 @@ struct Tracked {
     drift: [f64; W],
 }
 
-impl LaneMonitor {
+impl<const W: usize> LaneMonitor<W> {
+    /// Of no quantities.
+    pub fn new() -> Self {
+        LaneMonitor(Vec::new())
+    }
+
     /// Adds the quantities of the body of a lane, which starts at a point.
     pub fn follow(&mut self, l: usize, start: &LanePoint) {
         for quantity in Conserved::under(start.body, start.torques, &start.phase) {
@@ -106,7 +109,7 @@ impl LaneMonitor {
 
     /// Each quantity of a lane with its value at the start and its largest relative change.
     pub fn finish(&self, l: usize) -> impl Iterator<Item = (Conserved, [f64; 2])> {
-        let of = move |tracked: &Tracked| Some((tracked.each[l]?, [tracked.start[l], tracked.drift[l]]));
+        let of = move |tracked: &Tracked<W>| Some((tracked.each[l]?, [tracked.start[l], tracked.drift[l]]));
         self.0.iter().filter_map(of)
     }
 }

@@ -1,6 +1,6 @@
 //! Points of bodies in lanes, by the formulas for a single body, with the same bits.
 
-use super::member::{Member, SIDE_BY_SIDE as W, of};
+use super::member::{Member, of};
 use crate::laws::torque::lanes::in_lanes;
 use crate::state::phase::Phase;
 use polhode_ga::simd::lanes::{Lanes, Work, fastest};
@@ -8,20 +8,20 @@ use polhode_ga::{Bivector, Rotor};
 use std::array::from_fn;
 
 /// Lanes whose products and sums are not fused.
-type Plain = Lanes<W, false>;
+type Plain<const W: usize> = Lanes<W, false>;
 
 /// Rotors and momenta in principal axes.
 #[derive(Clone, Copy)]
-pub(super) struct LanePhases {
+pub(super) struct LanePhases<const W: usize> {
     pub rotor: [[f64; W]; 4],
     pub momentum: [[f64; W]; 3],
 }
 
-impl LanePhases {
+impl<const W: usize> LanePhases<W> {
     /// At the starts.
-    pub fn starts(members: &[Member]) -> LanePhases {
-        let rotor: [Plain; 4] = in_lanes(|l| of(members, l).start.rotor.components());
-        let momentum: [Plain; 3] = in_lanes(|l| of(members, l).start.momentum.0);
+    pub fn starts(members: &[Member]) -> LanePhases<W> {
+        let rotor: [Plain<W>; 4] = in_lanes(|l| of(members, l).start.rotor.components());
+        let momentum: [Plain<W>; 3] = in_lanes(|l| of(members, l).start.momentum.0);
         LanePhases { rotor: rotor.map(|lanes| lanes.0), momentum: momentum.map(|lanes| lanes.0) }
     }
 
@@ -36,31 +36,31 @@ impl LanePhases {
 }
 
 /// The bodies of the lanes.
-pub(super) struct LaneBodies {
+pub(super) struct LaneBodies<const W: usize> {
     /// From principal axes to those of the body.
-    frame: [Plain; 4],
-    moments: [Plain; 3],
-    wheel: [Plain; 3],
+    frame: [Plain<W>; 4],
+    moments: [Plain<W>; 3],
+    wheel: [Plain<W>; 3],
 }
 
 /// What is known of the points of the lanes.
-pub(super) struct LanePoints {
-    pub phases: LanePhases,
+pub(super) struct LanePoints<const W: usize> {
+    pub phases: LanePhases<W>,
     /// From body axes to space.
-    pub rotor: [Plain; 4],
+    pub rotor: [Plain<W>; 4],
     /// In body axes, rad/s.
-    pub omega: [Plain; 3],
+    pub omega: [Plain<W>; 3],
     /// In space, kg m²/s.
-    pub momentum: [Plain; 3],
+    pub momentum: [Plain<W>; 3],
     /// Magnitude of the momentum.
-    pub size: Plain,
+    pub size: Plain<W>,
     /// Kinetic energies in J.
-    pub kinetic: Plain,
+    pub kinetic: Plain<W>,
     /// `abs(|R| − 1)`.
-    pub off_unit: Plain,
+    pub off_unit: Plain<W>,
 }
 
-impl LanePoints {
+impl<const W: usize> LanePoints<W> {
     /// The rotor from body axes to space, and the angular velocity in body axes, of a lane.
     pub fn in_body(&self, l: usize) -> (Rotor, Bivector) {
         let rotor = Rotor::from_unit_components(from_fn(|k| self.rotor[k].0[l]));
@@ -68,8 +68,8 @@ impl LanePoints {
     }
 }
 
-impl LaneBodies {
-    pub fn new(members: &[Member]) -> LaneBodies {
+impl<const W: usize> LaneBodies<W> {
+    pub fn new(members: &[Member]) -> Self {
         LaneBodies {
             frame: in_lanes(|l| of(members, l).frame.components()),
             moments: in_lanes(|l| of(members, l).gyrostat.moments),
@@ -87,7 +87,7 @@ impl LaneBodies {
     }
 
     /// The points at these rotors and momenta.
-    pub fn points(&self, phases: LanePhases) -> LanePoints {
+    pub fn points(&self, phases: LanePhases<W>) -> LanePoints<W> {
         let mut points = fastest(Observe { bodies: self, phases: &phases });
         for l in 0..W {
             // Beyond this the squares may overflow or vanish.
@@ -99,16 +99,16 @@ impl LaneBodies {
     }
 }
 
-struct Observe<'a> {
-    bodies: &'a LaneBodies,
-    phases: &'a LanePhases,
+struct Observe<'a, const W: usize> {
+    bodies: &'a LaneBodies<W>,
+    phases: &'a LanePhases<W>,
 }
 
-impl Work for Observe<'_> {
-    type Output = LanePoints;
+impl<const W: usize> Work for Observe<'_, W> {
+    type Output = LanePoints<W>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> LanePoints {
+    fn run<const FUSED: bool>(self) -> LanePoints<W> {
         let Observe { bodies: LaneBodies { frame, moments, wheel }, phases } = self;
         let zero = Lanes::ZERO;
         let (mut rotor, mut m) = ([zero; 4], [zero; 3]);
@@ -144,7 +144,7 @@ impl Work for Observe<'_> {
 
 /// The product of rotors, in the order of sums of [`Rotor`].
 #[inline(always)]
-fn product([s, a, b, c]: [Plain; 4], [t, x, y, z]: [Plain; 4]) -> [Plain; 4] {
+fn product<const W: usize>([s, a, b, c]: [Plain<W>; 4], [t, x, y, z]: [Plain<W>; 4]) -> [Plain<W>; 4] {
     [
         s * t + -(a * x + b * y + c * z),
         x * s + a * t + (c * y - b * z),
@@ -154,13 +154,13 @@ fn product([s, a, b, c]: [Plain; 4], [t, x, y, z]: [Plain; 4]) -> [Plain; 4] {
 }
 
 #[inline(always)]
-fn cross([a, b, c]: [Plain; 3], [x, y, z]: [Plain; 3]) -> [Plain; 3] {
+fn cross<const W: usize>([a, b, c]: [Plain<W>; 3], [x, y, z]: [Plain<W>; 3]) -> [Plain<W>; 3] {
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
 
 /// `R B ~R`, in the order of sums of [`Rotor::apply_bivector`].
 #[inline(always)]
-fn turned([s, x, y, z]: [Plain; 4], v: [Plain; 3]) -> [Plain; 3] {
+fn turned<const W: usize>([s, x, y, z]: [Plain<W>; 4], v: [Plain<W>; 3]) -> [Plain<W>; 3] {
     let q = [-x, -y, -z];
     let [a, b, c] = cross(q, v);
     let two = Lanes::all(2.0);

@@ -2,7 +2,7 @@
 
 use super::Ensemble;
 use super::columns::{Columns, lock};
-use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy};
+use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy, WIDE};
 use super::output::{Outputs, Share};
 use crate::error::SimulateError;
 use crate::laws::force::Force;
@@ -76,8 +76,14 @@ impl<'a> Scheduler<'a> {
             return None;
         }
         let mut queue = lock(&self.queue);
-        let count = queue.len().div_ceil(threads.max(1)).min(SIDE_BY_SIDE);
+        let count = queue.len().div_ceil(threads.max(1)).min(WIDE);
         if count == 0 { None } else { Some(queue.take_first(count)) }
+    }
+
+    /// The number of bodies with this plan that are integrated together.
+    pub fn together(&self, plan: &Plan) -> usize {
+        let wide = plan.method == Method::Classical && !self.ensemble.laws.is_empty();
+        if wide { WIDE } else { SIDE_BY_SIDE }
     }
 
     /// Whether the run was stopped.

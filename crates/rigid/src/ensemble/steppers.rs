@@ -1,7 +1,7 @@
 //! Fixed-step methods for bodies in SIMD lanes.
 
 use super::laws::Laws;
-use super::member::{Member, SIDE_BY_SIDE as W, of};
+use super::member::{Member, of};
 use super::observe::{LaneBodies, LanePhases};
 use crate::laws::forcing::Forcing;
 use crate::laws::torque::lanes::in_lanes;
@@ -49,7 +49,7 @@ impl Segment {
 }
 
 /// A fixed-step method.
-pub(super) trait Stepper {
+pub(super) trait Stepper<const W: usize> {
     /// The state between steps.
     type State: Copy;
 
@@ -63,18 +63,18 @@ pub(super) trait Stepper {
     fn numbers(state: &Self::State) -> impl Iterator<Item = &[f64; W]>;
 
     /// The rotors and momenta of the bodies.
-    fn phases(&self, bodies: &LaneBodies, state: &Self::State) -> LanePhases;
+    fn phases(&self, bodies: &LaneBodies<W>, state: &Self::State) -> LanePhases<W>;
 }
 
 /// Some of the steps of a segment, compiled apart from the work between them so that the steps have all registers.
-pub(super) struct Advance<'a, S: Stepper, const F: bool> {
+pub(super) struct Advance<'a, S: Stepper<W>, const W: usize, const F: bool> {
     pub stepper: &'a mut S,
     pub state: &'a mut S::State,
     pub segment: Segment,
     pub steps: Range<u64>,
 }
 
-impl<S: Stepper, const F: bool> Work for Advance<'_, S, F> {
+impl<S: Stepper<W>, const W: usize, const F: bool> Work for Advance<'_, S, W, F> {
     type Output = ();
 
     #[inline(always)]
@@ -91,19 +91,19 @@ impl<S: Stepper, const F: bool> Work for Advance<'_, S, F> {
 }
 
 /// The classical method.
-pub(super) struct Components<E, const F: bool> {
+pub(super) struct Components<E, const W: usize, const F: bool> {
     pub bodies: Bodies<W, F>,
     pub forcing: E,
 }
 
 /// A splitting, with its kicks and drifts.
-pub(super) struct Kicks<'t, const F: bool> {
+pub(super) struct Kicks<'t, const W: usize, const F: bool> {
     pub turns: Turns<W, F>,
     pub stages: (&'t [(f64, f64)], f64),
     pub laws: Laws<'t, W, F>,
 }
 
-impl<E: Forcing<W, F>, const F: bool> Stepper for Components<E, F> {
+impl<E: Forcing<W, F>, const W: usize, const F: bool> Stepper<W> for Components<E, W, F> {
     type State = State<7, W, F>;
 
     fn start(&self, members: &[Member]) -> Self::State {
@@ -136,12 +136,12 @@ impl<E: Forcing<W, F>, const F: bool> Stepper for Components<E, F> {
         state.iter().map(|lanes| &lanes.0)
     }
 
-    fn phases(&self, bodies: &LaneBodies, [s, x, y, z, p, q, r]: &Self::State) -> LanePhases {
+    fn phases(&self, bodies: &LaneBodies<W>, [s, x, y, z, p, q, r]: &Self::State) -> LanePhases<W> {
         LanePhases { rotor: [s.0, x.0, y.0, z.0], momentum: bodies.momentum([*p, *q, *r]) }
     }
 }
 
-impl<const F: bool> Stepper for Kicks<'_, F> {
+impl<const W: usize, const F: bool> Stepper<W> for Kicks<'_, W, F> {
     type State = Spin<W, F>;
 
     fn start(&self, members: &[Member]) -> Self::State {
@@ -167,7 +167,7 @@ impl<const F: bool> Stepper for Kicks<'_, F> {
         state.rotor.iter().chain(&state.momentum).map(|lanes| &lanes.0)
     }
 
-    fn phases(&self, _: &LaneBodies, state: &Self::State) -> LanePhases {
+    fn phases(&self, _: &LaneBodies<W>, state: &Self::State) -> LanePhases<W> {
         LanePhases { rotor: state.rotor.map(|lanes| lanes.0), momentum: state.momentum.map(|lanes| lanes.0) }
     }
 }

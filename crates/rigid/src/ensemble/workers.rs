@@ -3,7 +3,7 @@
 use super::adaptive::AdaptedSteps;
 use super::columns::lock;
 use super::fixed::FixedSteps;
-use super::member::{Member, Plan, SIDE_BY_SIDE};
+use super::member::{Member, Plan, SIDE_BY_SIDE, WIDE};
 use super::output::Summary;
 use super::scheduler::Scheduler;
 use crate::error::SimulateError;
@@ -34,7 +34,7 @@ impl Drop for Running<'_, '_> {
     }
 }
 
-impl Scheduler<'_> {
+impl<'a> Scheduler<'a> {
     /// Solves all bodies.
     pub fn work(
         self,
@@ -89,7 +89,7 @@ impl Scheduler<'_> {
     /// Integrates bodies by equal steps.
     fn equal_steps(&self, step: f64, threads: usize, progress: &mut dyn FnMut(Progress) -> bool) {
         // Bodies wait for others with the same plan.
-        let mut waiting: Vec<(Plan, Vec<Member>)> = Vec::new();
+        let mut waiting: Vec<(Plan, Vec<Member<'a>>)> = Vec::new();
         let shares = iter::from_fn(|| self.next_bodies(threads));
         for (body, own) in shares.flatten().take_while(|_| !self.is_stopped()) {
             let member = self.member(body, own);
@@ -100,19 +100,33 @@ impl Scheduler<'_> {
             let place = waiting.iter().position(|(alike, _)| *alike == plan).unwrap_or_else(|| {
                 if waiting.len() == MOST_WAITING {
                     let (plan, members) = waiting.remove(0);
-                    fastest(FixedSteps { scheduler: self, plan, members, progress });
+                    self.integrate(plan, members, progress);
                 }
-                waiting.push((plan, Vec::with_capacity(SIDE_BY_SIDE)));
+                waiting.push((plan, Vec::with_capacity(self.together(&plan))));
                 waiting.len() - 1
             });
             waiting[place].1.push(member);
-            if waiting[place].1.len() == SIDE_BY_SIDE {
+            if waiting[place].1.len() == self.together(&plan) {
                 let (plan, members) = waiting.swap_remove(place);
-                fastest(FixedSteps { scheduler: self, plan, members, progress });
+                self.integrate(plan, members, progress);
             }
         }
         for (plan, members) in waiting {
-            fastest(FixedSteps { scheduler: self, plan, members, progress });
+            self.integrate(plan, members, progress);
+        }
+    }
+
+    /// Integrates some bodies with the same plan in as few lanes as hold them: a lane has the same bits in any number.
+    fn integrate(
+        &self,
+        plan: Plan,
+        members: Vec<Member<'a>>,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) {
+        if members.len() > SIDE_BY_SIDE {
+            fastest(FixedSteps::<WIDE> { scheduler: self, plan, members, progress });
+        } else {
+            fastest(FixedSteps::<SIDE_BY_SIDE> { scheduler: self, plan, members, progress });
         }
     }
 }

@@ -26,6 +26,7 @@ pub(crate) struct NoForcing;
 
 impl<const W: usize, const F: bool> Forcing<W, F> for NoForcing {
     const ACTS: bool = false;
+    const IN_REGISTERS: bool = true;
 
     #[inline(always)]
     fn torque(&mut self, _: &Place<W, F>) -> [Lanes<W, F>; 3] {
@@ -39,6 +40,7 @@ pub(super) struct Weight<const W: usize, const F: bool>(Three<W, F>);
 impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
+    const IN_REGISTERS: bool = true;
 
     /// γ∧c: its axial vector is γ x c.
     #[inline(always)]
@@ -77,6 +79,7 @@ pub(super) struct Controller<const W: usize, const F: bool> {
 impl<const W: usize, const F: bool> Forcing<W, F> for Controller<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
+    const IN_REGISTERS: bool = true;
 
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {

@@ -127,7 +127,12 @@ impl<E: Forcing<W, F>, const W: usize, const F: bool> Stepper<W> for Components<
             lengths[1][k] = lengths[0][k] / 6.0;
         }
         for k in 0..count {
-            classical::step(&bodies, &mut self.forcing, &mut now, times[k], [lengths[0][k], lengths[1][k]]);
+            let length = [lengths[0][k], lengths[1][k]];
+            if E::IN_REGISTERS {
+                classical::step(&bodies, &mut self.forcing, &mut now, times[k], length);
+            } else {
+                classical::step_in_parts(&bodies, &mut self.forcing, &mut now, times[k], length);
+            }
         }
         *state = classical::doubled(&now);
     }

@@ -117,12 +117,7 @@ impl<'a> Scheduler<'a> {
     }
 
     /// Integrates some bodies with the same plan in as few lanes as hold them: a lane has the same bits in any number.
-    fn integrate(
-        &self,
-        plan: Plan,
-        members: Vec<Member<'a>>,
-        progress: &mut dyn FnMut(Progress) -> bool,
-    ) {
+    fn integrate(&self, plan: Plan, members: Vec<Member<'a>>, progress: &mut dyn FnMut(Progress) -> bool) {
         if members.len() > SIDE_BY_SIDE {
             fastest(FixedSteps::<WIDE> { scheduler: self, plan, members, progress });
         } else {

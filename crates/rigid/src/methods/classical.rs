@@ -65,6 +65,18 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
         self.damping.0[l] = damping;
     }
 
+    /// [`PART`] of the bodies, from one on.
+    #[inline(always)]
+    fn part(&self, first: usize) -> Bodies<PART, F> {
+        let Bodies { inverse, coupling, wheel, damping } = self;
+        Bodies {
+            inverse: part(inverse, first),
+            coupling: part(coupling, first),
+            wheel: part(wheel, first),
+            damping: part(&[*damping], first)[0],
+        }
+    }
+
     /// `Ω = I⁻¹(m − h)`.
     #[inline(always)]
     pub fn omega(&self, momentum: &[Lanes<W, F>; 3]) -> [Lanes<W, F>; 3] {
@@ -134,6 +146,74 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     *y = sum;
 }
 
+/// Bodies for which the numbers of a stage stay in registers.
+const PART: usize = 8;
+
+/// [`step`], with the same bits, of many bodies whose torques are computed in memory: between two torques part by part.
+/// All at once they would be read and written at each operation, in code larger than the cache for instructions.
+#[inline(always)]
+pub(crate) fn step_in_parts<const W: usize, const F: bool, E: Forcing<W, F>>(
+    bodies: &Bodies<W, F>,
+    forcing: &mut E,
+    y: &mut State<7, W, F>,
+    time: f64,
+    [h, sixth]: [f64; 2],
+) {
+    let [begin, middle, end] = stage_times(time, h).map(Lanes::all);
+    let (half, third) = (0.5 * h, sixth + sixth);
+    forcing.begin(middle);
+    // Of each stage its time, its part of the sum, and the step to the next stage.
+    let stages = [(begin, sixth, half), (middle, third, half), (middle, third, h), (end, sixth, 0.0)];
+    let (mut at, mut sum) = (place(y, begin), [Lanes::<W, F>::ZERO; 7]);
+    for (number, (time, part_of_sum, to_next)) in stages.into_iter().enumerate() {
+        at.time = time;
+        let torque = forcing.torque(&at);
+        for first in (0..W).step_by(PART) {
+            let bodies = bodies.part(first);
+            let ([s, x, y_, z], [p, q, r]) = (part(&at.rotor, first), part(&at.omega, first));
+            let here = halved(&[s, x, y_, z, p, q, r]);
+            let mut slope = free_slope(&bodies, &here);
+            drive(&bodies, E::WHEELS, &here, part(&torque, first), &mut slope);
+            let before = if number == 0 { part(y, first) } else { part(&sum, first) };
+            let mut total = moved(&before, &slope, Lanes::all(part_of_sum));
+            if number + 1 < stages.len() {
+                put(&mut sum, first, &total);
+                let next = place(&moved(&part(y, first), &slope, Lanes::all(to_next)), Lanes::ZERO);
+                put(&mut at.rotor, first, &next.rotor);
+                put(&mut at.omega, first, &next.omega);
+            } else {
+                renormalize(&mut total);
+                put(y, first, &total);
+            }
+        }
+    }
+}
+
+/// [`PART`] of the bodies, from one on.
+#[inline(always)]
+fn part<const N: usize, const W: usize, const F: bool>(
+    all: &[Lanes<W, F>; N],
+    first: usize,
+) -> [Lanes<PART, F>; N] {
+    let mut part = [Lanes::ZERO; N];
+    for k in 0..N {
+        part[k].0.copy_from_slice(&all[k].0[first..first + PART]);
+    }
+    part
+}
+
+/// The inverse of [`part`].
+#[inline(always)]
+fn put<const N: usize, const W: usize, const F: bool>(
+    all: &mut [Lanes<W, F>; N],
+    first: usize,
+    part: &[Lanes<PART, F>; N],
+) {
+    for k in 0..N {
+        all[k].0[first..first + PART].copy_from_slice(&part[k].0);
+    }
+}
+
 /// `y + h k`.
 #[inline(always)]
 fn moved<const N: usize, const W: usize, const F: bool>(
@@ -157,35 +237,70 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     y: &State<N, W, F>,
     time: Lanes<W, F>,
 ) -> State<N, W, F> {
-    let (r, a) = ([y[0], y[1], y[2], y[3]], [y[4], y[5], y[6]]);
-    let mut slope = *y;
-    slope[..4].copy_from_slice(&turn(&r, a));
-    let products = [a[1] * a[2], a[2] * a[0], a[0] * a[1]];
-    for k in 0..3 {
-        slope[4 + k] = bodies.coupling[k] * products[k];
-    }
-    let (minus_two, minus_half) = (Lanes::all(-2.0), Lanes::all(-0.5));
-    let w = [a[0] * minus_two, a[1] * minus_two, a[2] * minus_two];
+    let mut slope = free_slope(bodies, y);
+    let at = place(y, time);
     if E::ACTS {
-        let mut torque = forcing.torque(&Place { rotor: r, omega: w, time });
-        if E::WHEELS {
-            let h = bodies.wheel;
-            torque[0] += h[2].times_from(w[1], h[1] * w[2]);
-            torque[1] += h[0].times_from(w[2], h[2] * w[0]);
-            torque[2] += h[1].times_from(w[0], h[0] * w[1]);
-        }
-        for k in 0..3 {
-            let driven = torque[k].times_plus(bodies.inverse[k] * minus_half, slope[4 + k]);
-            slope[4 + k] = bodies.damping.times_from(a[k], driven);
-        }
+        let torque = forcing.torque(&at);
+        drive(bodies, E::WHEELS, y, torque, &mut slope);
     }
     if N == 13 {
         let center = [y[7], y[8], y[9], y[10], y[11], y[12]];
-        let acceleration = forcing.acceleration(&Place { rotor: r, omega: w, time }, &center);
+        let acceleration = forcing.acceleration(&at, &center);
         slope[7..10].copy_from_slice(&y[10..]);
         slope[10..].copy_from_slice(&acceleration);
     }
     slope
+}
+
+/// The place of a state, with ω instead of a.
+#[inline(always)]
+fn place<const N: usize, const W: usize, const F: bool>(
+    y: &State<N, W, F>,
+    time: Lanes<W, F>,
+) -> Place<W, F> {
+    let minus_two = Lanes::all(-2.0);
+    let omega = [y[4] * minus_two, y[5] * minus_two, y[6] * minus_two];
+    Place { rotor: [y[0], y[1], y[2], y[3]], omega, time }
+}
+
+/// The slope of rotor and angular velocity without torque.
+#[inline(always)]
+fn free_slope<const N: usize, const W: usize, const F: bool>(
+    bodies: &Bodies<W, F>,
+    y: &State<N, W, F>,
+) -> State<N, W, F> {
+    let a = [y[4], y[5], y[6]];
+    let mut slope = *y;
+    slope[..4].copy_from_slice(&turn(&[y[0], y[1], y[2], y[3]], a));
+    let products = [a[1] * a[2], a[2] * a[0], a[0] * a[1]];
+    for k in 0..3 {
+        slope[4 + k] = bodies.coupling[k] * products[k];
+    }
+    slope
+}
+
+/// Adds the effect of a torque, of wheels where there may be some, and of damping.
+#[inline(always)]
+fn drive<const N: usize, const W: usize, const F: bool>(
+    bodies: &Bodies<W, F>,
+    wheels: bool,
+    y: &State<N, W, F>,
+    mut torque: [Lanes<W, F>; 3],
+    slope: &mut State<N, W, F>,
+) {
+    let (minus_two, minus_half) = (Lanes::all(-2.0), Lanes::all(-0.5));
+    let a = [y[4], y[5], y[6]];
+    if wheels {
+        let w = [a[0] * minus_two, a[1] * minus_two, a[2] * minus_two];
+        let h = bodies.wheel;
+        torque[0] += h[2].times_from(w[1], h[1] * w[2]);
+        torque[1] += h[0].times_from(w[2], h[2] * w[0]);
+        torque[2] += h[1].times_from(w[0], h[0] * w[1]);
+    }
+    for k in 0..3 {
+        let driven = torque[k].times_plus(bodies.inverse[k] * minus_half, slope[4 + k]);
+        slope[4 + k] = bodies.damping.times_from(a[k], driven);
+    }
 }
 
 /// `R B` for a bivector B.

@@ -82,23 +82,27 @@ impl Conserved {
 
     /// The same, without allocating memory for them.
     fn all_under(body: &Gyrostat, torques: &[Torque], start: &Phase) -> [Option<Conserved>; 6] {
-        let acting: Vec<&Torque> = torques.iter().filter(|t| acts(t)).collect();
-        let keeps_size = acting.iter().all(|t| matches!(t, Torque::Larmor(_)));
-        let motors = |t: &Torque| if let Torque::Wheels(wheels) = t { Some(wheels.is_idle()) } else { None };
-        let motors: Vec<bool> = torques.iter().filter_map(motors).collect();
-        let energy = acting.iter().all(|t| is_conservative(t, body)) && motors.iter().all(|idle| *idle);
+        let acting = torques.iter().filter(|t| acts(t));
+        let keeps_size = acting.clone().all(|t| matches!(t, Torque::Larmor(_)));
+        let mut motors = torques.iter().filter_map(|t| match t {
+            Torque::Wheels(wheels) => Some(wheels.is_idle()),
+            _ => None,
+        });
+        let driven = motors.clone().next().is_some();
+        let energy = acting.clone().all(|t| is_conservative(t, body)) && motors.all(|idle| idle);
         let energy = energy.then_some(Conserved::Energy);
         let size = keeps_size.then_some(Conserved::AngularMomentum);
-        let axial = shared_axis(&acting).map(Conserved::AxialAngularMomentum);
-        if !motors.is_empty() {
+        let axis = shared_axis(acting.clone());
+        let axial = axis.map(Conserved::AxialAngularMomentum);
+        if driven {
             return [energy, size, axial, None, None, None];
         }
         let wheel = body.wheel != Default::default();
-        let spins = wheel || !acting.is_empty();
-        let spin = if spins { spin_axis(body, &acting).map(Conserved::SpinAngularMomentum) } else { None };
-        let field = if wheel { None } else { field(&acting) };
+        let spins = wheel || acting.clone().next().is_some();
+        let spin = || spin_axis(body, acting.clone()).map(Conserved::SpinAngularMomentum);
+        let field = axis.filter(|_| !wheel).and_then(|axis| field(acting.clone(), axis));
         let heavy = field.and_then(|field| of_heavy_body(body, field, start));
-        [energy, size, axial, spin, heavy, jacobi(&acting)]
+        [energy, size, axial, if spins { spin() } else { None }, heavy, jacobi(acting)]
     }
 
     /// Its place in [`NAMES`].
@@ -228,15 +232,20 @@ fn axis(torque: &Torque) -> Option<Vector> {
 }
 
 /// The unit axis that all laws share; e3 rather than −e3.
-fn shared_axis(acting: &[&Torque]) -> Option<Vector> {
-    let first = axis(acting.first()?)?;
-    let shared = acting.iter().all(|t| axis(t).is_some_and(|other| are_parallel(first, other)));
+fn shared_axis<'a>(mut acting: impl Iterator<Item = &'a Torque>) -> Option<Vector> {
+    let first = axis(acting.next()?)?;
+    if !acting.all(|t| axis(t).is_some_and(|other| are_parallel(first, other))) {
+        return None;
+    }
+    if first == E3 {
+        return Some(E3);
+    }
     let unit = first / first.norm();
-    shared.then(|| if are_parallel(unit, E3) { E3 } else { unit })
+    Some(if are_parallel(unit, E3) { E3 } else { unit })
 }
 
 fn are_parallel(a: Vector, b: Vector) -> bool {
-    a.cross(b).norm() <= ROUNDING * a.norm() * b.norm()
+    a == b || a.cross(b).norm() <= ROUNDING * a.norm() * b.norm()
 }
 
 /// Whether the moments about the other two axes are equal.
@@ -246,7 +255,10 @@ fn is_symmetric(body: &Gyrostat, axis: usize) -> bool {
 }
 
 /// The symmetry axis of a body, if no law has a torque about it. For a sphere, the axis of the laws or of the wheel.
-fn spin_axis(body: &Gyrostat, acting: &[&Torque]) -> Option<Vector> {
+fn spin_axis<'a>(
+    body: &Gyrostat,
+    mut acting: impl Iterator<Item = &'a Torque> + Clone,
+) -> Option<Vector> {
     let own = |torque: &Torque| match torque {
         Torque::Heavy(c) => Some(*c),
         Torque::Magnetic { dipole, .. } => Some(*dipole),
@@ -257,7 +269,7 @@ fn spin_axis(body: &Gyrostat, acting: &[&Torque]) -> Option<Vector> {
     let axis = match (symmetric.next(), symmetric.next()) {
         (Some(k), None) => Vector(std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 })),
         (Some(_), Some(_)) => {
-            let known = acting.iter().find_map(|t| own(t)).unwrap_or(wheel);
+            let known = acting.clone().find_map(own).unwrap_or(wheel);
             if known == Vector::default() {
                 return None;
             }
@@ -272,12 +284,11 @@ fn spin_axis(body: &Gyrostat, acting: &[&Torque]) -> Option<Vector> {
         Torque::ConstantBody(torque) => torque.dual().dot(axis).abs() <= ROUNDING * torque.norm(),
         _ => false,
     };
-    (are_parallel(wheel, axis) && acting.iter().all(|t| keeps(t))).then_some(axis)
+    (are_parallel(wheel, axis) && acting.all(keeps)).then_some(axis)
 }
 
-/// The sum of all laws, if it is one uniform field: gravity, and dipoles in fields along one axis.
-fn field(acting: &[&Torque]) -> Option<Field> {
-    let axis = shared_axis(acting)?;
+/// The sum of all laws, which share this axis, if it is one uniform field: gravity, and dipoles in fields.
+fn field<'a>(acting: impl Iterator<Item = &'a Torque>, axis: Vector) -> Option<Field> {
     let mut c = Vector::default();
     for torque in acting {
         c += match torque {
@@ -325,7 +336,7 @@ impl Plane {
 }
 
 /// Jacobi's integral: one circular orbit, and otherwise only laws with a potential and the axis e3.
-fn jacobi(acting: &[&Torque]) -> Option<Conserved> {
+fn jacobi<'a>(acting: impl Iterator<Item = &'a Torque>) -> Option<Conserved> {
     let mut rate = None;
     for torque in acting {
         match torque {

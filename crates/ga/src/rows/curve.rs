@@ -76,11 +76,14 @@ fn blocks<const W: usize, const A: usize, const B: usize>(
     first: &mut [f64],
     second: &mut [f64],
 ) {
-    let (mut input, mut out) = (Lane::<W>::filled(0.0), [Lane::filled(0.0); MOST]);
+    let (mut last, mut out) = ([0.0; W], [Lane::filled(0.0); MOST]);
     let blocks = arguments.chunks(W).zip(first.chunks_mut(W * A)).zip(second.chunks_mut(W * B));
     for ((arguments, a), b) in blocks {
-        input.0[..arguments.len()].copy_from_slice(arguments);
-        path.run(OnLanes::<_, A, B, W> { curve, arguments: &input, out: &mut out });
+        let arguments = arguments.try_into().unwrap_or_else(|_| {
+            last[..arguments.len()].copy_from_slice(arguments);
+            &last
+        });
+        path.run(OnLanes::<_, A, B, W> { curve, arguments, out: &mut out });
         path.scatter(&out[..A], a);
         path.scatter(&out[A..A + B], b);
     }
@@ -109,7 +112,7 @@ pub fn together<const A: usize, const B: usize>(
 /// The values of a curve for a lane of arguments.
 struct OnLanes<'a, C, const A: usize, const B: usize, const W: usize> {
     curve: &'a C,
-    arguments: &'a Lane<W>,
+    arguments: &'a [f64; W],
     out: &'a mut [Lane<W>; MOST],
 }
 
@@ -120,7 +123,7 @@ impl<C: Curve<A, B>, const A: usize, const B: usize, const W: usize> Work for On
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let (first, second) = self.out[..A + B].split_at_mut(A);
-        for (i, arguments) in self.arguments.0.as_chunks::<TOGETHER>().0.iter().enumerate() {
+        for (i, arguments) in self.arguments.as_chunks::<TOGETHER>().0.iter().enumerate() {
             let (a, b) = self.curve.values::<TOGETHER, FMA>(arguments);
             for k in 0..A {
                 first[k].0.as_chunks_mut::<TOGETHER>().0[i] = a[k];

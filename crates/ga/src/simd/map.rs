@@ -11,6 +11,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Whether every machine of this build has fused multiply-add.
 pub(crate) const BUILT_WITH_FMA: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
+/// Rows up to which a smaller block holds all.
+const FEW_ROWS: usize = 16;
+
 /// A function of a row of `A` numbers and one of `B`.
 pub(crate) trait Map<const A: usize, const B: usize, const OUT: usize>: Sync {
     /// Its values for `W` rows, given by components; the first number is NaN if the row needs the long method. No
@@ -153,7 +156,13 @@ pub(crate) fn run<T: Element, M: Map<A, B, OUT>, const A: usize, const B: usize,
     out: &mut [T],
 ) -> Result<(), usize> {
     let kernel = Mapped::<M, A, B, OUT> { map, failed: AtomicBool::new(false) };
-    sweep::<_, LANES, _>(path, threads, &kernel, (a, A), (b, B), (out, OUT));
+    let (x, y) = ((a, A), (b, B));
+    // Lanes without rows are computed too.
+    if out.len() <= FEW_ROWS * OUT {
+        sweep::<_, FEW_ROWS, _>(path, threads, &kernel, x, y, (&mut *out, OUT));
+    } else {
+        sweep::<_, LANES, _>(path, threads, &kernel, x, y, (&mut *out, OUT));
+    }
     if !kernel.failed.into_inner() {
         return Ok(());
     }

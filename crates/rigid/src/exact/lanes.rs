@@ -16,16 +16,36 @@ pub(crate) trait Coefficients<const C: usize>: Copy + Sync {
 
     /// Puts a motion into lane l.
     fn put(&mut self, l: usize, motion: &Self::One) {
-        let mut motion = *motion;
-        self.each().zip(motion.each()).for_each(|(lanes, one)| lanes[l] = one[0]);
+        let (mut motion, mut numbers) = (*motion, [0.0; MOST]);
+        // One after the other: iterating two chains together is several times slower.
+        zip_through(motion.each(), &mut numbers, |one, number| *number = one[0]);
+        zip_through(self.each(), &mut numbers, |lanes, number| lanes[l] = *number);
     }
 
     /// The motion in lane l.
     fn take(mut self, l: usize) -> Self::One {
         let mut motion = Self::One::empty();
-        motion.each().zip(self.each()).for_each(|(one, lanes)| *one = [lanes[l]]);
+        let mut numbers = [0.0; MOST];
+        zip_through(self.each(), &mut numbers, |lanes, number| *number = lanes[l]);
+        zip_through(motion.each(), &mut numbers, |one, number| *one = [*number]);
         motion
     }
+}
+
+/// Most coefficients of a motion.
+const MOST: usize = 128;
+
+/// Calls a function of each element and the next number, by internal iteration.
+fn zip_through<T>(
+    each: impl Iterator<Item = T>,
+    numbers: &mut [f64; MOST],
+    mut function: impl FnMut(T, &mut f64),
+) {
+    let mut count = 0;
+    each.for_each(|element| {
+        function(element, &mut numbers[count]);
+        count += 1;
+    });
 }
 
 /// The [`Phase`] of each motion by numbers: two of the rate, two of the start.

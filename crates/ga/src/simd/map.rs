@@ -4,15 +4,12 @@
 //! by one. The bits are the same on every machine and path, for one row or many.
 
 use super::threads::Threads;
-use super::traverse::sweep;
+use super::traverse::{FEW_ROWS, sweep};
 use super::{ByRow, Element, Kernel, LANES, Lane, Path};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Whether every machine of this build has fused multiply-add.
 pub(crate) const BUILT_WITH_FMA: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
-
-/// Rows up to which a smaller block holds all.
-const FEW_ROWS: usize = 16;
 
 /// A function of a row of `A` numbers and one of `B`.
 pub(crate) trait Map<const A: usize, const B: usize, const OUT: usize>: Sync {

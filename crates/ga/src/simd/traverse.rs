@@ -10,6 +10,10 @@ use std::ops::{ControlFlow, Range};
 /// From this many bytes on, factors and product together, the product bypasses the caches.
 pub(crate) const STREAMED: usize = 16 << 20;
 
+/// Rows up to which a block of that many is used, and its lanes, which fit the stack.
+pub(crate) const FEW_ROWS: usize = 16;
+const FEW_LANES: usize = 8;
+
 /// Numbers per thread from which another thread pays.
 pub(crate) const SHARED: usize = 1 << 17;
 
@@ -197,15 +201,23 @@ fn sweep_piece<T: Element, const W: usize, K: Kernel<W> + ByRow>(
     if total < K::FEW || K::FAST_ROWS && path.is_portable() {
         return by_rows(path, kernel, a, b, (out, nout));
     }
-    // Lanes beyond the last rows are computed too; 1 is in the domain of all functions.
-    let mut lanes = vec![Lane::<W>::filled(1.0); a.size + b.size + nout];
-    let mut target = [Target { data: out, size: nout, at: a.size + b.size }];
-    by_blocks((path, streamed), total, &mut lanes, &mut target, |first, count, lanes| {
+    let (at, size) = (a.size + b.size, a.size + b.size + nout);
+    let work = |first, count, lanes: &mut [Lane<W>]| {
         let (a_lanes, rest) = lanes.split_at_mut(a.size);
         let (b_lanes, out_lanes) = rest.split_at_mut(b.size);
         a.load(path, first, count, a_lanes);
         b.load(path, first, count, b_lanes);
         path.apply(kernel, a_lanes, b_lanes, out_lanes);
         ControlFlow::Continue(())
-    });
+    };
+    // Lanes beyond the last rows are computed too; 1 is in the domain of all functions.
+    let one = Lane::<W>::filled(1.0);
+    if total <= W && W <= FEW_ROWS && size <= FEW_LANES {
+        // One block, for which allocating memory would take a fifth of the time.
+        let lanes = &mut [one; FEW_LANES][..size];
+        let _ = work(0, total, lanes);
+        return path.scatter(&lanes[at..], out);
+    }
+    let (mut lanes, mut target) = (vec![one; size], [Target { data: out, size: nout, at }]);
+    by_blocks((path, streamed), total, &mut lanes, &mut target, work);
 }

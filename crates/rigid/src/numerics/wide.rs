@@ -40,9 +40,9 @@ impl Wide {
         if own == 1024 {
             return Wide { x, exponent: 0 };
         }
-        // In two steps, for 2^−1023, by which the largest floats are scaled, is not a normal number.
-        let half = -own / 2;
-        Wide { x: scaled(scaled(x, exp2(half)), exp2(-own - half)), exponent: exponent + own }
+        // 2^−1023, by which the largest floats are scaled, is not a normal number.
+        let (x, left) = if own == 1023 { (scaled(x, 0.5), own - 1) } else { (x, own) };
+        Wide { x: scaled(x, exp2(-left)), exponent: exponent + own }
     }
 
     /// x and the exponent.
@@ -89,6 +89,10 @@ impl Wide {
     /// In the range of floating point: 0 below it, infinite above.
     #[inline]
     pub fn narrow(self) -> DoubleDouble {
+        if self.exponent.abs() < 900 {
+            // Also of the low part, a normal number.
+            return scaled(self.x, exp2(self.exponent));
+        }
         // In two steps, of which at most the second leaves the normal numbers.
         let exponent = self.exponent.clamp(-1500, 1500);
         let half = exponent / 2;

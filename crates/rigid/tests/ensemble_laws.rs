@@ -218,6 +218,21 @@ fn bodies_are_independent() {
     }
 }
 
+/// One law alone may have steps of its own, and few bodies narrower lanes.
+#[test]
+fn each_law_has_the_same_bits_for_any_number_of_bodies() {
+    let all: Vec<usize> = (0..BODIES).collect();
+    for (kind, (name, _)) in laws(0).iter().enumerate() {
+        let together = run(&ensemble(&all, &[kind], true), 1);
+        for few in [&all[..1], &all[20..33], &all[36..]] {
+            let apart = run(&ensemble(few, &[kind], true), 1);
+            for (place, &body) in few.iter().enumerate() {
+                assert!(apart.bits(place) == together.bits(body), "{name}, body {body} of {}", few.len());
+            }
+        }
+    }
+}
+
 /// Laws whose parameters differ from body to body, as formulas and as laws. Between the stages of a step a rotor is not of
 /// norm 1 by `(hω/2)²` at most, and the weight of a formula is another function of it there: a difference in the error of
 /// the method, `h⁴`.

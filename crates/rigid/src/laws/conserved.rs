@@ -255,10 +255,7 @@ fn is_symmetric(body: &Gyrostat, axis: usize) -> bool {
 }
 
 /// The symmetry axis of a body, if no law has a torque about it. For a sphere, the axis of the laws or of the wheel.
-fn spin_axis<'a>(
-    body: &Gyrostat,
-    mut acting: impl Iterator<Item = &'a Torque> + Clone,
-) -> Option<Vector> {
+fn spin_axis<'a>(body: &Gyrostat, mut acting: impl Iterator<Item = &'a Torque> + Clone) -> Option<Vector> {
     let own = |torque: &Torque| match torque {
         Torque::Heavy(c) => Some(*c),
         Torque::Magnetic { dipole, .. } => Some(*dipole),

@@ -114,6 +114,10 @@ impl Runner {
             }
         }
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| computed(*id)) {
+            // The reverse of a rotor that only turns back.
+            if last[id] == 0 && matches!(step.work, Work::Selection(_)) {
+                continue;
+            }
             if let Work::Input(input) = step.work
                 && stay
                 && !part.results.contains(&id)

@@ -8,7 +8,7 @@ use crate::g3::values::{Multivector, norm};
 use crate::graded::Graded;
 use crate::product::{Engine, Grades, Plan, Product};
 use crate::rows::compose::Compose;
-use crate::rows::product::{Geometric, Turn};
+use crate::rows::product::{Geometric, Turn, TurnBack};
 use crate::rows::rotor_functions::{self, Cos, Exp, Log, Power, Sin, Tan};
 use crate::simd::map::{self, Map};
 use crate::simd::{Kernel, Lane, Path, by_eights};
@@ -64,6 +64,8 @@ pub(crate) enum Work {
     Product(Plan),
     Compose,
     Turn,
+    /// `~R X R`.
+    TurnBack,
     Divide,
     /// exp of a bivector.
     Exp,
@@ -121,7 +123,13 @@ impl Ready {
                 operands[count] = id;
                 count += 1;
             }
-            Ready { work: Work::new(program, step), grades: step.ty.grades, operands, count }
+            let mut work = Work::new(program, step);
+            if let Work::Turn = work
+                && let Op::Reverse(rotor) = program.steps[operands[0]].op
+            {
+                (work, operands[0]) = (Work::TurnBack, rotor);
+            }
+            Ready { work, grades: step.ty.grades, operands, count }
         };
         program.steps.iter().map(ready).collect()
     }
@@ -164,6 +172,10 @@ impl Ready {
             }
             Work::Turn => {
                 out.set_turned(rotor(operand(0)), operand(1));
+                return Ok(());
+            }
+            Work::TurnBack => {
+                out.set_turned(rotor(operand(0)).reverse(), operand(1));
                 return Ok(());
             }
             Work::Divide => {
@@ -216,6 +228,7 @@ impl Ready {
             Work::Product(plan) => plan.block(a, b, out),
             Work::Compose => Compose.block(a, b, out),
             Work::Turn => Turn(self.grades).block(a, b, out),
+            Work::TurnBack => TurnBack(Turn(self.grades)).block(a, b, out),
             Work::Divide => {
                 Divide.block(a, b, out);
                 return b[0].0.iter().all(|x| *x != 0.0);

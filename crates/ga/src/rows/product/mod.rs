@@ -152,6 +152,27 @@ impl<const W: usize> Kernel<W> for Turn {
     }
 }
 
+/// `~R X R`.
+pub(crate) struct TurnBack(pub Turn);
+
+#[inline(always)]
+fn turned_back([s, x, y, z]: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
+    turned([s, -x, -y, -z], vector)
+}
+
+impl<const W: usize> Kernel<W> for TurnBack {
+    #[inline(always)]
+    fn block(&self, rotors: &[Lane<W>], values: &[Lane<W>], out: &mut [Lane<W>]) {
+        for (at, width) in self.0.parts() {
+            if width == 1 {
+                out[at] = values[at];
+            } else {
+                by_lanes(rotors, &values[at..], &mut out[at..], turned_back);
+            }
+        }
+    }
+}
+
 impl Plan {
     /// Multiplies row by row into `out`, by several threads where there are enough rows for it to pay; a single row is
     /// broadcast.

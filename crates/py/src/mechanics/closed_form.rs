@@ -98,12 +98,12 @@ fn ends(numbers: &[f64]) -> [f64; 2] {
 }
 
 pub(crate) fn check_times(times: &[f64]) -> PyResult<()> {
-    // Differences are 0, or NaN for what is not finite.
+    // Products with 0 are NaN for what is not finite.
     let (parts, rest) = times.as_chunks::<COMPARED>();
-    let mut sums = [0.0; COMPARED];
+    let mut sums = [0.0_f64; COMPARED];
     for part in parts {
         for k in 0..COMPARED {
-            sums[k] += part[k] - part[k];
+            sums[k] += part[k] * 0.0;
         }
     }
     if sums.iter().all(|sum| *sum == 0.0) && rest.iter().all(|t| t.is_finite()) {

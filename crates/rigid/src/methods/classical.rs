@@ -170,8 +170,8 @@ pub(crate) fn step_in_parts<const W: usize, const F: bool, E: Forcing<W, F>>(
         let torque = forcing.torque(&at);
         for first in (0..W).step_by(PART) {
             let bodies = bodies.part(first);
-            let ([s, x, y_, z], [p, q, r]) = (part(&at.rotor, first), part(&at.omega, first));
-            let here = halved(&[s, x, y_, z, p, q, r]);
+            let ([s, a, b, c], [p, q, r]) = (part(&at.rotor, first), part(&at.omega, first));
+            let here = halved(&[s, a, b, c, p, q, r]);
             let mut slope = free_slope(&bodies, &here);
             drive(&bodies, E::WHEELS, &here, part(&torque, first), &mut slope);
             let before = if number == 0 { part(y, first) } else { part(&sum, first) };

@@ -201,7 +201,8 @@ fn sweep_piece<T: Element, const W: usize, K: Kernel<W> + ByRow>(
     if total < K::FEW || K::FAST_ROWS && path.is_portable() {
         return by_rows(path, kernel, a, b, (out, nout));
     }
-    let (at, size) = (a.size + b.size, a.size + b.size + nout);
+    let at = a.size + b.size;
+    let size = at + nout;
     let work = |first, count, lanes: &mut [Lane<W>]| {
         let (a_lanes, rest) = lanes.split_at_mut(a.size);
         let (b_lanes, out_lanes) = rest.split_at_mut(b.size);

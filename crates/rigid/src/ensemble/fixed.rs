@@ -89,7 +89,7 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
         let point = |points: &LanePoints<W>, l: usize, time: f64| {
             LanePoint::new(points, l, (&gyrostats[l], &torques[l]), time)
         };
-        let mut monitor = LaneMonitor::<W>::new();
+        let mut monitor = LaneMonitor::<W>::default();
         let at_start = bodies.points(LanePhases::starts(&members));
         (0..members.len()).for_each(|l| monitor.follow(l, &point(&at_start, l, start)));
         // Their products with the numbers of a moderate state are finite.

@@ -66,6 +66,7 @@ impl<'m> LanePoint<'m> {
 }
 
 /// The conserved quantities of the bodies in the lanes.
+#[derive(Default)]
 pub(super) struct LaneMonitor<const W: usize>(Vec<Tracked<W>>);
 
 /// A quantity of some lanes: its value at the start, the size of its terms, and its largest change so far.
@@ -78,11 +79,6 @@ struct Tracked<const W: usize> {
 }
 
 impl<const W: usize> LaneMonitor<W> {
-    /// Of no quantities.
-    pub fn new() -> Self {
-        LaneMonitor(Vec::new())
-    }
-
     /// Adds the quantities of the body of a lane, which starts at a point.
     pub fn follow(&mut self, l: usize, start: &LanePoint) {
         for quantity in Conserved::under(start.body, start.torques, &start.phase) {

@@ -105,6 +105,24 @@ impl Turn {
             Some((*next - width, width))
         })
     }
+
+    /// Turns each part in lanes. The function is an item, not a closure, which would not be compiled for the lanes.
+    #[inline(always)]
+    fn by_parts<const W: usize>(
+        &self,
+        rotors: &[Lane<W>],
+        values: &[Lane<W>],
+        out: &mut [Lane<W>],
+        turned: impl Fn([f64; 4], [f64; 3]) -> [f64; 3] + Copy,
+    ) {
+        for (at, width) in self.parts() {
+            if width == 1 {
+                out[at] = values[at];
+            } else {
+                by_lanes(rotors, &values[at..], &mut out[at..], turned);
+            }
+        }
+    }
 }
 
 #[inline(always)]
@@ -142,13 +160,7 @@ impl Short<4, 3, 3> for Turn {
 impl<const W: usize> Kernel<W> for Turn {
     #[inline(always)]
     fn block(&self, rotors: &[Lane<W>], values: &[Lane<W>], out: &mut [Lane<W>]) {
-        for (at, width) in self.parts() {
-            if width == 1 {
-                out[at] = values[at];
-            } else {
-                by_lanes(rotors, &values[at..], &mut out[at..], turned);
-            }
-        }
+        self.by_parts(rotors, values, out, turned);
     }
 }
 
@@ -163,13 +175,7 @@ fn turned_back([s, x, y, z]: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
 impl<const W: usize> Kernel<W> for TurnBack {
     #[inline(always)]
     fn block(&self, rotors: &[Lane<W>], values: &[Lane<W>], out: &mut [Lane<W>]) {
-        for (at, width) in self.0.parts() {
-            if width == 1 {
-                out[at] = values[at];
-            } else {
-                by_lanes(rotors, &values[at..], &mut out[at..], turned_back);
-            }
-        }
+        self.0.by_parts(rotors, values, out, turned_back);
     }
 }
 

@@ -1,9 +1,10 @@
 //! Products of rotors over many rows, renormalized.
 
 use crate::g3::rotor::Rotor;
+use crate::simd::short::Short;
 use crate::simd::threads::Threads;
 use crate::simd::traverse::sweep;
-use crate::simd::{ByRow, Element, Kernel, LANES, Lane, Path, Short, by_lanes};
+use crate::simd::{ByRow, Element, Kernel, LANES, Lane, Path, by_lanes};
 use std::array::from_fn;
 
 /// `S R` for rows of rotor components, as [`Rotor::compose`].

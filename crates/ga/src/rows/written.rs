@@ -2,7 +2,8 @@
 //!
 //! They are recognised by their terms, so that one serves several products and algebras.
 
-use crate::simd::{Element, Lane, Path, Short, by_lanes};
+use crate::simd::short::{Numbers, Short};
+use crate::simd::{Element, Lane, Path, by_lanes};
 
 /// A term: the components of both factors and of the product, and the sign.
 type Known = (usize, usize, usize, i8);
@@ -58,6 +59,19 @@ macro_rules! written {
             ) -> usize {
                 match self {
                     $(Written::$name => path.short::<$name, T, $a, $b, $out>(a, b, out, streamed),)*
+                }
+            }
+
+            /// Multiplies a block of whole rows in registers, as [`Path::short_block`].
+            pub fn block_in_registers<T: Element, const W: usize>(
+                self,
+                path: Path,
+                a: Numbers<T, W>,
+                b: Numbers<T, W>,
+                out: &mut [Lane<W>],
+            ) {
+                match self {
+                    $(Written::$name => path.short_block::<$name, T, $a, $b, $out, W>(a, b, out),)*
                 }
             }
 

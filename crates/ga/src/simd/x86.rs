@@ -2,8 +2,9 @@
 
 use super::lanes::Work;
 use super::map::{self, Map};
+use super::short::{Numbers, Short};
 use super::squares::{self, squares};
-use super::{Element, Lane, Short};
+use super::{Element, Lane};
 use std::arch::x86_64::*;
 
 /// A cache line. A local one aligns the stack frame to cache lines, so that no spilled register spans two.
@@ -90,6 +91,69 @@ macro_rules! short {
             columns
         }
 
+        /// Columns `$width number` and later of a block.
+        ///
+        /// # Safety
+        /// The numbers are those of a block, rows of `SIZE` numbers or `SIZE` lanes, which has these columns.
+        #[inline]
+        #[target_feature(enable = $feature)]
+        unsafe fn columns_of<T: Element, const SIZE: usize, const W: usize>(
+            numbers: Numbers<T, W>,
+            number: usize,
+        ) -> [$register; SIZE] {
+            match numbers {
+                // SAFETY: as the caller promises.
+                Numbers::Rows(rows) => unsafe { read(rows.as_ptr().add($width * SIZE * number)) },
+                Numbers::Lanes(lanes) => {
+                    let mut columns = [$zero(); SIZE];
+                    for k in 0..SIZE {
+                        // SAFETY: as the caller promises.
+                        columns[k] = unsafe { f64::$load(lanes[k].0.as_ptr().add($width * number)) };
+                    }
+                    columns
+                }
+            }
+        }
+
+        /// Applies a function to a block.
+        ///
+        /// # Safety
+        /// `a` and `b` are rows of `A` and `B` numbers or as many lanes, and there are `OUT` lanes for the values.
+        #[target_feature(enable = $feature)]
+        pub unsafe fn short_block<
+            T: Element,
+            K: Short<A, B, OUT>,
+            const A: usize,
+            const B: usize,
+            const OUT: usize,
+            const W: usize,
+        >(
+            a: Numbers<T, W>,
+            b: Numbers<T, W>,
+            out: &mut [Lane<W>],
+        ) {
+            for number in 0..W / $width {
+                // SAFETY: a block has `W` rows, and a register holds `$width` numbers.
+                let (x, y) = unsafe { (columns_of::<T, A, W>(a, number), columns_of::<T, B, W>(b, number)) };
+                let values = K::values::<$width>(numbers_of(x), numbers_of(y));
+                for k in 0..OUT {
+                    out[k].0.as_chunks_mut().0[number] = values[k];
+                }
+            }
+        }
+
+        /// The numbers of registers.
+        #[inline]
+        #[target_feature(enable = $feature)]
+        fn numbers_of<const SIZE: usize>(registers: [$register; SIZE]) -> [[f64; $width]; SIZE] {
+            let mut numbers = [[0.0; $width]; SIZE];
+            for k in 0..SIZE {
+                // SAFETY: a register holds `$width` numbers.
+                unsafe { f64::$store(numbers[k].as_mut_ptr(), registers[k]) };
+            }
+            numbers
+        }
+
         /// Applies a function to groups of `$width` rows, and returns the number of rows.
         ///
         /// # Safety
@@ -142,21 +206,13 @@ macro_rules! short {
             let Some(mut writer) = Writer::<STREAMED>::new(out) else { return 0 };
             let (one_a, one_b) = (filled::<T, A>(a), filled::<T, B>(b));
             for number in 0..count {
-                let (mut x, mut y) = ([[0.0; $width]; A], [[0.0; $width]; B]);
                 let a = a.as_ptr().wrapping_add($width * A * number);
                 let b = b.as_ptr().wrapping_add($width * B * number);
-                // SAFETY: the rows are there, and a register holds `$width` numbers.
-                unsafe {
-                    let x_columns = if MANY || !one[0] { read::<T, A>(a) } else { one_a };
-                    let y_columns = if MANY || !one[1] { read::<T, B>(b) } else { one_b };
-                    for k in 0..A {
-                        f64::$store(x[k].as_mut_ptr(), x_columns[k]);
-                    }
-                    for k in 0..B {
-                        f64::$store(y[k].as_mut_ptr(), y_columns[k]);
-                    }
-                }
-                let values = K::values::<$width>(x, y);
+                // SAFETY: the rows are there.
+                let x = if MANY || !one[0] { unsafe { read::<T, A>(a) } } else { one_a };
+                // SAFETY: as above.
+                let y = if MANY || !one[1] { unsafe { read::<T, B>(b) } } else { one_b };
+                let values = K::values::<$width>(numbers_of(x), numbers_of(y));
                 let mut columns = [$zero(); OUT];
                 for k in 0..OUT {
                     // SAFETY: a register holds `$width` numbers.

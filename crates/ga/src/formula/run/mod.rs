@@ -12,14 +12,16 @@ mod tests;
 use super::compile::program::Id;
 use crate::MathError;
 use crate::graded::{Graded, size};
+use crate::simd::short::Numbers;
 use crate::simd::threads::{Threads, for_each};
 use crate::simd::traverse::{Factor, SHARED, Target, by_blocks};
 use crate::simd::{Element, Lane, Path};
+use schedule::apart;
 use single::Runner;
 use std::ops::{ControlFlow, Range};
 use std::sync::{Mutex, PoisonError};
 use steps::{Given, Work};
-use tasks::Schedule;
+use tasks::{Schedule, Task};
 
 /// Below this number of rows, transposing them into lanes does not pay.
 const FEW: usize = 8;
@@ -222,10 +224,31 @@ impl Sweep<'_> {
                     self.path.prefetch(block, lines.clone());
                 }
             };
-            let read = |input: usize, to: Range<usize>, lanes: &mut [Lane<W>]| {
-                self.path.gather(factors[input].rows(first, count), &mut lanes[to]);
+            // Whole blocks can be read in registers.
+            let direct = count == W && self.path.has_short_blocks();
+            let own = |number: usize, task: &Task, lanes: &mut [Lane<W>]| {
+                prefetch(number);
+                match task {
+                    Task::Read { input, to, direct: by_step } => {
+                        if !(direct && *by_step) {
+                            self.path.gather(factors[*input].rows(first, count), &mut lanes[to.clone()]);
+                        }
+                        true
+                    }
+                    Task::Do { step, operands, rows, to } if direct && *rows != [None; 2] => {
+                        let (a, b, out) = apart(lanes, operands, to);
+                        let numbers = |rows: Option<usize>, lanes| match rows {
+                            Some(input) => Numbers::Rows(factors[input].rows(first, count)),
+                            None => Numbers::Lanes(lanes),
+                        };
+                        let [a, b] = [numbers(rows[0], a), numbers(rows[1], b)];
+                        self.runner.steps[*step].in_registers(self.path, a, b, out);
+                        true
+                    }
+                    Task::Do { .. } => false,
+                }
             };
-            let known = self.runner.do_all(&self.schedule.tasks, (self.path, count), lanes, prefetch, read);
+            let known = self.runner.do_all(&self.schedule.tasks, (self.path, count), lanes, own);
             if !known {
                 result = (first..first + count).try_for_each(|row| self.runner.row(factors, row).map(drop));
             }

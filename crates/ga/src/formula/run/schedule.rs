@@ -1,7 +1,7 @@
 //! Assignment of values to lanes, and the evaluation of tasks for a block of rows.
 
 use super::single::Runner;
-use super::steps::{Given, Work};
+use super::steps::{Given, Ready, Work};
 use super::tasks::{Lanes, Schedule, Task};
 use crate::MathError;
 use crate::formula::compile::program::Id;
@@ -76,11 +76,22 @@ impl Runner {
         let given = |i: usize| known[i].unwrap_or(Given::Determinant(f64::NAN));
         let values = self.values(given, |id| fixed[id])?;
         let computed = |id: Id| part.steps[id] && !fixed[id];
-        let mut last = vec![0; self.steps.len()];
+        let (mut last, mut uses) = (vec![0; self.steps.len()], vec![0; self.steps.len()]);
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| computed(*id)) {
-            step.operands().iter().for_each(|&operand| last[operand] = id);
+            for &operand in step.operands() {
+                last[operand] = id;
+                uses[operand] += 1;
+            }
         }
         part.results.iter().chain(&part.given).for_each(|&id| last[id] = usize::MAX);
+        // The inputs that are read for one step alone, which can do without lanes.
+        let direct = |id: Id| match self.steps[id].work {
+            Work::Input(input) if !stay && computed(id) && uses[id] == 1 => {
+                self.steps.get(last[id]).is_some_and(Ready::is_short).then_some(input)
+            }
+            _ => None,
+        };
+        let direct: Vec<_> = (0..self.steps.len()).map(direct).collect();
         let mut lanes = Lanes::default();
         let mut schedule = Schedule {
             fixed: Vec::new(),
@@ -133,15 +144,20 @@ impl Runner {
             if let Work::Map(input) = step.work {
                 if of_maps[input].is_empty() {
                     of_maps[input] = lanes.take(self.inputs[input].size());
-                    schedule.tasks.push(Task::Read { input, to: of_maps[input].clone() });
+                    let to = of_maps[input].clone();
+                    schedule.tasks.push(Task::Read { input, to, direct: false });
                 }
                 operands[1] = of_maps[input].clone();
             }
             let to = lanes.take(size(step.grades));
             places[id] = to.clone();
             schedule.tasks.push(match step.work {
-                Work::Input(input) => Task::Read { input, to },
-                _ => Task::Do { step: id, operands, to },
+                Work::Input(input) => Task::Read { input, to, direct: direct[id].is_some() },
+                _ => {
+                    let mut of = step.operands().iter().map(|&operand| direct[operand]);
+                    let rows = std::array::from_fn(|_| of.next().flatten());
+                    Task::Do { step: id, operands, rows, to }
+                }
             });
             for &operand in step.operands().iter().filter(|&&operand| last[operand] == id && !fixed[operand])
             {
@@ -153,51 +169,43 @@ impl Runner {
         Ok(schedule)
     }
 
-    /// Does the tasks for a block of rows, `count` of which matter; false if some row may have no value. `before` is called
-    /// before each task with its number, and `read` fills the lanes of a range with rows of an input.
+    /// Does the tasks for a block of rows, `count` of which matter; false if some row may have no value. `own` is called with
+    /// each task and its number, and returns whether it did the task: it reads all inputs.
     pub(crate) fn do_all<const W: usize>(
         &self,
         tasks: &[Task],
         (path, count): (Path, usize),
         lanes: &mut [Lane<W>],
-        before: impl FnMut(usize),
-        read: impl FnMut(usize, Range<usize>, &mut [Lane<W>]),
+        own: impl FnMut(usize, &Task, &mut [Lane<W>]) -> bool,
     ) -> bool {
-        path.run(Tasks { runner: self, tasks, path, count, lanes, before, read })
+        path.run(Tasks { runner: self, tasks, path, count, lanes, own })
     }
 }
 
 /// Tasks that are compiled together for each path: calls would take longer than most steps of a few rows.
-struct Tasks<'a, B, R, const W: usize> {
+struct Tasks<'a, F, const W: usize> {
     runner: &'a Runner,
     tasks: &'a [Task],
     path: Path,
     count: usize,
     lanes: &'a mut [Lane<W>],
-    before: B,
-    read: R,
+    own: F,
 }
 
-impl<B, R, const W: usize> lanes::Work for Tasks<'_, B, R, W>
-where
-    B: FnMut(usize),
-    R: FnMut(usize, Range<usize>, &mut [Lane<W>]),
-{
+impl<F: FnMut(usize, &Task, &mut [Lane<W>]) -> bool, const W: usize> lanes::Work for Tasks<'_, F, W> {
     type Output = bool;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> bool {
-        let Tasks { runner, tasks, path, count, lanes, mut before, mut read } = self;
+        let Tasks { runner, tasks, path, count, lanes, mut own } = self;
         let mut known = true;
         for (number, task) in tasks.iter().enumerate() {
-            before(number);
-            match task {
-                Task::Read { input, to } => read(*input, to.clone(), lanes),
-                Task::Do { step, operands, to } => {
-                    let step = &runner.steps[*step];
-                    let of = runner.steps[step.operands()[0]].grades;
-                    known &= step.block(path, of, count, apart(lanes, operands, to));
-                }
+            if !own(number, task, lanes)
+                && let Task::Do { step, operands, to, .. } = task
+            {
+                let step = &runner.steps[*step];
+                let of = runner.steps[step.operands()[0]].grades;
+                known &= step.block(path, of, count, apart(lanes, operands, to));
             }
         }
         known

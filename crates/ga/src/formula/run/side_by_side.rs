@@ -3,7 +3,7 @@
 use super::schedule::Part;
 use super::single::Runner;
 use super::steps::Given;
-use super::tasks::Schedule;
+use super::tasks::{Schedule, Task};
 use crate::formula::compile::program::Id;
 use crate::graded::size;
 use crate::simd::foreseen::Foreseen;
@@ -121,13 +121,16 @@ impl<const W: usize> Beside<'_, W> {
     /// Evaluates all rows, each with the bits of [`Runner::value`]; a row with a failing step has NaN as its results.
     pub fn run(&mut self) {
         let inputs = &self.schedule.inputs;
-        let known = self.runner.do_all(
-            &self.schedule.tasks,
-            (self.path, W),
-            &mut self.lanes,
-            |_| {},
-            |input, to, lanes| lanes.copy_within(inputs[input].clone(), to.start),
-        );
+        let known =
+            self.runner.do_all(&self.schedule.tasks, (self.path, W), &mut self.lanes, |_, task, lanes| {
+                match task {
+                    Task::Read { input, to, .. } => {
+                        lanes.copy_within(inputs[*input].clone(), to.start);
+                        true
+                    }
+                    Task::Do { .. } => false,
+                }
+            });
         if !known || self.parameter.as_ref().is_some_and(|parameter| parameter.missing) {
             (0..W).for_each(|row| self.complete(row));
         }

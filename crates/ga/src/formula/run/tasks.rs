@@ -6,10 +6,10 @@ use std::ops::Range;
 
 /// A value, or an input that is a map, at its lanes.
 pub(crate) enum Task {
-    /// Reads rows of an input.
-    Read { input: usize, to: Range<usize> },
-    /// Does a step.
-    Do { step: Id, operands: [Range<usize>; 2], to: Range<usize> },
+    /// Reads rows of an input; `direct` if the only step that needs them can do without lanes.
+    Read { input: usize, to: Range<usize>, direct: bool },
+    /// Does a step. `rows` are the inputs among its operands that are read for it alone.
+    Do { step: Id, operands: [Range<usize>; 2], rows: [Option<usize>; 2], to: Range<usize> },
 }
 
 /// The tasks for each block of rows.

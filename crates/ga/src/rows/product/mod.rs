@@ -5,9 +5,10 @@ use crate::g3::values::{Vector, geometric};
 use crate::product::{Engine, Grades, Plan, Term};
 pub use crate::simd::Element;
 use crate::simd::lanes::Lanes;
+use crate::simd::short::Short;
 use crate::simd::threads::Threads;
 use crate::simd::traverse::{beyond_caches, sweep};
-use crate::simd::{ByRow, Kernel, LANES, Lane, Path, Short, by_lanes};
+use crate::simd::{ByRow, Kernel, LANES, Lane, Path, by_lanes};
 
 impl ByRow for Plan {
     fn row(&self, _: Path, a: &[f64], b: &[f64], out: &mut [f64]) {
@@ -106,6 +107,11 @@ impl Turn {
         })
     }
 
+    /// Whether the values are of three numbers, which turn in registers.
+    pub fn is_short(&self) -> bool {
+        self.0 == Grades::VECTOR || self.0 == Grades::BIVECTOR
+    }
+
     /// Turns each part in lanes. The function is an item, not a closure, which would not be compiled for the lanes.
     #[inline(always)]
     fn by_parts<const W: usize>(
@@ -145,8 +151,7 @@ impl ByRow for Turn {
     }
 
     fn in_registers<T: Element>(&self, path: Path, r: &[T], v: &[T], out: &mut [T], streamed: bool) -> usize {
-        let three = self.0 == Grades::VECTOR || self.0 == Grades::BIVECTOR;
-        if three { path.short::<Turn, T, 4, 3, 3>(r, v, out, streamed) } else { 0 }
+        if self.is_short() { path.short::<Turn, T, 4, 3, 3>(r, v, out, streamed) } else { 0 }
     }
 }
 
@@ -170,6 +175,13 @@ pub(crate) struct TurnBack(pub Turn);
 #[inline(always)]
 fn turned_back([s, x, y, z]: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
     turned([s, -x, -y, -z], vector)
+}
+
+impl Short<4, 3, 3> for TurnBack {
+    #[inline(always)]
+    fn value(rotor: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
+        turned_back(rotor, vector)
+    }
 }
 
 impl<const W: usize> Kernel<W> for TurnBack {

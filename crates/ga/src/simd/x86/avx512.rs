@@ -162,46 +162,6 @@ impl<const STREAMED: bool> Writer<STREAMED> {
     }
 }
 
-/// Eight rows of `SIZE` numbers fill `SIZE` registers without gaps: number `k` of row `i` is number `i SIZE + k` of
-/// them all, at place `(i SIZE + k) mod 8` of a register. For an odd `SIZE` the eight numbers of a column have
-/// different places: they are blended into one register, which is then permuted.
-struct Odd<const SIZE: usize>;
-
-impl<const SIZE: usize> Odd<SIZE> {
-    /// For column `k` and register `r`, the places of its numbers there.
-    const MASKS: [[u8; SIZE]; SIZE] = {
-        let mut masks = [[0; SIZE]; SIZE];
-        let mut n = 0;
-        while n < 8 * SIZE {
-            masks[n % SIZE][n / 8] |= 1 << (n % 8);
-            n += 1;
-        }
-        masks
-    };
-
-    /// For column `k` and row `i`, the place.
-    const PLACES: [[i64; 8]; SIZE] = {
-        let mut places = [[0; 8]; SIZE];
-        let mut n = 0;
-        while n < 8 * SIZE {
-            places[n % SIZE][n / SIZE] = (n % 8) as i64;
-            n += 1;
-        }
-        places
-    };
-
-    /// For column `k` and a place, the row.
-    const ROWS: [[i64; 8]; SIZE] = {
-        let mut rows = [[0; 8]; SIZE];
-        let mut n = 0;
-        while n < 8 * SIZE {
-            rows[n % SIZE][n % 8] = (n / SIZE) as i64;
-            n += 1;
-        }
-        rows
-    };
-}
-
 /// Eight integers of 64 bits.
 #[inline]
 #[target_feature(enable = "avx512f")]
@@ -225,14 +185,6 @@ fn columns<const SIZE: usize>(registers: [__m512d; SIZE]) -> [__m512d; SIZE] {
         t[1 % SIZE] = _mm512_permutex2var_pd(a1, even, b1);
         t[2 % SIZE] = _mm512_permutex2var_pd(a0, odd, b0);
         t[3 % SIZE] = _mm512_permutex2var_pd(a1, odd, b1);
-    } else if SIZE % 2 == 1 {
-        for k in 0..SIZE {
-            let mut column = registers[0];
-            for r in 1..SIZE {
-                column = _mm512_mask_blend_pd(Odd::<SIZE>::MASKS[k][r], column, registers[r]);
-            }
-            columns[k] = _mm512_permutexvar_pd(integers(&Odd::<SIZE>::PLACES[k]), column);
-        }
     } else {
         columns = pick(registers, &Picks::<SIZE>::GATHER);
     }
@@ -254,17 +206,6 @@ fn rows_of<const SIZE: usize>(columns: [__m512d; SIZE]) -> [__m512d; SIZE] {
         t[1 % SIZE] = _mm512_unpackhi_pd(a0, a1);
         t[2 % SIZE] = _mm512_unpacklo_pd(b0, b1);
         t[3 % SIZE] = _mm512_unpackhi_pd(b0, b1);
-    } else if SIZE % 2 == 1 {
-        let mut placed = columns;
-        for k in 0..SIZE {
-            placed[k] = _mm512_permutexvar_pd(integers(&Odd::<SIZE>::ROWS[k]), columns[k]);
-        }
-        for r in 0..SIZE {
-            rows[r] = placed[0];
-            for k in 1..SIZE {
-                rows[r] = _mm512_mask_blend_pd(Odd::<SIZE>::MASKS[k][r], rows[r], placed[k]);
-            }
-        }
     } else {
         rows = pick(columns, &Picks::<SIZE>::SCATTER);
     }

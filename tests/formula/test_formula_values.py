@@ -221,3 +221,60 @@ def test_batches_that_do_not_broadcast_are_named():
     for text in ("u v", "u v = 1", "u + v = v"):
         with pytest.raises(ValueError, match=r"do not broadcast: u \(3,\), v \(4,\)"):
             ph.evaluate(text, u=u, v=v)
+
+
+# --- arrays for the value
+
+
+def test_values_are_written_to_out():
+    f = ph.formula("R v ~R + (a∧b)·c", arguments="R v")
+    values = {"R": random_rotors((70,)), **{name: ph.vector(RNG.normal(size=(70, 3))) for name in "vabc"}}
+    out = np.zeros((70, 3))
+    result = f(**values, out=out)
+    assert np.shares_memory(result._data, out)
+    assert result.grades == (1,)
+    np.testing.assert_array_equal(out, f(**values).components)
+    out[:] = 0
+    R, v = values.pop("R"), values.pop("v")
+    f(R, v, **values, out=out)
+    np.testing.assert_array_equal(out, f(R, v, **values).components)
+
+
+@pytest.mark.parametrize(
+    ("text", "values", "shape"),
+    [
+        ("a·b", {"a": ph.vector(RNG.normal(size=(5, 3))), "b": e1}, (5, 1)),  # also a batch of scalars
+        ("a b", {"a": e1, "b": e2}, (4,)),
+        ("exp(a)", {"a": ph.pga(3).bivector(RNG.normal(size=(5, 6)))}, (5, 8)),
+        ("exp(B)", {"B": ph.bivector(RNG.normal(size=(2, 3, 3)))}, (2, 3, 4)),
+    ],
+)
+def test_out_holds_values_of_all_kinds(text, values, shape):
+    out = np.full(shape, 7.0)
+    result = ph.formula(text)(**values, out=out)
+    expected = ph.formula(text)(**values)
+    assert type(result) is type(expected)
+    assert result.grades == expected.grades
+    np.testing.assert_array_equal(out, expected.components)
+
+
+def test_a_value_may_be_named_out():
+    assert ph.formula("2 out")(out=e1) == 2 * e1
+    np.testing.assert_array_equal(ph.formula("2 out")(out=np.array([1.0, 2.0])).components, [[2], [4]])
+
+
+def test_wrong_out_is_refused():
+    f, a = ph.formula("2 a"), ph.vector(np.ones((4, 3)))
+    with pytest.raises(
+        ValueError, match=r"out must be float64 of shape \(4, 3\), got float64 of shape \(3, 3\)"
+    ):
+        f(a=a, out=np.empty((3, 3)))
+    with pytest.raises(TypeError, match="out must be a NumPy array, got list"):
+        f(a=a, out=[])
+    with pytest.raises(TypeError, match="an Agreement, not an array; omit out"):
+        ph.formula("a = a")(a=a, out=np.empty((4, 3)))
+    with pytest.raises(TypeError, match="out needs values of floats, got object"):
+        f(a=ph.vector([Fraction(1), 0, 0]), out=np.empty(3))
+    memory = np.ones((4, 3))
+    with pytest.raises(ValueError, match="out overlaps an operand"):
+        f(a=ph.vector(memory, copy=False), out=memory)

@@ -20,6 +20,7 @@ use polhode_ga::product::Grades;
 use polhode_ga::table::Signature;
 use program::{Place, Program, characters, error};
 use pyo3::exceptions::PyTypeError;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
 use std::collections::HashMap;
@@ -348,6 +349,10 @@ fn called_by_name<'py>(formula: &Bound<'py, Formula>, named: &Bound<'py, PyDict>
     let borrowed = || pairs.iter().map(|(name, value)| (name.as_borrowed(), value.as_borrowed()));
     if let Some(value) = own.calls.value(py, borrowed)? {
         return Ok(value);
+    }
+    // An array for the value, or a value of this name: not one of a batch.
+    if named.contains(intern!(py, "out"))? {
+        return general(formula, &PyTuple::empty(py), Some(named));
     }
     if own.calls.keep(own, named)?
         && let Some(value) = own.calls.value(py, borrowed)?

@@ -14,12 +14,19 @@ mod _native {
     use polhode_ga::formula::session;
 
     #[pymodule_export]
+    use crate::algebra::attitude::{
+        distance_between, rotor_between, rotor_canonical, rotor_from, rotor_from_euler, rotor_from_turn,
+        rotor_to, rotor_to_euler, rotor_to_power, slerp_between,
+    };
+    #[pymodule_export]
+    use crate::algebra::batch::{norm_squared, normalized};
+    #[pymodule_export]
     use crate::algebra::rows::{
         from_pauli, function, motor_function, motor_normalize, norm, product, rotor_apply, rotor_compose,
-        rotor_exp, rotor_from_components, rotor_from_matrix, rotor_from_plane_angle, rotor_from_quaternion,
-        rotor_from_rotation_vector, rotor_from_vectors, rotor_log, rotor_plane_angle, rotor_power,
-        rotor_to_matrix, rotor_to_quaternion, rotor_to_rotation_vector, subspaces, to_pauli, units_and_sizes,
-        versor_apply, with_signs,
+        rotor_distance, rotor_exp, rotor_from_components, rotor_from_matrix, rotor_from_plane_angle,
+        rotor_from_quaternion, rotor_from_rotation_vector, rotor_from_vectors, rotor_log, rotor_plane_angle,
+        rotor_power, rotor_to_matrix, rotor_to_quaternion, rotor_to_rotation_vector, subspaces, to_pauli,
+        units_and_sizes, versor_apply, with_signs,
     };
 
     #[pymodule_export]
@@ -58,7 +65,7 @@ mod _native {
     #[pymodule_export]
     use crate::algebra::signature::{Algebra, g3_object};
     #[pymodule_export]
-    use crate::algebra::single::{normalized_motor, unit_and_size, versor_action};
+    use crate::algebra::single::{are_close, normalized_motor, number_of, unit_and_size, versor_action};
     #[pymodule_export]
     use crate::support::face::register;
     #[pymodule_export]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _generic
+from polhode import _generic, _native
 from polhode._algebra.coefficients import common, namespace
 from polhode._algebra.grades import over_grades
 from polhode._algebra.products import coerced, common_algebra
@@ -40,6 +40,10 @@ def is_close(a: Multivector, other: Any, rtol: float = 1e-9, atol: float = 0.0) 
     >>> bool((0.1 * ph.e1 + 0.2 * ph.e1).is_close(0.3 * ph.e1))
     True
     """
+    if type(rtol) is float and type(atol) is float and rtol >= 0 <= atol:
+        near = _native.are_close(a, other, rtol, atol)
+        if near is not None:
+            return np.bool_(near)
     b = coerced(other, a)
     if b is None:
         raise TypeError(f"cannot compare a multivector with {type(other).__name__}")

@@ -102,6 +102,8 @@ def norm_squared(value: Multivector) -> Any:
     >>> print(ph.vector([3, 4, 0]).norm_squared())
     25.0
     """
+    if (found := _native.norm_squared(value)) is not None:
+        return np.float64(found) if isinstance(found, float) else found
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if is_float(data) or is_complex(data):
         with np.errstate(over="ignore"):
@@ -175,6 +177,8 @@ def normalized(value: Multivector, *, errors: Errors = "raise") -> Multivector:
     """
     if errors != "raise":
         return masked(errors, normalized, (value, 1))
+    if (found := _native.normalized(value)) is not None:
+        return found
     if value._mask & _EVEN != _EVEN or not _motors.is_motor(value):
         return _over_norm(value)
     unit = _motors.normalized(value)

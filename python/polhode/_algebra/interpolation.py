@@ -7,7 +7,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from polhode import _generic
+from polhode import _generic, _native
 from polhode._algebra.coefficients import foreign_kind, kind_of, number_like
 from polhode._algebra.constructors import bivector
 from polhode._algebra.grades import stack
@@ -48,6 +48,8 @@ def slerp(R: Any, S: Any, t: Any) -> Any:
     """
     if not (isinstance(R, Rotor) and isinstance(S, Rotor)):
         return _slerp_of_versors(R, S, t)
+    if (found := _native.slerp_between(R, S, t)) is not None:
+        return found
     data = R._data, S._data
     if not all(map(is_float, data)) and kind_of(*data).is_jax:
         fraction = number_like(t, "the fraction of the way", R._data)

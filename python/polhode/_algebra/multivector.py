@@ -235,6 +235,8 @@ class Multivector(_native.Multivector):
 
     def __float__(self) -> float:
         """Return a single scalar as a float; other grades must be absent or exactly 0."""
+        if (number := _native.number_of(self)) is not None:
+            return number
         if self.shape or not self._mask & 1 or self._held() & ~1:
             raise TypeError(
                 f"only a single scalar converts to float, got grades {self.grades} and shape {self.shape}; "

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _generic
+from polhode import _generic, _native
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.constructors import from_axial, one_grade, vector
 from polhode._algebra.grades import held, with_grades
@@ -52,6 +53,8 @@ def from_axis_angle(axis: Any, angle: Any, degrees: bool = False, *, errors: Err
     """
     if errors != "raise":
         return masked(errors, lambda n, theta: from_axis_angle(n, theta, degrees), (axis, 1), (angle, 0))
+    if (found := _native.rotor_from_turn(axis, 1, angle, math.pi / 180 if degrees else 1.0)) is not None:
+        return found
     given = (
         one_grade(axis, 1, "the axis") if isinstance(axis, Multivector) else vector(_triples(axis, "an axis"))
     )
@@ -77,6 +80,8 @@ def angle(R: Rotor) -> Any:
     >>> np.degrees(R.angle).round(6)
     array([30., 30.])
     """
+    if (found := _native.rotor_to("angle", R)) is not None:
+        return found[()]
     if not is_float(R._data):
         return _generic.rotors.angle(kind_of(R._data), R._data)
     return R.canonical().plane_angle()[1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -141,6 +142,8 @@ class Rotor(_native.Rotor, Multivector):
         """
         if errors != "raise":
             return masked(errors, Rotor.from_components, (c4, 1))
+        if (found := _native.rotor_from("components", c4)) is not None:
+            return found
         return Rotor._from_rows(_computed("from_components", _components(c4, 4, "rotor")))
 
     @staticmethod
@@ -160,6 +163,8 @@ class Rotor(_native.Rotor, Multivector):
         """
         if errors != "raise":
             return masked(errors, Rotor.from_plane_angle, (B, 1), (theta, 0))
+        if (found := _native.rotor_from_turn(B, 2, theta, 1.0)) is not None:
+            return found
         plane = _triples(B, 2, "the plane")
         angle = number_like(theta, "angle", plane)
         if is_float(plane) and is_float(angle):
@@ -182,6 +187,8 @@ class Rotor(_native.Rotor, Multivector):
         """
         if errors != "raise":
             return masked(errors, Rotor.from_vectors, (a, 1), (b, 1))
+        if (found := _native.rotor_between(a, b)) is not None:
+            return found
         first, second = _triples(a, 1, "the first direction"), _triples(b, 1, "the second direction")
         return Rotor._from_rows(_computed("from_vectors", first, second))
 
@@ -204,6 +211,8 @@ class Rotor(_native.Rotor, Multivector):
         """
         if errors != "raise":
             return masked(errors, lambda rows: Rotor.from_matrix(rows, nearest), (m, 2))
+        if not nearest and (found := _native.rotor_from("matrix", m)) is not None:
+            return found
         matrices = as_coefficients(m, "rotation matrix")
         if tuple(matrices.shape[-2:]) != (3, 3):
             raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}")
@@ -232,6 +241,8 @@ class Rotor(_native.Rotor, Multivector):
         """
         if errors != "raise":
             return masked(errors, lambda rows: Rotor.from_quaternion(rows, order=order), (q, 1))
+        if order in ("wxyz", "xyzw") and (found := _native.rotor_from(order, q)) is not None:
+            return found
         given = _components(q, 4, "quaternion")
         return Rotor._from_rows(_computed("from_quaternion", taken(given, _to_wxyz(order))))
 
@@ -247,6 +258,8 @@ class Rotor(_native.Rotor, Multivector):
         """
         if errors != "raise":
             return masked(errors, Rotor.from_rotation_vector, (v, 1))
+        if (found := _native.rotor_from("rotation vector", v)) is not None:
+            return found
         given = _triples(v, 1, "a rotation vector")
         return Rotor._from_rows(_computed("from_rotation_vector", given))
 
@@ -300,6 +313,10 @@ class Rotor(_native.Rotor, Multivector):
         >>> R.to_euler("ZYX", degrees=True).round(6)
         array([60., 20., 10.])
         """
+        if errors == "raise":
+            found = _native.rotor_from_euler(seq, angles, math.pi / 180 if degrees else 1.0)
+            if found is not None:
+                return found
         from polhode._algebra import euler
 
         if errors != "raise":
@@ -366,6 +383,8 @@ class Rotor(_native.Rotor, Multivector):
                [1., 0., 0.],
                [0., 1., 0.]])
         """
+        if (found := _native.rotor_to("matrix", self)) is not None:
+            return found
         return reshaped(_computed("to_matrix", self._data), (*self.shape, 3, 3))
 
     @explains_calls
@@ -380,6 +399,8 @@ class Rotor(_native.Rotor, Multivector):
         >>> R.to_quaternion(order="xyzw")
         array([0.        , 0.        , 0.70710678, 0.70710678])
         """
+        if order in ("wxyz", "xyzw") and (found := _native.rotor_to(order, self)) is not None:
+            return found
         wxyz_first = _to_wxyz(order)[0] == 0
         wxyz = _computed("to_quaternion", self._data)
         return wxyz if wxyz_first else taken(wxyz, [1, 2, 3, 0])
@@ -393,6 +414,8 @@ class Rotor(_native.Rotor, Multivector):
         >>> (R * R).to_rotation_vector()
         array([0.2, 0.4, 0.6])
         """
+        if (found := _native.rotor_to("rotation vector", self)) is not None:
+            return found
         return _computed("to_rotation_vector", self._data)
 
     def to_scipy(self) -> Rotation:
@@ -437,6 +460,8 @@ class Rotor(_native.Rotor, Multivector):
         >>> R.to_euler("xyz", degrees=True).round(6)
         array([10., 20., 60.])
         """
+        if (found := _native.rotor_to_euler(seq, self)) is not None:
+            return found * (180 / math.pi) if degrees else found
         from polhode._algebra import euler
 
         angles = euler.angles_of(self.to_quaternion(order="wxyz"), seq)
@@ -471,18 +496,19 @@ class Rotor(_native.Rotor, Multivector):
         >>> print(np.degrees(R.distance(S)).round(6))
         40.0
         """
-        # Half the angle has the cosine |⟨~R S⟩| and the sine |⟨~R S⟩₂| = |⟨~R (S ∓ R)⟩₂|, since ~R R is a
-        # scalar; between close attitudes that difference has no rounding.
         if not isinstance(other, Rotor):
             raise TypeError(f"distance needs another rotor, got {type(other).__name__}")
+        if (found := _native.distance_between(self, other)) is not None:
+            return found[()]
+        # Half the angle has the cosine |⟨~R S⟩| and the sine |⟨~R S⟩₂| = |⟨~R (S ∓ R)⟩₂|, since ~R R is a
+        # scalar; between close attitudes that difference has no rounding.
         R, S, kind = self, other, kind_of(self._data, other._data)
         if kind.native or kind.exact:  # arrays of another library stay theirs, with their derivatives
-            R, S, kind = R.astype(float), S.astype(float), kind_of()
+            return _computed("distance", R.astype(float)._data, S.astype(float)._data)[..., 0][()]
         cosine = (~R).scalar_product(S).components[..., 0]
         nearer = S * kind.where(cosine < 0, kind.zeros_like(cosine) - 1.0, 1.0)
         sine = (~R * (nearer - R)).grade(2).norm()
-        angle = 2 * kind.atan2(sine, kind.abs(cosine))
-        return angle[()] if kind.native else angle
+        return 2 * kind.atan2(sine, kind.abs(cosine))
 
     def astype(self, dtype: Any) -> Rotor:
         """Return the rotor with components of another type, of norm 1 in its precision.
@@ -577,10 +603,12 @@ class Rotor(_native.Rotor, Multivector):
 
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
+        if (found := _native.rotor_to_power(self, n)) is not None:
+            return found
         if isinstance(n, int) and not is_float(self._data):
             return Rotor._from_rows(_generic.rotors.power(kind_of(self._data), self._data, n))
         powers = number_like(n, "the power of a rotor", self._data)
-        if is_float(self._data) and is_float(powers) and not self._is_one:
+        if is_float(self._data) and is_float(powers):
             return _powers(self, powers)
         turn = self.log() * powers
         power: Rotor = turn.exp()

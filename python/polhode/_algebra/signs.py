@@ -33,6 +33,8 @@ def canonical(R: Rotor) -> Rotor:
     >>> R.canonical()
     0.5 + 0.8660254 e1∧e2
     """
+    if (found := _native.rotor_canonical(R)) is not None:
+        return found
     data, kind = R._data, kind_of(R._data)
     if kind.exact:
         rows = data.reshape(-1, 4)

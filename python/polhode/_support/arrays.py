@@ -139,6 +139,8 @@ def is_complex(data: Any) -> bool:
 def mapped(f: Callable[[Array], Array], data: Any) -> Any:
     """Return f of the rows, computed in float64 and rounded to their type."""
     result = f(np.ascontiguousarray(data, dtype=np.float64))
+    if data.dtype == result.dtype:
+        return result
     with np.errstate(over="ignore"):
         return result.astype(data.dtype, copy=False)
 

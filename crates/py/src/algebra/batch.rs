@@ -4,17 +4,20 @@
 
 use super::rows::fill_numbers;
 use super::signature::{Algebra, g3};
-use super::value::{Any, Multivector, Object, Storage, This, number, wrap};
+use super::value::{Any, Multivector, Object, Storage, This, number, one, wrap};
 use crate::support::pool;
 use numpy::npyffi::NPY_ARRAY_WRITEABLE;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use polhode_ga::Graded;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
 use polhode_ga::rows::compose::compose;
 use polhode_ga::rows::product::turn;
 use polhode_ga::rows::rotor_functions;
 use polhode_ga::simd::threads::Threads;
+use polhode_ga::table::G3;
 use pyo3::prelude::*;
+use pyo3::types::PyFloat;
 use std::borrow::Cow;
 use std::iter::zip;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -64,6 +67,18 @@ impl<'a> Rows<'a> {
                 Some(Rows { numbers, shape, grades: Grades::SCALAR, unit: false, algebra: None })
             }
         }
+    }
+
+    /// A single value of 3-d space, or a small batch of them.
+    fn of_space<'py: 'a>(value: This<'a, 'py>) -> Option<Rows<'a>> {
+        let rows = Rows::of(value.as_borrowed())?;
+        let is_g3 = rows.algebra.is_some_and(|algebra| algebra.get().is_g3());
+        (is_g3 && rows.numbers.len() <= FEW).then_some(rows)
+    }
+
+    /// The numbers row by row.
+    fn by_row(&self) -> impl Iterator<Item = &[f64]> {
+        self.numbers.chunks_exact(self.grades.indices(&G3).len().max(1))
     }
 
     /// Whether it is a value of this algebra, or a number.
@@ -218,4 +233,52 @@ pub(super) fn signed<'py>(value: This<'_, 'py>, negative: impl Fn(usize) -> bool
         }
         Ok(())
     }))
+}
+
+/// `⟨A ~A⟩`, the sum of squares in NumPy's order, of a value of 3-d space: a number, or an array for a small batch; `None` for
+/// other values.
+#[pyfunction]
+pub(crate) fn norm_squared<'py>(value: This<'_, 'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let (py, Some(rows)) = (value.py(), Rows::of_space(value)) else { return Ok(None) };
+    let square = |row: &[f64]| match row {
+        &[a, b, c, d, e, f, g, h] => {
+            ((a * a + b * b) + (c * c + d * d)) + ((e * e + f * f) + (g * g + h * h))
+        }
+        few => few.iter().fold(0.0, |sum, x| sum + x * x),
+    };
+    if rows.shape.is_empty() {
+        return Ok(Some(PyFloat::new(py, square(&rows.numbers)).into_any()));
+    }
+    let array = pool::array(py, &rows.shape)?;
+    let mut target = array.readwrite();
+    for (out, row) in zip(target.as_slice_mut()?, rows.by_row()) {
+        *out = square(row);
+    }
+    drop(target);
+    Ok(Some(array.into_any()))
+}
+
+/// `A/|A|` of a value of 3-d space; `None` for large batches and other values, and if some row has no direction.
+#[pyfunction]
+pub(crate) fn normalized<'py>(value: This<'_, 'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let (py, Some(rows)) = (value.py(), Rows::of_space(value)) else { return Ok(None) };
+    let signs = [1.0; 8];
+    let direction = |row: &[f64], out: &mut [f64]| {
+        let (unit, size) = Algebra::unit_and_size(row, &signs);
+        zip(out, row).for_each(|(out, x)| *out = x / unit / size);
+        size > 0.0 && row.iter().all(|x| x.is_finite())
+    };
+    if rows.shape.is_empty() {
+        let mut numbers = [0.0; 8];
+        let numbers = &mut numbers[..rows.numbers.len()];
+        let found = direction(&rows.numbers, numbers).then(|| Graded::new(numbers, rows.grades));
+        return found.flatten().map(|unit| one(py, unit)).transpose();
+    }
+    let (size, mut all) = (rows.grades.indices(&G3).len(), true);
+    let kind = Kind { shape: &rows.shape, size, grades: rows.grades, unit: false, algebra: g3(py)? };
+    let unit = filled(py, kind, |out| {
+        all = zip(out.chunks_exact_mut(size), rows.by_row()).all(|(out, row)| direction(row, out));
+        Ok(())
+    })?;
+    Ok(all.then_some(unit))
 }

@@ -1,5 +1,6 @@
 //! Multivectors, rotors and their arrays.
 
+pub(crate) mod attitude;
 pub(crate) mod batch;
 pub(crate) mod multivector;
 pub(crate) mod operators;

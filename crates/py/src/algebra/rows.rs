@@ -255,6 +255,12 @@ row_functions! {
     /// Rotation vectors of rotors.
     rotor_to_rotation_vector(r: 4) Ok(Rotor::from_unit_components(r).to_rotation_vector().0);
 
+    /// Angles between the attitudes of two rotors; the last axis has length 1.
+    rotor_distance(rs: 8) {
+        let [from, to] = [0, 4].map(|first| Rotor::from_unit_components(from_fn(|k| rs[first + k])));
+        Ok([from.distance(to)])
+    };
+
     /// Unit planes (3) and angles of rotors.
     rotor_plane_angle(r: 4) {
         let (Bivector([x, y, z]), angle) = Rotor::from_unit_components(r).plane_angle();

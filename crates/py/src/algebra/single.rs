@@ -5,7 +5,7 @@
 #![allow(unsafe_code)]
 
 use super::signature::Algebra;
-use super::value::{Any, Multivector, Object, Storage, This, number, wrap};
+use super::value::{Any, Multivector, Object, Operand, Storage, This, number, operand, wrap};
 use numpy::npyffi::NPY_ARRAY_WRITEABLE;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use polhode_ga::g3::functions::Function;
@@ -200,6 +200,30 @@ pub(crate) fn unit_and_size(value: This<'_, '_>) -> Option<(f64, f64)> {
     let row = Row::of(value)?;
     let is_finite = row.numbers.iter().all(|x| x.is_finite());
     is_finite.then(|| Algebra::unit_and_size(&row.numbers, &row.algebra.get().reverse_squares(row.grades)))
+}
+
+/// The number that a single scalar is, if all other components are 0.
+#[pyfunction]
+pub(crate) fn number_of(value: This<'_, '_>) -> Option<f64> {
+    let one = value.get().single()?;
+    let (&number, rest) = one.components().split_first()?;
+    (one.grades().contains(0) && rest.iter().all(|x| *x == 0.0)).then_some(number)
+}
+
+/// Whether `|A − B| <= max(rtol · max(|A|, |B|), atol)` for single values of 3-d space, measured in units of the largest
+/// component, so that nothing overflows; `None` for other values.
+#[pyfunction]
+pub(crate) fn are_close(a: This<'_, '_>, b: Any<'_, '_>, rtol: f64, atol: f64) -> Option<bool> {
+    let (Operand::Value(a, _), Operand::Value(b, _)) = (operand(a), operand(b)) else { return None };
+    let (a, b) = (a.full(), b.full());
+    let unit = a.iter().chain(&b).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let unit = if unit > 0.0 && unit.is_finite() { unit } else { 1.0 };
+    let length = |c: [f64; 8]| c.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let (left, right) = (a.map(|x| x / unit), b.map(|x| x / unit));
+    let (size, apart) =
+        (length(left).max(length(right)), length(std::array::from_fn(|k| left[k] - right[k])));
+    let is_finite = length(left).is_finite() && length(right).is_finite();
+    Some(is_finite && apart <= (rtol * size).max(atol / unit) || a == b)
 }
 
 /// `M/√(M ~M)` of a single even element of an algebra with motors; `None` where it has no finite value.

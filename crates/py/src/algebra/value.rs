@@ -6,7 +6,7 @@ use super::signature::{Algebra, g3};
 use super::types;
 pub(crate) use super::types::{Multivector, Operand, Rotor, Storage};
 use crate::support::arrays::bad;
-use numpy::{PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
 use polhode_ga::{Graded, Rotor as UnitRotor};
 use pyo3::intern;
@@ -57,7 +57,15 @@ pub(crate) fn operand<'a>(x: &'a Bound<'_, PyAny>) -> Operand<'a> {
     number(x).map_or(Operand::Other, Operand::Number)
 }
 
-/// The numbers of a short list or tuple, and their count.
+/// An array of float64 in C order and aligned memory; of no derived type, such as a masked array.
+pub(crate) fn plain_array<'a, 'py>(x: &'a Bound<'py, PyAny>) -> Option<&'a Bound<'py, PyArrayDyn<f64>>> {
+    if !x.get_type().is(x.py().get_type::<PyUntypedArray>()) {
+        return None;
+    }
+    x.cast::<PyArrayDyn<f64>>().ok().filter(|array| array.is_c_contiguous() && array.data().is_aligned())
+}
+
+/// The numbers of a short list, tuple or array of float64, and their count.
 pub(crate) fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
     let mut row = [0.0; 8];
     let mut count = 0;
@@ -70,6 +78,14 @@ pub(crate) fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
         count += 1;
         Some(())
     };
+    if let Some(array) = plain_array(numbers) {
+        if array.ndim() != 1 || array.len() > row.len() {
+            return None;
+        }
+        let given = array.try_readonly().ok()?;
+        row[..array.len()].copy_from_slice(given.as_slice().ok()?);
+        return Some((row, array.len()));
+    }
     match numbers.cast_exact::<PyList>() {
         Ok(list) => list.iter().try_for_each(&mut take)?,
         Err(_) => numbers.cast_exact::<PyTuple>().ok()?.iter().try_for_each(&mut take)?,

@@ -1,4 +1,4 @@
-"""Rotors and their parameters: a single value, a small batch and a large one have the same bits and errors."""
+"""Single values, small batches and large ones have the same bits and errors."""
 
 import numpy as np
 import pytest
@@ -36,6 +36,7 @@ READERS = {
     "axes of the body": (lambda R: R.to_euler("ZXZ", degrees=True), ROTORS),
     "distance": (ph.Rotor.distance, ROTORS, NEXT),
     "squared norm": (ph.Multivector.norm_squared, ph.multivector(RNG.normal(size=(COUNT, 8)))),
+    "norm": (ph.Multivector.norm, ph.vector(TRIPLES)),
     "squared norm of vectors": (ph.Multivector.norm_squared, ph.vector(TRIPLES)),
 }
 STEPS = {
@@ -43,6 +44,12 @@ STEPS = {
     "power": (lambda R, n: R**n, ROTORS, ANGLES),
     "slerp": (ph.slerp, ROTORS, NEXT, np.linspace(0, 1, COUNT)),
     "normalized": (ph.Multivector.normalized, ph.vector(TRIPLES)),
+    "inverse": (ph.Multivector.inverse, ph.vector(OTHERS)),
+    "inverse of any": (ph.Multivector.inverse, ph.multivector(RNG.normal(size=(COUNT, 8)))),
+    "exp": (ph.Multivector.exp, ph.multivector(RNG.normal(size=(COUNT, 8)))),
+    "exp of bivectors": (ph.Multivector.exp, ph.bivector(TRIPLES)),
+    "log": (ph.Multivector.log, ROTORS * 2.0),
+    "sqrt": (ph.Multivector.sqrt, ROTORS * 2.0),
 }
 
 
@@ -71,7 +78,7 @@ def test_rows_without_a_rotor_are_named(kind):
     bad[0][2] = np.nan
     with pytest.raises(ValueError, match=r"\(2,\)"):
         f(*bad)
-    with pytest.raises(ValueError, match="finite|NaN"):
+    with pytest.raises(ValueError, match=r"finite|NaN"):
         f(*(x[2] for x in bad))
 
 

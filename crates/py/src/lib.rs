@@ -19,7 +19,7 @@ mod _native {
         rotor_to, rotor_to_euler, rotor_to_power, slerp_between,
     };
     #[pymodule_export]
-    use crate::algebra::batch::{norm_squared, normalized};
+    use crate::algebra::batch::{norm_of, norm_squared, normalized};
     #[pymodule_export]
     use crate::algebra::rows::{
         from_pauli, function, motor_function, motor_normalize, norm, product, rotor_apply, rotor_compose,

@@ -129,8 +129,8 @@ def norm(value: Multivector) -> Any:
     >>> print((2 * ph.e1 ^ 3 * ph.e2).norm())
     6.0
     """
-    if value._is_one:
-        return np.float64(value._norm_of_one())
+    if (found := _native.norm_of(value)) is not None:
+        return np.float64(found) if isinstance(found, float) else found
     single = _native.unit_and_size(value)
     if single is not None:
         return np.float64(single[0] * single[1])

@@ -8,7 +8,6 @@ use super::value::{Any, Multivector, Object, Storage, This, number, one, wrap};
 use crate::support::pool;
 use numpy::npyffi::NPY_ARRAY_WRITEABLE;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
-use polhode_ga::Graded;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
 use polhode_ga::rows::compose::compose;
@@ -16,6 +15,7 @@ use polhode_ga::rows::product::turn;
 use polhode_ga::rows::rotor_functions;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::G3;
+use polhode_ga::{Graded, Multivector as FullMultivector};
 use pyo3::prelude::*;
 use pyo3::types::PyFloat;
 use std::borrow::Cow;
@@ -161,14 +161,14 @@ pub(super) fn turned<'py>(rotor: Any<'_, 'py>, x: Any<'_, 'py>) -> Option<Object
     Some(filled(py, kind, |out| fill_numbers(py, (4, size, size), &r.numbers, &x.numbers, out, work)))
 }
 
-/// `exp` of bivectors, or `log` of rotors, of 3-d space; `None` if some row has none.
+/// A function in 3-d space; `None` for large batches but `exp` of bivectors and `log` of rotors, and if some row has none.
 pub(super) fn function<'py>(value: This<'_, 'py>, f: Function) -> Option<Object<'py>> {
     let a = Rows::of(value.as_borrowed())?;
     let algebra = a.algebra.filter(|algebra| !a.shape.is_empty() && algebra.get().is_g3())?;
     let (work, na, size, grades): (Work, _, _, _) = match f {
         Function::Exp if a.grades == Grades::BIVECTOR => (rotor_functions::exp, 3, 4, Grades::EVEN),
         Function::Log if a.unit => (rotor_functions::log, 4, 3, Grades::BIVECTOR),
-        _ => return None,
+        _ => return by_row(value.py(), f, &a, algebra),
     };
     let py = value.py();
     let kind = Kind { shape: &a.shape, size, grades, unit: f == Function::Exp, algebra };
@@ -179,6 +179,32 @@ pub(super) fn function<'py>(value: This<'_, 'py>, f: Function) -> Option<Object<
         })
     });
     all.into_inner().then_some(value)
+}
+
+/// A function of the rows of a small batch one by one; `None` if some row has none, and if all results may be rotors.
+fn by_row<'py>(py: Python<'py>, f: Function, a: &Rows<'_>, algebra: &Py<Algebra>) -> Option<Object<'py>> {
+    let grades = f.grades(a.grades);
+    if a.numbers.len() > FEW || f == Function::Exp && grades == Grades::EVEN {
+        return None;
+    }
+    let value = |row: &[f64]| {
+        let FullMultivector(full) = f.apply(FullMultivector(Graded::new(row, a.grades)?.full())).ok()?;
+        full.iter().all(|x| x.is_finite()).then_some(full)
+    };
+    let places = grades.indices(&G3);
+    let mut all = true;
+    let kind = Kind { shape: &a.shape, size: places.len(), grades, unit: false, algebra };
+    let result = filled(py, kind, |out| {
+        for (out, row) in zip(out.chunks_exact_mut(places.len()), a.by_row()) {
+            let Some(full) = value(row) else {
+                all = false;
+                break;
+            };
+            zip(out, &places).for_each(|(out, &place)| *out = full[place]);
+        }
+        Ok(())
+    });
+    all.then_some(result)
 }
 
 /// A function of rows, which fails with the first row without a value.
@@ -239,20 +265,35 @@ pub(super) fn signed<'py>(value: This<'_, 'py>, negative: impl Fn(usize) -> bool
 /// other values.
 #[pyfunction]
 pub(crate) fn norm_squared<'py>(value: This<'_, 'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let (py, Some(rows)) = (value.py(), Rows::of_space(value)) else { return Ok(None) };
-    let square = |row: &[f64]| match row {
+    numbers_by_row(value, |_, row| match row {
         &[a, b, c, d, e, f, g, h] => {
             ((a * a + b * b) + (c * c + d * d)) + ((e * e + f * f) + (g * g + h * h))
         }
         few => few.iter().fold(0.0, |sum, x| sum + x * x),
-    };
+    })
+}
+
+/// `√⟨A ~A⟩` of the same values, without overflow on the way.
+#[pyfunction]
+pub(crate) fn norm_of<'py>(value: This<'_, 'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    numbers_by_row(value, |grades, row| {
+        Graded::new(row, grades).map_or(f64::NAN, |value| FullMultivector(value.full()).norm())
+    })
+}
+
+/// A number for a value of 3-d space, or for each row of a small batch.
+fn numbers_by_row<'py>(
+    value: This<'_, 'py>,
+    number: impl Fn(Grades, &[f64]) -> f64,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let (py, Some(rows)) = (value.py(), Rows::of_space(value)) else { return Ok(None) };
     if rows.shape.is_empty() {
-        return Ok(Some(PyFloat::new(py, square(&rows.numbers)).into_any()));
+        return Ok(Some(PyFloat::new(py, number(rows.grades, &rows.numbers)).into_any()));
     }
     let array = pool::array(py, &rows.shape)?;
     let mut target = array.readwrite();
     for (out, row) in zip(target.as_slice_mut()?, rows.by_row()) {
-        *out = square(row);
+        *out = number(rows.grades, row);
     }
     drop(target);
     Ok(Some(array.into_any()))

@@ -10,9 +10,9 @@ use super::value::{
 };
 use super::{batch, single};
 use numpy::PyArray1;
+use polhode_ga::Graded;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
-use polhode_ga::{Graded, Multivector as FullMultivector};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -69,11 +69,6 @@ impl Multivector {
             Some(value) => one(py, value),
             None => Ok(py.None().into_bound(py)),
         }
-    }
-
-    /// The norm of a single value.
-    fn _norm_of_one(&self) -> f64 {
-        self.single().map_or(f64::NAN, |value| FullMultivector(value.full()).norm())
     }
 
     /// Whether it is a single value of 3-d space over float64, stored inline.

@@ -16,6 +16,7 @@ from contextlib import nullcontext
 import numpy as np
 
 import algebras
+import attitudes
 import batches
 import compiled
 import ensemble_files
@@ -34,6 +35,7 @@ SECTIONS = {
     "One value": single.rows,
     "Batches": batches.rows,
     "Batches of 16 values": batches.few_rows,
+    "Attitudes": attitudes.rows,
     "Formulas": compiled.rows,
     "Any signature": algebras.rows,
     "Motion": motion.rows,

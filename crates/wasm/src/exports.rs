@@ -16,6 +16,7 @@ use crate::opened::crowd::Slice;
 use crate::opened::{self, Files, Opened};
 use crate::recorded::Recorded;
 use crate::rows::ROW;
+use polhode_ga::g3::attitude::EulerSequence;
 use polhode_ga::{Rotor, Vector};
 use polhode_rigid::{Inertia, Solid, Surface};
 use std::cell::RefCell;
@@ -287,10 +288,13 @@ pub extern "C" fn inertia() -> i32 {
     })
 }
 
-/// Takes a rotor; replies with its [`Rotor::zxz_angles`].
+/// Takes a rotor; replies with its angles for [`EulerSequence::ZXZ`].
 #[unsafe(no_mangle)]
 pub extern "C" fn attitude() -> i32 {
-    reply_with(|_, rooms| Ok((0, bytes(Rotor::from_unit_components(numbers(&rooms)?).zxz_angles()))))
+    reply_with(|_, rooms| {
+        let rotor = Rotor::from_unit_components(numbers(&rooms)?);
+        Ok((0, bytes(EulerSequence::ZXZ.angles(rotor).into_iter().flatten())))
+    })
 }
 
 /// Takes a rotor; replies with the unit plane and the angle of [`Rotor::plane_angle`].

@@ -9,7 +9,6 @@
 use super::values::{Bivector, Multivector, Vector, norm, operator, scale_of};
 use crate::error::{MATRIX_TOLERANCE, MathError};
 use crate::rows::rotor_functions;
-use std::f64::consts::PI;
 use std::ops::{Mul, Neg};
 
 /// A squared norm within this of 1 is not rescaled: the rounding of a product of rotors and of the squares.
@@ -193,19 +192,6 @@ impl Rotor {
             return (Bivector([0.0, 0.0, 1.0]), angle);
         }
         (-self.bivector / size, angle)
-    }
-
-    /// The angles `(α, β, γ)` with `R = ±exp(−½α e1e2) exp(−½β e2e3) exp(−½γ e1e2)`, α and γ in [−π, π] and β in [0, π].
-    /// For β = 0, where only α + γ is determined, γ = 0.
-    ///
-    /// The product has the components `cos(β/2) (cos σ, −sin σ e1e2)` and `−sin(β/2) (cos δ e2e3 + sin δ e3e1)` with
-    /// σ = (α + γ)/2 and δ = (α − γ)/2.
-    pub fn zxz_angles(self) -> [f64; 3] {
-        let [s, x, y, z] = self.components();
-        let sum = (-z).atan2(s);
-        let difference = if x == 0.0 && y == 0.0 { sum } else { (-y).atan2(-x) };
-        let wrapped = |angle: f64| angle - 2.0 * PI * (angle / (2.0 * PI)).round();
-        [wrapped(sum + difference), 2.0 * x.hypot(y).atan2(s.hypot(z)), wrapped(sum - difference)]
     }
 
     /// `~R`, the inverse turn.

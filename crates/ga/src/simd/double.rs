@@ -111,8 +111,8 @@ impl Size {
     pub fn of<const FMA: bool>(c: [f64; 3]) -> Size {
         let [(a, ea), (b, eb), (c, ec)] = c.map(|x| two_product::<FMA>(x, x));
         let (sum, e1) = two_sum(a, b);
-        let (sum, e2) = two_sum(sum, c);
-        let square = sum + Size::LEAST * Size::LEAST;
+        // Beside the last square, of which it changes no digit unless all are tiny, it does not lengthen the chain.
+        let (square, e2) = two_sum(sum, c + Size::LEAST * Size::LEAST);
         let hi = square.sqrt();
         let rest = remainder::<FMA>(square, hi, hi) + ((ea + eb) + (ec + e1) + e2);
         Size { hi, rest, square }
@@ -174,8 +174,9 @@ pub fn sin_cos<const FMA: bool>(k: u64, r: f64, rest: f64) -> ((f64, f64), f64) 
     ];
     let z = r * r;
     let zz = z * z;
-    let s = (S[0] + z * S[1]) + zz * ((S[2] + z * S[3]) + zz * (S[4] + z * S[5]));
-    let c = (C[0] + z * C[1]) + zz * ((C[2] + z * C[3]) + zz * (C[4] + z * C[5]));
+    let z4 = zz * zz;
+    let s = ((S[0] + z * S[1]) + zz * (S[2] + z * S[3])) + z4 * (S[4] + z * S[5]);
+    let c = ((C[0] + z * C[1]) + zz * (C[2] + z * C[3])) + z4 * (C[4] + z * C[5]);
     // 1 − z/2 and its rounding error. It is the cosine, as far as the rest is concerned.
     let one = exact_product_plus::<FMA>(z, -0.5, 1.0);
     let e = exact_product_plus::<FMA>(z, -0.5, 1.0 - one);

@@ -3,70 +3,36 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any
 
 import numpy as np
 
 from polhode import _generic, _native
 from polhode._algebra import groups as _groups
+from polhode._algebra import matrices as _matrices
 from polhode._algebra import parameters as _parameters
+from polhode._algebra import quaternions as _quaternions
 from polhode._algebra import signs as _signs
-from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, reshaped, taken
-from polhode._algebra.constructors import one_grade
+from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, taken
 from polhode._algebra.foreign_names import add_to
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
 from polhode._algebra.products import aligned, common_algebra, result_array
+from polhode._algebra.quaternions import QuaternionOrder
+from polhode._algebra.rotor_rows import components, computed, triples
 from polhode._support.arrays import (
     Array,
     Shape,
-    at_index,
     batch_shape,
-    first_index,
-    is_complex,
     is_float,
-    joined,
-    mapped,
     new,
     normal_numbers,
 )
 from polhode._support.calls import explains_calls, explains_calls_of
-from polhode._support.extras import optional
 from polhode._support.memory import require_array
 
-if TYPE_CHECKING:
-    from scipy.spatial.transform import Rotation
-
-QuaternionOrder = Literal["wxyz", "xyzw"]
-
 _BIVECTOR, _EVEN = 0b0100, 0b0101
-
-
-def _components(values: Any, size: int, what: str) -> Any:
-    data = as_coefficients(values, what)
-    if not data.shape or data.shape[-1] != size:
-        raise ValueError(f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}")
-    return data
-
-
-def _triples(value: Any, grade: int, what: str) -> Any:
-    """Return the components (..., 3) of a value of this grade, or of an array or list of them."""
-    return (
-        one_grade(value, grade, what)._data if isinstance(value, Multivector) else _components(value, 3, what)
-    )
-
-
-def _computed(name: str, *operands: Any) -> Any:
-    """Apply a function of rotors; batches broadcast. In the compiled core for floats, else generic."""
-    if all(map(is_float, operands)):
-        return mapped(getattr(_native, f"rotor_{name}"), joined(*operands))
-    if any(map(is_complex, operands)):
-        raise TypeError(
-            "rotors have real coefficients, got complex ones; take .real, or exp of a multivector"
-        )
-    kind = kind_of(*operands)
-    return getattr(_generic.rotors, name)(kind, *map(kind.asarray, operands))
 
 
 @joins(_native.Rotor)
@@ -144,7 +110,7 @@ class Rotor(_native.Rotor, Multivector):
             return masked(errors, Rotor.from_components, (c4, 1))
         if (found := _native.rotor_from("components", c4)) is not None:
             return found
-        return Rotor._from_rows(_computed("from_components", _components(c4, 4, "rotor")))
+        return Rotor._from_rows(computed("from_components", components(c4, 4, "rotor")))
 
     @staticmethod
     def from_plane_angle(B: Any, theta: Any, *, errors: Errors = "raise") -> Rotor:
@@ -165,11 +131,11 @@ class Rotor(_native.Rotor, Multivector):
             return masked(errors, Rotor.from_plane_angle, (B, 1), (theta, 0))
         if (found := _native.rotor_from_turn(B, 2, theta, 1.0)) is not None:
             return found
-        plane = _triples(B, 2, "the plane")
+        plane = triples(B, 2, "the plane")
         angle = number_like(theta, "angle", plane)
         if is_float(plane) and is_float(angle):
             angle = angle[..., np.newaxis]  # a column, beside the plane
-        return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
+        return Rotor._from_rows(computed("from_plane_angle", plane, angle))
 
     @staticmethod
     def from_vectors(a: Any, b: Any, *, errors: Errors = "raise") -> Rotor:
@@ -189,62 +155,8 @@ class Rotor(_native.Rotor, Multivector):
             return masked(errors, Rotor.from_vectors, (a, 1), (b, 1))
         if (found := _native.rotor_between(a, b)) is not None:
             return found
-        first, second = _triples(a, 1, "the first direction"), _triples(b, 1, "the second direction")
-        return Rotor._from_rows(_computed("from_vectors", first, second))
-
-    @staticmethod
-    def from_matrix(m: Any, nearest: bool = False, *, errors: Errors = "raise") -> Rotor:
-        """From rotation matrices (..., 3, 3) acting on columns; the nearest rotation, within 1e-4 of one.
-
-        A ValueError for a reflection or anything farther off. The rotor's scalar part is >= 0.
-
-        With ``nearest=True``, from any matrices M of NumPy floats: the rotation Q of the smallest
-        ``Σ (M − Q)²``, for a singular value decomposition ``M = U S Vᵀ`` the matrix
-        ``U diag(1, 1, det U Vᵀ) Vᵀ`` (Kabsch, Acta Cryst. A 34 (1978)). A ValueError, with the batch index,
-        where it is not unique: where the two smallest singular values are 0, or equal in a reflection.
-
-        Examples
-        --------
-        >>> R = ph.Rotor.from_matrix([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]])
-        >>> R(ph.e1)
-        0.6 e1 + 0.8 e2
-        """
-        if errors != "raise":
-            return masked(errors, lambda rows: Rotor.from_matrix(rows, nearest), (m, 2))
-        if not nearest and (found := _native.rotor_from("matrix", m)) is not None:
-            return found
-        matrices = as_coefficients(m, "rotation matrix")
-        if tuple(matrices.shape[-2:]) != (3, 3):
-            raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}")
-        if nearest:
-            matrices = _nearest_rotation(matrices)
-        if is_float(matrices):
-            matrices = matrices.reshape((*matrices.shape[:-2], 9))
-        return Rotor._from_rows(_computed("from_matrix", matrices))
-
-    @staticmethod
-    def from_quaternion(q: Any, *, order: QuaternionOrder, errors: Errors = "raise") -> Rotor:
-        """From quaternions (..., 4), Hamilton's and active, divided by their norm.
-
-        `order` is required, because libraries differ: "wxyz" (MuJoCo, SPICE) or "xyzw" (SciPy, ROS). A
-        ValueError, with the batch index, for 0 and for values that are not finite.
-
-        Examples
-        --------
-        A quarter turn about e3, ``cos 45° + k sin 45°``; its components need not have norm 1:
-
-        >>> R = ph.Rotor.from_quaternion([1, 0, 0, 1], order="wxyz")
-        >>> R
-        0.70710678 - 0.70710678 e1∧e2
-        >>> R == ph.Rotor.from_quaternion([0, 0, 1, 1], order="xyzw")
-        True
-        """
-        if errors != "raise":
-            return masked(errors, lambda rows: Rotor.from_quaternion(rows, order=order), (q, 1))
-        if order in ("wxyz", "xyzw") and (found := _native.rotor_from(order, q)) is not None:
-            return found
-        given = _components(q, 4, "quaternion")
-        return Rotor._from_rows(_computed("from_quaternion", taken(given, _to_wxyz(order))))
+        first, second = triples(a, 1, "the first direction"), triples(b, 1, "the second direction")
+        return Rotor._from_rows(computed("from_vectors", first, second))
 
     @staticmethod
     def from_rotation_vector(v: Any, *, errors: Errors = "raise") -> Rotor:
@@ -260,38 +172,8 @@ class Rotor(_native.Rotor, Multivector):
             return masked(errors, Rotor.from_rotation_vector, (v, 1))
         if (found := _native.rotor_from("rotation vector", v)) is not None:
             return found
-        given = _triples(v, 1, "a rotation vector")
-        return Rotor._from_rows(_computed("from_rotation_vector", given))
-
-    @staticmethod
-    def from_scipy(rot: Rotation) -> Rotor:
-        """From a ``scipy.spatial.transform.Rotation``.
-
-        Examples
-        --------
-        >>> from scipy.spatial.transform import Rotation
-        >>> ph.Rotor.from_scipy(Rotation.from_euler("z", 60, degrees=True))
-        0.8660254 - 0.5 e1∧e2
-        """
-        if not hasattr(rot, "as_quat"):
-            raise TypeError(f"from_scipy needs a scipy.spatial.transform.Rotation, got {type(rot).__name__}")
-        return Rotor.from_quaternion(rot.as_quat(), order="xyzw")
-
-    @staticmethod
-    def from_numpy_quaternion(q: Any) -> Rotor:
-        """From quaternions of the package numpy-quaternion, one or an array (...), divided by their norm.
-
-        Examples
-        --------
-        >>> import quaternion
-        >>> ph.Rotor.from_numpy_quaternion(quaternion.x)  # ij = k, but e2e3 e3e1 = −e1e2
-        -e2∧e3
-        """
-        quaternion = optional("quaternion", "quaternion", "from_numpy_quaternion")
-        array = np.asarray(q)
-        if array.dtype != np.dtype(quaternion.quaternion):
-            raise TypeError(f"from_numpy_quaternion needs an array of dtype quaternion, got {array.dtype}")
-        return Rotor.from_quaternion(quaternion.as_float_array(array), order="wxyz")
+        given = triples(v, 1, "a rotation vector")
+        return Rotor._from_rows(computed("from_rotation_vector", given))
 
     @staticmethod
     def from_euler(seq: str, angles: Any, degrees: bool = False, *, errors: Errors = "raise") -> Rotor:
@@ -357,6 +239,10 @@ class Rotor(_native.Rotor, Multivector):
         """
         return Rotor.from_components(normal_numbers((*batch_shape(shape), 4), rng, "rotors"))
 
+    from_matrix = staticmethod(_matrices.from_matrix)
+    from_quaternion = staticmethod(_quaternions.from_quaternion)
+    from_scipy = staticmethod(_quaternions.from_scipy)
+    from_numpy_quaternion = staticmethod(_quaternions.from_numpy_quaternion)
     from_axis_angle = staticmethod(_parameters.from_axis_angle)
     from_mrp = staticmethod(_parameters.from_mrp)
     from_davenport = staticmethod(_parameters.from_davenport)
@@ -367,25 +253,11 @@ class Rotor(_native.Rotor, Multivector):
 
     angle = property(_parameters.angle)
     magnitude = _parameters.magnitude
+    to_matrix = _matrices.to_matrix
+    to_scipy = _quaternions.to_scipy
+    to_numpy_quaternion = _quaternions.to_numpy_quaternion
     to_mrp = _parameters.to_mrp
     to_davenport = _parameters.to_davenport
-
-    def to_matrix(self) -> Any:
-        """Return rotation matrices (..., 3, 3) acting on columns.
-
-        Examples
-        --------
-        The turn by 120° about e1 + e2 + e3 takes each axis to the next; the columns are the turned axes:
-
-        >>> R = ph.Rotor.from_quaternion([1, 1, 1, 1], order="wxyz")
-        >>> R.to_matrix()
-        array([[0., 0., 1.],
-               [1., 0., 0.],
-               [0., 1., 0.]])
-        """
-        if (found := _native.rotor_to("matrix", self)) is not None:
-            return found
-        return reshaped(_computed("to_matrix", self._data), (*self.shape, 3, 3))
 
     @explains_calls
     def to_quaternion(self, *, order: QuaternionOrder) -> Any:
@@ -401,8 +273,8 @@ class Rotor(_native.Rotor, Multivector):
         """
         if order in ("wxyz", "xyzw") and (found := _native.rotor_to(order, self)) is not None:
             return found
-        wxyz_first = _to_wxyz(order)[0] == 0
-        wxyz = _computed("to_quaternion", self._data)
+        wxyz_first = _quaternions.places_of_wxyz(order)[0] == 0
+        wxyz = computed("to_quaternion", self._data)
         return wxyz if wxyz_first else taken(wxyz, [1, 2, 3, 0])
 
     def to_rotation_vector(self) -> Any:
@@ -416,31 +288,7 @@ class Rotor(_native.Rotor, Multivector):
         """
         if (found := _native.rotor_to("rotation vector", self)) is not None:
             return found
-        return _computed("to_rotation_vector", self._data)
-
-    def to_scipy(self) -> Rotation:
-        """Return a ``scipy.spatial.transform.Rotation``.
-
-        Examples
-        --------
-        >>> ph.Rotor.from_rotation_vector([0.1, 0.2, 0.3]).to_scipy().as_rotvec()
-        array([0.1, 0.2, 0.3])
-        """
-        transform = optional("scipy.spatial.transform", "scipy", "to_scipy")
-        rotation: Rotation = transform.Rotation.from_quat(self.to_quaternion(order="xyzw"))
-        return rotation
-
-    def to_numpy_quaternion(self) -> Any:
-        """Return an array (...) of dtype quaternion, of the package numpy-quaternion.
-
-        Examples
-        --------
-        >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, np.pi)
-        >>> R.to_numpy_quaternion().vec
-        array([0., 0., 1.])
-        """
-        quaternion = optional("quaternion", "quaternion", "to_numpy_quaternion")
-        return quaternion.as_quat_array(self.to_quaternion(order="wxyz"))
+        return computed("to_rotation_vector", self._data)
 
     def to_euler(self, seq: str, degrees: bool = False) -> Any:
         """Return Euler angles (..., 3) in radians about the three axes `seq`, named as in `from_euler`.
@@ -481,7 +329,7 @@ class Rotor(_native.Rotor, Multivector):
         if not is_float(self._data):
             plane, angle = _generic.rotors.plane_angle(kind_of(self._data), self._data)
             return Multivector._of(plane, _BIVECTOR), angle
-        pairs = _computed("plane_angle", self._data)
+        pairs = computed("plane_angle", self._data)
         return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
 
     def distance(self, other: Rotor) -> Any:
@@ -504,7 +352,7 @@ class Rotor(_native.Rotor, Multivector):
         # scalar; between close attitudes that difference has no rounding.
         R, S, kind = self, other, kind_of(self._data, other._data)
         if kind.native or kind.exact:  # arrays of another library stay theirs, with their derivatives
-            return _computed("distance", R.astype(float)._data, S.astype(float)._data)[..., 0][()]
+            return computed("distance", R.astype(float)._data, S.astype(float)._data)[..., 0][()]
         cosine = (~R).scalar_product(S).components[..., 0]
         nearer = S * kind.where(cosine < 0, kind.zeros_like(cosine) - 1.0, 1.0)
         sine = (~R * (nearer - R)).grade(2).norm()
@@ -618,34 +466,6 @@ class Rotor(_native.Rotor, Multivector):
 add_to(Multivector, Rotor)
 
 
-def _nearest_rotation(m: Any) -> Array:
-    """Return the nearest rotations to any matrices."""
-    if not is_float(m):
-        raise TypeError(
-            f"the nearest rotation needs NumPy floats, got {type(m).__name__} of {m.dtype}; convert exact "
-            "numbers with dtype=float, other arrays with np.asarray"
-        )
-    finite = np.isfinite(m).all(axis=(-2, -1))
-    if not finite.all():
-        where = at_index(first_index(~finite))
-        raise ValueError(
-            f"the matrix{where} has an entry that is NaN or infinite; remove such matrices first"
-        )
-    u, sizes, v = np.linalg.svd(m.astype(np.float64))
-    sign = np.sign(np.linalg.det(u @ v))
-    unique = sizes[..., 1] + sign * sizes[..., 2] > 8 * np.finfo(m.dtype).eps * sizes[..., 0]
-    if not unique.all():
-        index = first_index(~unique)
-        kind = "reflection" if sign[index] < 0 else "matrix"
-        raise ValueError(
-            f"the nearest rotation to the matrix{at_index(index)} is not unique: it is a {kind} of singular "
-            f"values {sizes[index].tolist()}"
-        )
-    u[..., 2] *= sign[..., np.newaxis]
-    rotations: Array = (u @ v).astype(m.dtype)
-    return rotations
-
-
 def _powers(R: Rotor, n: Array) -> Rotor:
     if not np.isfinite(n).all():
         raise ValueError(f"the power of a rotor must be finite, got {n[~np.isfinite(n)][0]}")
@@ -653,12 +473,3 @@ def _powers(R: Rotor, n: Array) -> Rotor:
     result = new((*batch, 4), data.dtype)
     _native.rotor_power(data, exponents, result)
     return Rotor._from_rows(result)
-
-
-def _to_wxyz(order: str) -> list[int]:
-    """Return the places of w, x, y, z in a quaternion of this order."""
-    if order == "wxyz":
-        return [0, 1, 2, 3]
-    if order == "xyzw":
-        return [3, 0, 1, 2]
-    raise ValueError(f'the quaternion order must be "wxyz" or "xyzw", got {order!r}')

@@ -145,7 +145,10 @@ def project(value: Multivector, blade: Multivector) -> Multivector:
     >>> ph.vector([1, 2, 3]).project(ph.e1 ^ ph.e2)
     e1 + 2 e2
     """
-    if not isinstance(blade, _native.Multivector) or blade._held().bit_count() > 1:
+    one_grade = isinstance(blade, _native.Multivector) and (
+        blade._mask.bit_count() == 1 or blade._held().bit_count() <= 1
+    )
+    if not one_grade:
         raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
     unit = blade.normalized() if is_float(blade._data) else blade  # so that nothing overflows
     return (value.left_contraction(unit) * unit.inverse())._part(value._mask)

@@ -57,6 +57,8 @@ def explains_calls_of(kind: type[T]) -> type[T]:
         if name == "__init__":
             setattr(kind, name, explains_calls(member))
         elif isinstance(member, staticmethod) and not name.startswith("_"):
+            if "." not in member.__func__.__qualname__:  # a function of a module
+                member.__func__.__qualname__ = f"{kind.__name__}.{name}"
             setattr(kind, name, staticmethod(explains_calls(member.__func__)))
     return kind
 

@@ -16,8 +16,8 @@
 //!
 //! Modules: [`table`] (blades, signatures), [`product`] (the grades that each named product keeps), [`graded`]
 //! (a value with its grades), [`g3`] (the typed values of 3-d space: `Vector`, `Bivector`, `Trivector`,
-//! `Multivector`, rotors, Euler angles; inverse, exp, log, square root), [`general`] (the same functions in any algebra; complements,
-//! join and meet), [`simd`] (lanes, double-double arithmetic, threads), [`rows`] (products and
+//! `Multivector`, rotors, Euler angles; inverse, exp, log, square root), [`general`] (the same functions in any
+//! algebra; complements, join and meet), [`simd`] (lanes, double-double arithmetic, threads), [`rows`] (products and
 //! functions over rows of numbers), [`formula`] (the language of the handout), [`error`] (errors of functions),
 //! [`diagnostic`] (errors with a place in a text).
 //!

@@ -130,3 +130,35 @@ def test_vectors_without_direction_are_refused():
         with pytest.raises(ValueError, match="has no direction"):
             bad.normalized()
     assert ph.vector([5e-324, 0, 0]).normalized() == ph.e1
+
+
+def test_fields_of_packed_records_are_read_where_they_are():
+    records = np.zeros(3, dtype=[("number", "i4"), ("q", "f8", (4,)), ("angle", "f8")])
+    records["q"], records["angle"] = FOURS[:3], [0.1, 0.2, 0.3]
+    R = ph.Rotor.from_components(records["q"])
+    np.testing.assert_array_equal(R.components, ROTORS[:3].components)
+    np.testing.assert_allclose(ph.Rotor.from_axis_angle(ph.e3, records["angle"]).angle, [0.1, 0.2, 0.3])
+    np.testing.assert_array_equal((ph.e1 * records["angle"])["e1"], [0.1, 0.2, 0.3])
+    np.testing.assert_array_equal(
+        (R ** records["angle"]).components, (R ** np.array([0.1, 0.2, 0.3])).components
+    )
+
+
+@pytest.mark.parametrize("count", [2, COUNT])
+def test_rotors_of_nan_are_refused(count):
+    R = ph.Rotor.from_components(np.full((count, 4), np.nan), errors="mask")
+    for f in (lambda R: R**2, lambda R: R.distance(R), lambda R: ph.slerp(R, R, 0.5)):
+        for bad in (R, R[0]):
+            with pytest.raises(ValueError, match="NaN"):
+                f(bad)
+
+
+def test_arguments_of_empty_batches_are_checked():
+    with pytest.raises(ValueError, match="must be finite and not zero"):
+        ph.Rotor.from_axis_angle([0, 0, 0], [])
+    with pytest.raises(ValueError, match="must be finite"):
+        ph.slerp(ph.Rotor.identity(), ph.Rotor.identity(0), np.nan)
+
+
+def test_integers_beyond_floats_stay_exact():
+    assert ph.Rotor.from_euler("x", 2**53 + 1).dtype == object

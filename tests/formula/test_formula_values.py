@@ -261,6 +261,9 @@ def test_out_holds_values_of_all_kinds(text, values, shape):
 def test_a_value_may_be_named_out():
     assert ph.formula("2 out")(out=e1) == 2 * e1
     np.testing.assert_array_equal(ph.formula("2 out")(out=np.array([1.0, 2.0])).components, [[2], [4]])
+    unused = np.zeros(3)
+    assert ph.formula("2 a", arguments="a out")(e1, unused) == 2 * e1
+    assert not unused.any()
 
 
 def test_wrong_out_is_refused():
@@ -273,7 +276,7 @@ def test_wrong_out_is_refused():
         f(a=a, out=[])
     with pytest.raises(TypeError, match="an Agreement, not an array; omit out"):
         ph.formula("a = a")(a=a, out=np.empty((4, 3)))
-    with pytest.raises(TypeError, match="out needs values of floats, got object"):
+    with pytest.raises(TypeError, match="out needs values of NumPy floats, got object"):
         f(a=ph.vector([Fraction(1), 0, 0]), out=np.empty(3))
     memory = np.ones((4, 3))
     with pytest.raises(ValueError, match="out overlaps an operand"):

@@ -39,8 +39,8 @@ class Formula(_native.FormulaCaller):
     position, in the order of `arguments` if the formula was made with these. Values are
     multivectors, rotors, linear maps, numbers, and arrays as batches of numbers. Batches broadcast,
     coefficients are of any kind, and grades are checked before anything is computed. Names that the formula
-    does not use are ignored, but for ``out``: an array for the components of the value, of which a view is
-    returned. The value of an equation is an `Agreement`.
+    does not use are ignored, but for ``out``: an array that receives the components of the value. The value
+    of an equation is an `Agreement`.
 
     Create it with `formula`. Formulas of the same text, algebra, definitions and arguments are equal.
 
@@ -349,7 +349,8 @@ def called(core: _native.Formula, arguments: tuple[Any, ...], named: dict[str, A
         raise TypeError(_misfit(core, len(arguments)))
     named = named or {}
     program, known = compiled(core, given(core, arguments[0] if arguments else None, named))
-    return evaluated(core.text, program, known, None if "out" in program.names else named.get("out"))
+    is_value = "out" in program.names or "out" in core.arguments
+    return evaluated(core.text, program, known, None if is_value else named.get("out"))
 
 
 def _misfit(core: _native.Formula, count: int) -> str:
@@ -401,9 +402,9 @@ def _run(
 
 
 def _written(value: Multivector, inputs: list[Any], out: Any) -> Multivector:
-    """Return the value as a view of `out`."""
+    """Return the value, written to `out`."""
     if not is_float(value._data):
-        raise TypeError(f"out needs values of floats, got {value.dtype}; omit out")
+        raise TypeError(f"out needs values of NumPy floats, got {value.dtype}; omit out")
     data = tuple(x._data if isinstance(x, Multivector) else x for x in inputs)
     result = result_array(value._data.shape, value.dtype, data, out)
     result[...] = value._data

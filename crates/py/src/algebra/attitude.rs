@@ -15,6 +15,7 @@ use polhode_ga::rows::rotor_functions::power;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, MathError, Rotor, Vector};
 use pyo3::prelude::*;
+use pyo3::types::PyInt;
 use std::array::from_fn;
 
 /// Larger batches are left to the Python half, which lets threads share them.
@@ -40,6 +41,12 @@ impl Given {
             }
             let numbers = array.try_readonly().ok()?.as_slice().ok()?.to_vec();
             return Some(Given { numbers, shape: array.shape().to_vec() });
+        }
+        // Larger integers are exact in the Python half.
+        if let Ok(whole) = x.cast_exact::<PyInt>()
+            && whole.extract().map_or(true, |n: i64| n.unsigned_abs() > 1 << 53)
+        {
+            return None;
         }
         let rows = Rows::operand(x.as_borrowed()).filter(|rows| rows.numbers.len() <= FEW)?;
         let (mut shape, numbers) = (rows.shape.to_vec(), rows.numbers.to_vec());
@@ -68,6 +75,9 @@ fn rotors<'py>(
         return rotor(0).ok().map(|rotor| one_rotor(py, rotor)).transpose();
     }
     let kind = Kind { shape: batch, size: 4, grades: Grades::EVEN, unit: true, algebra: g3(py)? };
+    if batch.contains(&0) {
+        return Ok(None); // the Python half checks the arguments
+    }
     let mut all = true;
     let value = filled(py, kind, |out| {
         for (row, out) in out.as_chunks_mut().0.iter_mut().enumerate() {
@@ -121,7 +131,7 @@ fn together<'a>(a: Option<&'a [usize]>, b: Option<&'a [usize]>) -> Option<&'a [u
 }
 
 /// Rotors that turn by angles (…), times `unit`, in planes (…, 3); `grade` is that of values for the planes or their axes.
-/// One of either meets all of the other.
+/// Either may be a single one for all of the other.
 #[pyfunction]
 pub(crate) fn rotor_from_turn<'py>(
     plane: Any<'_, 'py>,
@@ -152,7 +162,7 @@ pub(crate) fn rotor_between<'py>(a: Any<'_, 'py>, b: Any<'_, 'py>) -> Found<'py>
     })
 }
 
-/// The sequence of letters that are one.
+/// The sequence of axes with these letters.
 fn sequence_of(letters: Any<'_, '_>) -> Option<EulerSequence> {
     EulerSequence::new(&letters.extract::<String>().ok()?)
 }
@@ -181,6 +191,11 @@ pub(crate) fn rotor_from_euler<'py>(sequence: Any<'_, 'py>, angles: Any<'_, 'py>
 /// The rows of rotors.
 fn rows_of<'a, 'py: 'a>(x: Any<'a, 'py>) -> Option<Rows<'a>> {
     Rows::operand(x.as_borrowed()).filter(|rows| rows.unit && rows.numbers.len() <= FEW)
+}
+
+/// The same, of finite rotors.
+fn finite_rows_of<'a, 'py: 'a>(x: Any<'a, 'py>) -> Option<Rows<'a>> {
+    rows_of(x).filter(|rows| rows.numbers.iter().all(|x| x.is_finite()))
 }
 
 /// An array of parameters of rotors, N numbers each in axes of the lengths `last`.
@@ -248,7 +263,7 @@ pub(crate) fn rotor_canonical<'py>(rotor: Any<'_, 'py>) -> Found<'py> {
 #[pyfunction]
 pub(crate) fn rotor_to_power<'py>(rotor: Any<'_, 'py>, n: Any<'_, 'py>) -> Found<'py> {
     let py = rotor.py();
-    let (Some(rows), Some(powers)) = (rows_of(rotor), Given::new(n, None)) else { return Ok(None) };
+    let (Some(rows), Some(powers)) = (finite_rows_of(rotor), Given::new(n, None)) else { return Ok(None) };
     if !powers.numbers.iter().all(|n| n.is_finite()) {
         return Ok(None);
     }
@@ -269,7 +284,7 @@ pub(crate) fn rotor_to_power<'py>(rotor: Any<'_, 'py>, n: Any<'_, 'py>) -> Found
 /// The angles between the attitudes of rotors.
 #[pyfunction]
 pub(crate) fn distance_between<'py>(a: Any<'_, 'py>, b: Any<'_, 'py>) -> Found<'py> {
-    let (Some(from), Some(to)) = (rows_of(a), rows_of(b)) else { return Ok(None) };
+    let (Some(from), Some(to)) = (finite_rows_of(a), finite_rows_of(b)) else { return Ok(None) };
     let Some(batch) = together(Some(&*from.shape), Some(&*to.shape)) else { return Ok(None) };
     let array = pool::array(a.py(), batch)?;
     let mut target = array.readwrite();
@@ -285,7 +300,7 @@ pub(crate) fn distance_between<'py>(a: Any<'_, 'py>, b: Any<'_, 'py>) -> Found<'
 /// The rotors a fraction t of the way from one to another.
 #[pyfunction]
 pub(crate) fn slerp_between<'py>(a: Any<'_, 'py>, b: Any<'_, 'py>, t: Any<'_, 'py>) -> Found<'py> {
-    let (Some(from), Some(to), Some(t)) = (rows_of(a), rows_of(b), Given::new(t, None)) else {
+    let (Some(from), Some(to), Some(t)) = (finite_rows_of(a), finite_rows_of(b), Given::new(t, None)) else {
         return Ok(None);
     };
     let both = together(Some(&*from.shape), Some(&*to.shape));

@@ -4,7 +4,7 @@
 
 use super::rows::fill_numbers;
 use super::signature::{Algebra, g3};
-use super::value::{Any, Multivector, Object, Storage, This, number, one, wrap};
+use super::value::{Any, Multivector, Object, Storage, This, is_aligned, number, one, wrap};
 use crate::support::pool;
 use numpy::npyffi::NPY_ARRAY_WRITEABLE;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
@@ -73,7 +73,7 @@ impl<'a> Rows<'a> {
     fn of_space<'py: 'a>(value: This<'a, 'py>) -> Option<Rows<'a>> {
         let rows = Rows::of(value.as_borrowed())?;
         let is_g3 = rows.algebra.is_some_and(|algebra| algebra.get().is_g3());
-        (is_g3 && rows.numbers.len() <= FEW).then_some(rows)
+        (is_g3 && !rows.numbers.is_empty() && rows.numbers.len() <= FEW).then_some(rows)
     }
 
     /// The numbers row by row.
@@ -103,7 +103,8 @@ fn numbers_of(array: Any<'_, '_>) -> Option<(Vec<f64>, Vec<usize>)> {
     if !array.get_type().is(array.py().get_type::<PyUntypedArray>()) {
         return None;
     }
-    let array = array.cast::<PyArrayDyn<f64>>().ok().filter(|array| array.len() <= FEW)?;
+    let array =
+        array.cast::<PyArrayDyn<f64>>().ok().filter(|array| array.len() <= FEW && is_aligned(array))?;
     let numbers = array.try_readonly().ok()?.as_array().iter().copied().collect();
     Some((numbers, array.shape().to_vec()))
 }

@@ -61,7 +61,7 @@ impl Multivector {
         }
     }
 
-    /// A single value of 3-d space from a list or tuple of floats, or integers that floats represent, one for each
+    /// A single value of 3-d space from an array, list or tuple of floats, or integers that floats represent, one for each
     /// component of the grades; None for anything else.
     #[staticmethod]
     fn _of_numbers<'py>(py: Python<'py>, numbers: Any<'_, 'py>, grades: u16) -> Object<'py> {

@@ -57,12 +57,17 @@ pub(crate) fn operand<'a>(x: &'a Bound<'_, PyAny>) -> Operand<'a> {
     number(x).map_or(Operand::Other, Operand::Number)
 }
 
+/// Whether all numbers are at multiples of their size, unlike those of a field of packed records.
+pub(crate) fn is_aligned(array: &Bound<'_, PyArrayDyn<f64>>) -> bool {
+    array.data().is_aligned() && array.strides().iter().all(|stride| stride % 8 == 0)
+}
+
 /// An array of float64 in C order and aligned memory; of no derived type, such as a masked array.
 pub(crate) fn plain_array<'a, 'py>(x: &'a Bound<'py, PyAny>) -> Option<&'a Bound<'py, PyArrayDyn<f64>>> {
     if !x.get_type().is(x.py().get_type::<PyUntypedArray>()) {
         return None;
     }
-    x.cast::<PyArrayDyn<f64>>().ok().filter(|array| array.is_c_contiguous() && array.data().is_aligned())
+    x.cast::<PyArrayDyn<f64>>().ok().filter(|array| array.is_c_contiguous() && is_aligned(array))
 }
 
 /// The numbers of a short list, tuple or array of float64, and their count.

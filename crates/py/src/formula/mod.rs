@@ -350,7 +350,7 @@ fn called_by_name<'py>(formula: &Bound<'py, Formula>, named: &Bound<'py, PyDict>
     if let Some(value) = own.calls.value(py, borrowed)? {
         return Ok(value);
     }
-    // An array for the value, or a value of this name: not one of a batch.
+    // `out` is an array for the value, unless the formula uses the name, which the Python half finds out.
     if named.contains(intern!(py, "out"))? {
         return general(formula, &PyTuple::empty(py), Some(named));
     }

@@ -13,8 +13,6 @@ from public_names import methods, public
 
 CALLS = algebra_calls.CALLS | mechanics_calls.CALLS
 WITHOUT_NUMBERS = f"{algebra_calls.WITHOUT_NUMBERS} {mechanics_calls.WITHOUT_NUMBERS}".split()
-# Laws far beyond their units: the run takes as many steps as they need.
-LONG = ("fit", "force.Force", "force.spring", "force.thrust")
 # A fit takes half a second.
 each = pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name == "fit" else ()) for name in CALLS]
@@ -66,9 +64,7 @@ def run_each(name, changes):
             outcome(call, [*call.arrays[:place], changed, *call.arrays[place + 1 :]])
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in CALLS]
-)
+@each
 def test_extreme_numbers(name):
     """Warnings are errors: a result beyond the range of floating point is infinite without one."""
     with warnings.catch_warnings():

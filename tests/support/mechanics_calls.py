@@ -32,7 +32,9 @@ def state(omega=OMEGA, **others):
 
 
 def run(law=None, strength=None, times=TIMES, omega=OMEGA, place=0.0, **options):
-    return ph.simulate(body(), state(omega, position=place), times, law, strength, rtol=1e-6, **options)
+    """A motion; laws far beyond their units end with an error that names the number of steps."""
+    begin = state(omega, position=place)
+    return ph.simulate(body(), begin, times, law, strength, rtol=1e-6, max_steps=1e5, **options)
 
 
 def _free(omega=OMEGA, moments=MOMENTS):

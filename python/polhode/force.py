@@ -89,7 +89,7 @@ def thrust(force: Any, at: Any = None) -> Force:
 
 
 def drag(k: float) -> Force:
-    """Return ``−k v``, k in N s/m.
+    """Return ``−k v``, k in N s/m. The centre of mass moves in closed form.
 
     Examples
     --------
@@ -120,6 +120,8 @@ def quadratic_drag(k: float) -> Force:
 
 def spring(stiffness: float, anchor: Any = 0) -> Force:
     """Return ``−k (x − anchor)``, the stiffness k in N/m, the anchor a point in space in m.
+
+    The centre of mass moves in closed form.
 
     Examples
     --------

@@ -97,24 +97,6 @@ def close(motion, position, velocity, factor=1.0):
     assert np.abs(motion.velocity.components - v).max() <= estimate * np.linalg.norm(v, axis=1).max()
 
 
-@pytest.mark.parametrize("method", ["auto", "rk4"])
-def test_a_spring_oscillates(method):
-    k, anchor = 4.5, np.array([0.5, -1.0, 2.0])
-    x, v = np.array([1.0, 2.0, 3.0]), np.array([-1.0, 0.5, 0.25])
-    force = F.spring(k, anchor)
-    motion = ph.simulate(BODY, start(x, v), TIMES, force=force, method=method, rtol=1e-9)
-    w, t = np.sqrt(k / M), TIMES[:, None]
-    close(
-        motion,
-        anchor + (x - anchor) * np.cos(w * t) + v / w * np.sin(w * t),
-        v * np.cos(w * t) - (x - anchor) * w * np.sin(w * t),
-    )
-    energy = (
-        0.5 * M * motion.velocity.norm() ** 2 + 0.5 * k * (motion.position - ph.vector(anchor)).norm() ** 2
-    )
-    assert np.ptp(energy) <= 4e-9 * energy[0]
-
-
 @pytest.mark.parametrize("batch", [(), (3,)])
 @pytest.mark.parametrize("end", [5.0, 20.0])
 def test_a_body_that_falls_from_rest_reaches_its_terminal_velocity(end, batch):
@@ -132,14 +114,11 @@ def test_a_body_that_falls_from_rest_reaches_its_terminal_velocity(end, batch):
         assert error < 1e-9
 
 
-def test_drag_slows_down():
-    """``v = v0 exp(−kt/m)``; and for ``−k |v| v`` ``x = (m/k) log(1 + k v0 t/m)``."""
+def test_quadratic_drag_slows_down():
+    """For ``−k |v| v`` ``x = (m/k) log(1 + k v0 t/m)``."""
     k, v, times = 0.5, np.array([3.0, 0, 4.0]), np.linspace(0, 20, 11)
-    t = times[:, None]
-    motion = ph.simulate(BODY, start(velocity=v), times, force=F.drag(k))
-    close(motion, -v * M / k * np.expm1(-k * t / M), v * np.exp(-k * t / M))
     motion = ph.simulate(BODY, start(velocity=v), times, force=F.quadratic_drag(k))
-    way = np.log1p(k * 5.0 * t / M)
+    way = np.log1p(k * 5.0 * times[:, None] / M)
     close(motion, v / 5.0 * M / k * way, v * np.exp(-way))
 
 
@@ -257,7 +236,8 @@ def test_formulas_and_functions_equal_built_in_forces(law, text, function):
     for other in (formula, given):
         assert np.all(other.position.is_close(law.position, rtol=1e-12, atol=1e-12))
         assert np.all(other.velocity.is_close(law.velocity, rtol=1e-12, atol=1e-12))
-        assert other.certificate.evaluations == law.certificate.evaluations
+        if law.certificate.method == other.certificate.method:
+            assert other.certificate.evaluations == law.certificate.evaluations
 
 
 def test_a_formula_knows_time_and_mass():
@@ -349,7 +329,7 @@ def test_invalid_arguments_raise():
 @pytest.mark.parametrize("method", ["strang", "kahan_li8", "rkn6", "midpoint", "dmv", "exact"])
 def test_methods_that_do_not_support_forces_raise(method):
     with pytest.raises(ValueError, match=f"{method} .*forces"):
-        ph.simulate(BODY, start(velocity=[0, 0, 1]), [1.0], force=F.drag(1.0), method=method)
+        ph.simulate(BODY, start(velocity=[0, 0, 1]), [1.0], force=F.quadratic_drag(1.0), method=method)
 
 
 def test_a_force_needs_a_mass_and_a_free_body():

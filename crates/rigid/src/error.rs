@@ -3,6 +3,11 @@
 use polhode_ga::Vector;
 use thiserror::Error;
 
+/// A time without a long row of zeros.
+fn seconds(time: f64) -> String {
+    if time.abs() < 1e16 { format!("{time}") } else { format!("{time:e}") }
+}
+
 /// Three numbers, without and with the zeros of whole ones.
 fn short([a, b, c]: &[f64; 3]) -> String {
     format!("{a}, {b}, {c}")
@@ -73,14 +78,15 @@ pub enum SimulateError {
     #[error("{method} {reason}")]
     Unfit { method: &'static str, reason: &'static str },
     #[error(
-        "at t = {time} s no step down to {step:.1e} s meets the tolerance: the motion or a torque is not smooth \
-         or not finite there; check the laws at this time"
+        "at t = {} s no step down to {step:.1e} s meets the tolerance: the motion or a torque is not smooth \
+         or not finite there; check the laws at this time",
+        seconds(*time)
     )]
     StepTooSmall { time: f64, step: f64 },
     /// A law cannot be evaluated at this time.
-    #[error("at t = {time} s: {message}")]
+    #[error("at t = {} s: {message}", seconds(*time))]
     Torque { time: f64, message: String },
-    #[error("the motion became NaN or infinite at t = {time} s; use a shorter step")]
+    #[error("the motion became NaN or infinite at t = {} s; use a shorter step or a shorter time", seconds(*time))]
     Diverged { time: f64 },
     #[error(
         "the body turns by {turn:.2} rad in a step of {step} s; more than 1 rad is not accurate: use a shorter dt, \

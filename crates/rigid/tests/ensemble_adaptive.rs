@@ -296,13 +296,13 @@ fn a_run_can_be_stopped() {
     assert!(seen.is_sorted() && seen.iter().all(|x| (0.0..1.0).contains(x)), "{seen:?}");
 }
 
-/// Other methods, user functions and varying forces run body by body.
+/// Other methods, user functions and other forces than linear ones run body by body.
 #[test]
 fn unsupported_laws_run_body_by_body() {
     let mut all = bodies(2, vec![laws()[0].clone()]);
     let splitting = Options { method: Method::from_name("strang"), rtol: Some(1e-5), ..Options::default() };
     assert_as_alone(&all, &TIMES, &splitting, 1e-5);
-    all.forces = vec![Rows::new(vec![Force::Drag(0.1)])];
+    all.forces = vec![Rows::new(vec![Force::QuadraticDrag(0.1)])];
     assert_as_alone(&all, &TIMES, &dop853(1e-9), 1e-9);
 }
 

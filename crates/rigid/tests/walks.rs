@@ -74,7 +74,7 @@ fn errors_have_a_time() {
     );
     let message = motion.unwrap_err().to_string();
     assert!(message.starts_with("at t = ") && message.ends_with("too late"), "{message}");
-    let drag = [Force::Drag(1.0)];
+    let drag = [Force::QuadraticDrag(1.0)];
     for name in ["strang", "midpoint", "dmv"] {
         let options = Options { method: Method::from_name(name), ..Options::default() };
         let motion =

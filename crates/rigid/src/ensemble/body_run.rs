@@ -169,10 +169,11 @@ impl<'a> BodyRun<'a> {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = self.member;
         let mut monitor = DriftMonitor::new(gyrostat, torques, start);
         let mut norm_drift = 0.0_f64;
+        let center = scheduler.center(body);
         for (index, Carried { phase, .. }) in found.sweep.states.iter().enumerate() {
             monitor.record(phase);
             norm_drift = norm_drift.max(off_unit(phase.rotor));
-            own.write(index, (frame, &gyrostat, torques), phase, &scheduler.center(body, phase.time));
+            own.write(index, (frame, &gyrostat, torques), phase, &center.at(phase.time));
         }
         let certificate = Certificate {
             method: METHOD.name(),

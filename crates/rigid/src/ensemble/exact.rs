@@ -20,7 +20,10 @@ impl<'a> Scheduler<'a> {
     pub fn free(&self, mut member: Member<'a>) {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
         let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);
-        if let Err(error) = check_horizons(start.time, self.times, [motion.horizon(); 2]) {
+        let center = self.center(body);
+        if let Err(error) =
+            check_horizons(start.time, self.times, [motion.horizon().min(center.law.horizon()); 2])
+        {
             return self.fail(body, own, METHOD, error);
         }
         let since = ElapsedTime::new(start.time, gyrostat, &[]);
@@ -49,7 +52,7 @@ impl<'a> Scheduler<'a> {
             monitor.record(&phase);
         }
         for (index, &time) in self.times.iter().enumerate() {
-            own.place(index, &self.center(body, time));
+            own.place(index, &center.at(time));
         }
         let drifts = monitor.finish();
         if let Err(error) = check_kept(&drifts) {
@@ -68,10 +71,10 @@ impl<'a> Scheduler<'a> {
         }
         let mut monitor = DriftMonitor::new(gyrostat, torques, start);
         let mut norm_drift = 0.0_f64;
-        for (index, Carried { phase, .. }) in closed.at_many(self.times).iter().enumerate() {
+        for (index, Carried { phase, center, .. }) in closed.at_many(self.times).iter().enumerate() {
             monitor.record(phase);
             norm_drift = norm_drift.max(off_unit(phase.rotor));
-            own.write(index, (frame, &gyrostat, torques), phase, &self.center(body, phase.time));
+            own.write(index, (frame, &gyrostat, torques), phase, center);
         }
         let drifts = monitor.finish();
         if let Err(error) = check_kept(&drifts) {

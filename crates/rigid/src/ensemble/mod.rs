@@ -176,14 +176,15 @@ impl Ensemble {
         })
     }
 
-    /// Whether these bodies can be integrated in lanes, by equal or adaptive steps: forces must be constant.
+    /// Whether these bodies can be integrated in lanes, by equal or adaptive steps: their centres of mass must move in closed
+    /// form.
     fn in_lanes(&self, equal: bool) -> bool {
         // Laws are of the same kinds for all bodies, so one stands for all; checking all of them for each body would take
         // quadratic time. A table of its own gives each body its own steps.
         let apart = |law: &Rows<Torque>| equal && !law.is_one() && !law.of(0).breaks().is_empty();
         // A function is called for one body at a time.
         let called = |law: &Rows<Torque>| !equal && matches!(law.of(0), Torque::Function(_));
-        let moved = self.forces.iter().any(|force| !matches!(force.of(0), Force::Constant(_)));
+        let moved = self.forces.iter().any(|force| !force.of(0).is_linear());
         // Only steps of single bodies carry the momentum of wheels with motors.
         let driven = |law: &Rows<Torque>| matches!(law.of(0), Torque::Wheels(_));
         !moved && !self.laws.iter().any(|law| apart(law) || called(law) || driven(law))

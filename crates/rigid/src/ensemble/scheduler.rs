@@ -5,18 +5,16 @@ use super::columns::{Columns, lock};
 use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy, WIDE};
 use super::output::{Outputs, Share};
 use crate::error::SimulateError;
-use crate::laws::force::Force;
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::Method;
 use crate::methods::splitting::turns::Kind;
+use crate::run::center::{CenterMotion, center_law};
 use crate::run::certificate::Certificate;
-use crate::run::closed_form::{ClosedForm, UniformAcceleration};
+use crate::run::closed_form::ClosedForm;
 use crate::run::limits::{Samples, StepBounds, samples};
 use crate::run::output::BodyOutput;
 use crate::run::{Options, Progress, check_body};
-use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::Vector;
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex, OnceLock};
@@ -128,7 +126,7 @@ impl<'a> Scheduler<'a> {
     /// The plan of a body for equal steps in lanes, if they are supported.
     pub fn plan(&self, member: &Member, step: f64) -> Option<Plan> {
         let Member { gyrostat, torques, start, .. } = member;
-        if !self.ensemble.in_lanes(true) {
+        if !self.ensemble.in_lanes(true) || !self.keeps_near(member.body) {
             return None;
         }
         let best = || Method::best(gyrostat, torques, false, start);
@@ -152,7 +150,7 @@ impl<'a> Scheduler<'a> {
     fn strategy(&self, member: &Member) -> Strategy {
         let Member { gyrostat, torques, start, omega, .. } = member;
         let chosen = self.options.method.is_some() && !self.options.exact;
-        if check_body(gyrostat, *omega, torques).is_err() {
+        if check_body(gyrostat, *omega, torques).is_err() || !self.keeps_near(member.body) {
             // The error is reported as for a single body.
             Strategy::Single
         } else if chosen {
@@ -160,9 +158,8 @@ impl<'a> Scheduler<'a> {
         } else if torques.is_empty() {
             Strategy::Free
         } else {
-            let (center, acceleration) = (Center::default(), Vector::default());
-            let fall = UniformAcceleration { time: start.time, start: center, acceleration };
-            let closed = ClosedForm::of(*gyrostat, start.rotor, *omega, torques, fall);
+            let center = self.center(member.body);
+            let closed = ClosedForm::of(*gyrostat, start.rotor, *omega, torques, center);
             let most = self.options.rtol.filter(|_| !self.options.exact).unwrap_or(f64::INFINITY);
             match closed {
                 Some(closed) if closed.neglected(self.times).unwrap_or(0.0) <= most => {
@@ -242,15 +239,18 @@ impl<'a> Scheduler<'a> {
         self.record([Outcome { body, certificate, failure: Some((time, error)) }]);
     }
 
-    /// The centre of mass at a time, under constant forces.
-    pub fn center(&self, body: usize, time: f64) -> Center {
+    /// The motion of a centre of mass, whose forces in lanes have a closed form.
+    pub fn center(&self, body: usize) -> CenterMotion {
         let (start, mass) = (&self.ensemble.starts[body], *self.ensemble.masses.of(body));
-        let force = self.ensemble.forces_on(body).fold(Vector::default(), |sum, force| match force {
-            Force::Constant(force) => sum + *force,
-            _ => sum,
-        });
-        let acceleration = if self.ensemble.forces.is_empty() { Vector::default() } else { force / mass };
-        UniformAcceleration { time: start.time, start: start.center, acceleration }.at(time)
+        let law = center_law(self.ensemble.forces_on(body), mass).unwrap_or_default();
+        CenterMotion { time: start.time, start: start.center, law }
+    }
+
+    /// Whether the centre of mass stays within the range of numbers: whatever grows is largest at the first or last time.
+    fn keeps_near(&self, body: usize) -> bool {
+        let center = self.center(body);
+        let ends = self.times.first().into_iter().chain(self.times.last()).map(|&time| center.at(time));
+        self.ensemble.forces.is_empty() || ends.flat_map(|end| end.position.0).all(f64::is_finite)
     }
 
     pub fn record(&self, outcomes: impl IntoIterator<Item = Outcome>) {

@@ -1,5 +1,6 @@
 //! Motions in closed form.
 
+pub(crate) mod center;
 pub mod damped;
 pub mod flow;
 pub mod free;

@@ -68,6 +68,11 @@ impl Force {
         }
     }
 
+    /// Whether it is constant, or linear in position and velocity by a number: the centre of mass moves in closed form.
+    pub fn is_linear(&self) -> bool {
+        matches!(self, Force::Constant(_) | Force::Drag(_) | Force::Spring(..))
+    }
+
     /// The force in space, in N.
     pub fn value(&self, at: &Point) -> Result<Vector, TorqueError> {
         let Point { mass, phase, center, .. } = *at;

@@ -1,5 +1,6 @@
 //! Closed form of a motion, if it has one.
 
+use super::center::CenterMotion;
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::exact::damped::DampedTop;
@@ -21,13 +22,13 @@ use std::sync::Arc;
 /// Largest turn in rad of a step whose error is rounding.
 const LONGEST_TURN: f64 = 0.1;
 
-/// Rotation and uniformly accelerated translation in closed form.
+/// Rotation and motion of the centre of mass in closed form.
 #[derive(Clone, Debug)]
 pub(crate) struct ClosedForm {
     body: Gyrostat,
     /// In principal axes.
     rotation: Arc<dyn ExactMotion>,
-    fall: UniformAcceleration,
+    center: CenterMotion,
     since: ElapsedTime,
 }
 
@@ -38,15 +39,15 @@ impl ClosedForm {
         rotor: Rotor,
         omega: Bivector,
         torques: &[Torque],
-        fall: UniformAcceleration,
+        center: CenterMotion,
     ) -> Option<ClosedForm> {
         let rotation = rotation(body.moments, rotor, omega, torques)?;
-        Some(ClosedForm { body, rotation, fall, since: ElapsedTime::new(fall.time, body, torques) })
+        Some(ClosedForm { body, rotation, center, since: ElapsedTime::new(center.time, body, torques) })
     }
 
-    /// How far from the start, in s, the phase is known backwards and forwards.
+    /// How far from the start, in s, the phases are known backwards and forwards.
     pub fn horizons(&self) -> [f64; 2] {
-        self.rotation.horizons()
+        self.rotation.horizons().map(|horizon| horizon.min(self.center.law.horizon()))
     }
 
     /// The error at these times of treating moments that differ by rounding as equal; none without such an error.
@@ -87,7 +88,7 @@ impl ClosedForm {
     /// The point at a time, from the state at the rounded time since the start and the remainder.
     fn later(&self, rotor: Rotor, omega: Bivector, time: f64, rest: f64) -> Carried {
         let phase = Phase { rotor, momentum: self.body.momentum(omega), time };
-        Carried::new(self.since.later(phase, rest), self.fall.at(time))
+        Carried::new(self.since.later(phase, rest), self.center.at(time))
     }
 }
 
@@ -165,31 +166,6 @@ pub(crate) fn check_kept(drifts: &[(Conserved, f64, f64)]) -> Result<(), Simulat
     match drifts.iter().find(|(_, _, drift)| drift.is_nan() || *drift > MOST) {
         Some(&(quantity, _, drift)) => Err(SimulateError::Drifted { quantity: quantity.name(), drift }),
         None => Ok(()),
-    }
-}
-
-/// The motion of a centre of mass under a constant force.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct UniformAcceleration {
-    /// The time of the start, in s.
-    pub time: f64,
-    /// The centre of mass at the start.
-    pub start: Center,
-    /// In m/s².
-    pub acceleration: Vector,
-}
-
-impl UniformAcceleration {
-    /// The centre of mass at a time in s.
-    pub fn at(&self, time: f64) -> Center {
-        let UniformAcceleration { time: begin, start, acceleration } = *self;
-        let time = time - begin;
-        // t² may overflow where no force needs it.
-        let fallen = |a: f64| if a == 0.0 { 0.0 } else { 0.5 * a * time * time };
-        Center {
-            position: start.position + start.velocity * time + Vector(acceleration.0.map(fallen)),
-            velocity: start.velocity + acceleration * time,
-        }
     }
 }
 

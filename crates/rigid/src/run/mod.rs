@@ -1,5 +1,6 @@
 //! Simulation of one body: in closed form if there is one, else by integration, with a certificate.
 
+pub(crate) mod center;
 pub mod certificate;
 pub(crate) mod closed_form;
 pub(crate) mod engine;
@@ -26,11 +27,12 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::{check_horizons, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
+use center::{CenterMotion, center_law};
 use certificate::{Certificate, DriftMonitor, off_unit};
-use closed_form::{ClosedForm, UniformAcceleration, check_kept};
+use closed_form::{ClosedForm, check_kept};
 use engine::Engine;
 use limits::{StepBounds, samples, span};
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::{Bivector, Rotor};
 use refine::{Accuracy, Convergence, Scales, SweepPlan};
 use stops::{aliasing_warning, is_aliased};
 pub use sweep::Progress;
@@ -73,7 +75,7 @@ pub struct Problem {
 }
 
 pub(crate) const NO_CLOSED_FORM: &str = "needs a motion in closed form and no step: free bodies, symmetric ones under heavy along their \
-                              axis, damping alone, spheres under larmor, and constant forces; omit the method for others";
+                              axis, damping alone, spheres under larmor, and constant forces, drag and springs; omit the method for others";
 
 /// The start time must be finite.
 pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
@@ -182,7 +184,12 @@ impl Problem {
         let start = self.start().phase;
         let samples = samples(&self.torques, &self.body, &start, times, &options)?;
         let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options);
-        bounds.limit.reports_stiffness &= self.translation.is_none();
+        let center = self.center_motion();
+        bounds.limit.reports_stiffness &= center.is_some();
+        if let (Some(center), false) = (&center, options.events.is_empty()) {
+            // Steps resolve an event of the centre of mass, too.
+            bounds.longest = bounds.longest.min(1.0 / center.law.rate());
+        }
         let limit = bounds.limit;
         match self.run(times, &options, bounds.clone(), progress) {
             Err(SimulateError::Stiff { steps }) => {
@@ -217,9 +224,9 @@ impl Problem {
         if options.exact && closed.is_none() {
             return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
         }
-        let fall = self.fall();
+        let center = self.center_motion();
         let method = options.method.unwrap_or_else(|| self.best());
-        let translation = self.translation.clone().filter(|_| fall.is_none());
+        let translation = self.translation.clone().filter(|_| center.is_none());
         let (engine, name) = match closed {
             Some(closed) => {
                 check_horizons(self.time, times, closed.horizons())?;
@@ -254,7 +261,7 @@ impl Problem {
                 let first = if method.adapts() { accuracy.tolerance() } else { long(method.first_turn()) };
                 let follow = |from: &Carried, time: f64| {
                     let mut to = engine.step(from, time - from.phase.time, 0.0).map_or(*from, |(to, _)| to);
-                    fall.iter().for_each(|fall| to.center = fall.at(time));
+                    center.iter().for_each(|center| to.center = center.at(time));
                     to
                 };
                 let scales = Scales {
@@ -308,7 +315,7 @@ impl Problem {
 
     /// The best stepping method.
     pub(crate) fn best(&self) -> Method {
-        Method::best(&self.body, &self.torques, self.fall().is_none(), &self.start().phase)
+        Method::best(&self.body, &self.torques, self.center_motion().is_none(), &self.start().phase)
     }
 
     /// One sweep over the times.
@@ -344,7 +351,7 @@ impl Problem {
             noise,
             bounds,
             events,
-            fall: self.fall(),
+            center: self.center_motion(),
             origin: self.time,
             mass: self.mass,
             number,
@@ -378,24 +385,20 @@ impl Problem {
     }
 
     fn closed_form(&self) -> Option<ClosedForm> {
-        ClosedForm::of(self.body, self.rotor, self.omega, &self.torques, self.fall()?)
+        ClosedForm::of(self.body, self.rotor, self.omega, &self.torques, self.center_motion()?)
     }
 
-    /// The largest rate of rotation and of translation, in 1/s: a scale for steps.
+    /// The largest rate of rotation and of translation by steps, in 1/s: a scale for steps.
     fn rate(&self) -> f64 {
-        let translation = self.translation.as_ref().map_or(0.0, |t| t.rate(&self.center));
+        let stepped = self.translation.as_ref().filter(|_| self.center_motion().is_none());
+        let translation = stepped.map_or(0.0, |t| t.rate(&self.center));
         fastest_rate(&self.body, &self.torques, &self.start().phase).max(translation)
     }
 
-    /// The motion of the centre of mass, if the forces are constant.
-    fn fall(&self) -> Option<UniformAcceleration> {
-        let start = self.center;
-        let Some(translation) = &self.translation else {
-            return Some(UniformAcceleration { time: self.time, start, acceleration: Vector::default() });
-        };
-        let add = |sum, force: &Force| if let Force::Constant(f) = force { Some(sum + *f) } else { None };
-        let sum = translation.forces.iter().try_fold(Vector::default(), add)?;
-        Some(UniformAcceleration { time: self.time, start, acceleration: sum / translation.mass })
+    /// The motion of the centre of mass, if it has a closed form.
+    fn center_motion(&self) -> Option<CenterMotion> {
+        let law = center_law(self.translation.iter().flat_map(|translation| &translation.forces), self.mass)?;
+        Some(CenterMotion { time: self.time, start: self.center, law })
     }
 
     fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {

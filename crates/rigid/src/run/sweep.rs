@@ -1,7 +1,7 @@
 //! Integrator: one sweep over the output times, by fixed or adaptive steps, with events.
 
+use super::center::CenterMotion;
 use super::certificate::DriftMonitor;
-use super::closed_form::UniformAcceleration;
 use super::engine::Engine;
 use super::limits::{StepBounds, span};
 use super::noise::Noise;
@@ -122,8 +122,8 @@ pub(crate) struct Integrator<'a> {
     pub noise: Option<Noise>,
     pub bounds: &'a StepBounds,
     pub events: &'a [Event],
-    /// The motion of the centre of mass, where its acceleration is constant.
-    pub fall: Option<UniformAcceleration>,
+    /// The motion of the centre of mass, where it has a closed form.
+    pub center: Option<CenterMotion>,
     /// The start of the motion, in s.
     pub origin: f64,
     /// In kg; NaN where unknown.
@@ -288,8 +288,8 @@ impl Integrator<'_> {
         sweep.evaluations += self.engine.evaluations();
         let (mut next, error) = self.engine.step(at, time - at.phase.time, fastest)?;
         next.phase.time = time;
-        if let Some(fall) = &self.fall {
-            next.center = fall.at(time);
+        if let Some(center) = &self.center {
+            next.center = center.at(time);
         }
         Ok((next, error))
     }
@@ -374,7 +374,8 @@ impl Integrator<'_> {
         // How far the velocity turns, and the path leaves its tangent. Three values resolve a parabola.
         let (a, b) = (cursor.at.center, next.center);
         let speed = a.velocity.norm().max(b.velocity.norm());
-        let bend = if self.fall.is_some() || speed == 0.0 {
+        let is_parabola = self.center.is_some_and(|center| center.law.is_uniform());
+        let bend = if is_parabola || speed == 0.0 {
             0.0
         } else {
             let leaves = (b.position - a.position) / h - a.velocity;

@@ -8,11 +8,13 @@ mod lanes;
 
 use crate::ensemble::{Ensemble, Start};
 use crate::error::SimulateError;
-use crate::laws::force::{Force, Translation};
+use crate::exact::center::CenterLaw;
+use crate::laws::force::Translation;
 use crate::laws::motors::carrier;
 use crate::laws::torque::{Axes, Torque, Wheels, wheel};
 use crate::methods::Method;
 use crate::methods::step_control::next_stop;
+use crate::run::center::center_law;
 use crate::run::check_body;
 use crate::run::engine::Engine;
 use crate::state::center::Center;
@@ -54,9 +56,9 @@ struct Member {
     /// Those without commands of the caller.
     given: Vec<Torque>,
     center: Center,
-    /// Of constant forces.
-    acceleration: Vector,
-    /// Of forces that change.
+    /// The law of its motion, if that has a closed form.
+    law: Option<CenterLaw>,
+    /// Forces without one.
     translation: Option<Translation>,
 }
 
@@ -226,9 +228,9 @@ impl Stepper {
         }
         let moving = if self.moves { &mut self.members[..] } else { &mut [] };
         for (number, member) in moving.iter_mut().enumerate() {
-            member.center = match (&self.bodies, &member.translation) {
-                (Bodies::Alone(bodies), Some(_)) => bodies[number].center(),
-                _ => member.fallen(dt),
+            member.center = match (&self.bodies, &member.law) {
+                (Bodies::Alone(bodies), None) => bodies[number].center(),
+                (_, law) => law.unwrap_or_default().after(&member.center, dt.into()),
             };
         }
         self.time += dt;
@@ -327,17 +329,10 @@ impl Member {
         let frame = inertia.principal_frame();
         let torques: Vec<Torque> = laws.into_iter().map(|law| law.in_axes(frame)).collect();
         let mass = *ensemble.masses.of(body);
-        let steady = ensemble.forces_on(body).try_fold(Vector::default(), |sum, force| match force {
-            Force::Constant(f) => Some(sum + *f),
-            _ => None,
-        });
-        let changing = || Translation {
+        let law = center_law(ensemble.forces_on(body), mass);
+        let other = || Translation {
             mass,
             forces: ensemble.forces_on(body).map(|force| force.clone().in_axes(frame)).collect(),
-        };
-        let acceleration = match steady {
-            Some(sum) if !ensemble.forces.is_empty() => sum / mass,
-            _ => Vector::default(),
         };
         Ok(Member {
             frame,
@@ -345,8 +340,8 @@ impl Member {
             given: torques.clone(),
             torques,
             center: Center::default(),
-            acceleration,
-            translation: steady.is_none().then(changing),
+            law,
+            translation: law.is_none().then(other),
         })
     }
 
@@ -358,8 +353,7 @@ impl Member {
 
     /// Whether its centre of mass moves.
     fn moves(&self) -> bool {
-        let zero = Vector::default();
-        self.translation.is_some() || self.acceleration != zero || self.center.velocity != zero
+        !self.law.is_some_and(|law| law.is_zero()) || self.center.velocity != Vector::default()
     }
 
     /// The held torque of a body, in principal axes or in space.
@@ -369,14 +363,5 @@ impl Member {
             Axes::Body => Torque::ConstantBody(self.frame.reverse().apply_bivector(torque)),
             Axes::Space => Torque::ConstantSpace(torque),
         })
-    }
-
-    /// The centre of mass after a time under constant forces.
-    fn fallen(&self, dt: f64) -> Center {
-        let Center { position, velocity } = self.center;
-        Center {
-            position: position + (velocity + self.acceleration * (0.5 * dt)) * dt,
-            velocity: velocity + self.acceleration * dt,
-        }
     }
 }

@@ -1,0 +1,47 @@
+//! The motion of a centre of mass in closed form, where its forces allow one.
+
+use crate::exact::center::CenterLaw;
+use crate::laws::force::Force;
+use crate::numerics::double_double::DoubleDouble;
+use crate::state::center::Center;
+use polhode_ga::Vector;
+
+/// The law of motion of a mass in kg under forces, if they are constant forces, drag and springs.
+pub(crate) fn center_law<'f>(forces: impl IntoIterator<Item = &'f Force>, mass: f64) -> Option<CenterLaw> {
+    let mut forces = forces.into_iter().peekable();
+    if forces.peek().is_none() {
+        // The mass may be unknown.
+        return Some(CenterLaw::default());
+    }
+    let (mut constant, mut drag, mut stiffness) = (Vector::default(), 0.0, 0.0);
+    for force in forces {
+        match force {
+            Force::Constant(force) => constant += *force,
+            Force::Drag(k) => drag += k,
+            Force::Spring(k, anchor) => {
+                stiffness += k;
+                constant += *anchor * *k;
+            }
+            _ => return None,
+        }
+    }
+    Some(CenterLaw::new(constant, drag, stiffness, mass))
+}
+
+/// A centre of mass that moves by such a law.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CenterMotion {
+    /// The time of the start, in s.
+    pub time: f64,
+    /// The centre of mass at the start.
+    pub start: Center,
+    /// Its law.
+    pub law: CenterLaw,
+}
+
+impl CenterMotion {
+    /// The centre of mass at a time in s.
+    pub fn at(&self, time: f64) -> Center {
+        self.law.after(&self.start, DoubleDouble::two_sum(time, -self.time))
+    }
+}

@@ -1,6 +1,6 @@
 """Forces on the centre of mass for `polhode.simulate`: ``x' = v``, ``v' = F/m``, the x0 of handout eq. (4.1).
 
-Forces add up: ``ph.force.constant([0, 0, -9.81]) + ph.force.drag(0.1)``.
+Forces add up, and a vector is a constant force in N: ``ph.vector([0, 0, -9.81]) + ph.force.drag(0.1)``.
 """
 
 from __future__ import annotations
@@ -37,13 +37,24 @@ class Force(Sum):
 
     Examples
     --------
-    Forces add up:
+    Forces add up, and a vector is a constant force in N:
 
     >>> ph.force.constant([0, 0, -9.81]) + ph.force.drag(0.1)
     constant([0.0, 0.0, -9.81]) + drag(0.1)
+    >>> ph.force.drag(0.1) - 9.81 * ph.e3
+    drag(0.1) + constant([0.0, 0.0, -9.81])
     """
 
     laws: tuple[_native.Force, ...]
+
+    def __add__(self, other: Force | Multivector) -> Force:
+        return super().__add__(constant(other) if isinstance(other, Multivector) else other)
+
+    def __sub__(self, other: Multivector) -> Force:
+        return self + -other if isinstance(other, Multivector) else NotImplemented
+
+    def __radd__(self, other: object) -> Force:
+        return constant(other) + self if isinstance(other, Multivector) else super().__radd__(other)
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Force(())"

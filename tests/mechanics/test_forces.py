@@ -55,6 +55,15 @@ def test_repr_of_forces():
     assert repr(F.formula("-k x", k=2.0)) == "formula('-k x', k=2.0)"
     assert repr(F.function(falling_up)) == "function(falling_up)"
     assert sum([F.drag(0.1), F.drag(0.2)]) == F.drag(0.1) + F.drag(0.2)
+    assert -2 * ph.e3 + F.drag(0.1) == F.constant([0, 0, -2]) + F.drag(0.1)
+    assert F.drag(0.1) - 2 * ph.e3 == F.drag(0.1) + F.constant([0, 0, -2])
+    for other in (ph.e1 ^ ph.e2, 3.0, "drag"):
+        with pytest.raises(TypeError):
+            F.drag(0.1) + other
+        with pytest.raises(TypeError):
+            other + F.drag(0.1)
+    with pytest.raises(TypeError):
+        F.drag(0.1) - F.drag(0.1)
 
 
 # --- closed forms

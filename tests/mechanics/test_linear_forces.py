@@ -141,3 +141,55 @@ def test_events_of_a_fast_spring_on_a_slow_body():
     expected = np.pi / rate * (np.arange(64) + 0.5)
     found = motion.events[0].time
     np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+def test_events_of_a_stiff_drag():
+    """It sinks with the speed F/k at once, and reaches −1 m at 2 s."""
+    passed = ph.event.position(ph.e3, -1.0)
+    state = ph.State(R0, [0, 0, 1e-3], velocity=[0, 0, 1])
+    for torque in (None, ph.torque.viscous_damping(0.1)):
+        motion = ph.simulate(BODY, state, [10.0], torque, -5e8 * ph.e3 + F.drag(1e9), events=passed)
+        np.testing.assert_allclose(motion.events[0].time, [2.0], rtol=1e-8)
+        assert motion.certificate.steps < 1000
+
+
+def test_events_of_a_decaying_oscillation():
+    """Every π/ω, down to the smallest numbers."""
+    drag, stiffness, end = 50.0, 800.0, 20.0
+    state = ph.State(R0, [0, 0, 1e-3], position=[1, 0, 0])
+    omega = np.sqrt(stiffness / M - (drag / M / 2) ** 2)
+    first = np.pi - np.arctan(omega / (drag / M / 2))
+    for torque in (None, ph.torque.viscous_damping(0.1)):
+        force = F.drag(drag) + F.spring(stiffness)
+        motion = ph.simulate(BODY, state, [end], torque, force, events=ph.event.position(ph.e1))
+        expected = (first + np.pi * np.arange(200)) / omega
+        np.testing.assert_allclose(motion.events[0].time, expected[expected < end], rtol=1e-11)
+
+
+def test_events_do_not_shorten_a_given_step():
+    state = ph.State(R0, [0, 0, 1e-3], position=[1, 0, 0])
+    passed = ph.event.position(ph.e1)
+    motion = ph.simulate(BODY, state, [10.0], None, F.spring(800), method="rk4", step=0.5, events=passed)
+    assert motion.certificate.step == 0.5
+    np.testing.assert_allclose(motion.events[0].time, np.pi / 20 * (np.arange(64) + 0.5), rtol=1e-12)
+
+
+def test_a_phase_beyond_double_precision_is_an_error():
+    for torque in (None, ph.torque.viscous_damping(0.1)):
+        with pytest.raises(ValueError, match=r"times\[1\] = 1e3 s .* phase of the motion"):
+            ph.simulate(BODY, START, [0.0, 1e3], torque, F.spring(2e40))
+
+
+def test_a_body_at_rest_at_its_anchor_stays():
+    anchor = np.array([1e7 / 3, -2e-9, 1e20 / 7])
+    state = ph.State(R0, [0, 0, 1], position=anchor)
+    motion = ph.simulate(BODY, state, [0.1, 7.0], force=F.spring(7.146e7, anchor))
+    assert np.array_equal(motion.position.components, [anchor, anchor])
+    assert not motion.velocity.components.any()
+
+
+def test_a_stepper_raises_where_the_centre_becomes_infinite():
+    stepper = ph.Stepper(BODY, START, force=F.drag(-2e4))
+    with pytest.raises(ValueError, match=r"infinite at t = 0\.5"):
+        stepper.step(0.5)
+    assert stepper.state == START

@@ -53,7 +53,7 @@ pub enum SimulateError {
     BadValue { what: &'static str, value: f64 },
     /// The phase of an exact motion is not known this far from its start.
     #[error(
-        "times[{index}] = {time:e} s is beyond {horizon:.1e} s{}, where the phase of the rotation is lost to \
+        "times[{index}] = {time:e} s is beyond {horizon:.1e} s{}, where the phase of the motion is lost to \
          rounding; use times closer to {}",
         if *start == 0.0 { String::new() } else { format!(" from the start at {start} s") },
         if *start == 0.0 { "0" } else { "the start" }
@@ -86,7 +86,7 @@ pub enum SimulateError {
     /// A law cannot be evaluated at this time.
     #[error("at t = {} s: {message}", seconds(*time))]
     Torque { time: f64, message: String },
-    #[error("the motion became NaN or infinite at t = {} s; use a shorter step or a shorter time", seconds(*time))]
+    #[error("the motion became NaN or infinite at t = {} s; use a shorter time, or a shorter step where one is given", seconds(*time))]
     Diverged { time: f64 },
     #[error(
         "the body turns by {turn:.2} rad in a step of {step} s; more than 1 rad is not accurate: use a shorter dt, \

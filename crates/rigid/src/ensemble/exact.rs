@@ -21,9 +21,7 @@ impl<'a> Scheduler<'a> {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
         let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);
         let center = self.center(body);
-        if let Err(error) =
-            check_horizons(start.time, self.times, [motion.horizon().min(center.law.horizon()); 2])
-        {
+        if let Err(error) = check_horizons(start.time, self.times, [motion.horizon(); 2]) {
             return self.fail(body, own, METHOD, error);
         }
         let since = ElapsedTime::new(start.time, gyrostat, &[]);

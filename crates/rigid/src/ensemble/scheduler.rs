@@ -126,7 +126,7 @@ impl<'a> Scheduler<'a> {
     /// The plan of a body for equal steps in lanes, if they are supported.
     pub fn plan(&self, member: &Member, step: f64) -> Option<Plan> {
         let Member { gyrostat, torques, start, .. } = member;
-        if !self.ensemble.in_lanes(true) || !self.keeps_near(member.body) {
+        if !self.ensemble.in_lanes(true) || !self.knows_center(member.body) {
             return None;
         }
         let best = || Method::best(gyrostat, torques, false, start);
@@ -150,7 +150,7 @@ impl<'a> Scheduler<'a> {
     fn strategy(&self, member: &Member) -> Strategy {
         let Member { gyrostat, torques, start, omega, .. } = member;
         let chosen = self.options.method.is_some() && !self.options.exact;
-        if check_body(gyrostat, *omega, torques).is_err() || !self.keeps_near(member.body) {
+        if check_body(gyrostat, *omega, torques).is_err() || !self.knows_center(member.body) {
             // The error is reported as for a single body.
             Strategy::Single
         } else if chosen {
@@ -239,18 +239,16 @@ impl<'a> Scheduler<'a> {
         self.record([Outcome { body, certificate, failure: Some((time, error)) }]);
     }
 
-    /// The motion of a centre of mass, whose forces in lanes have a closed form.
+    /// The motion of the centre of mass, which has a closed form in lanes.
     pub fn center(&self, body: usize) -> CenterMotion {
         let (start, mass) = (&self.ensemble.starts[body], *self.ensemble.masses.of(body));
         let law = center_law(self.ensemble.forces_on(body), mass).unwrap_or_default();
         CenterMotion { time: start.time, start: start.center, law }
     }
 
-    /// Whether the centre of mass stays within the range of numbers: whatever grows is largest at the first or last time.
-    fn keeps_near(&self, body: usize) -> bool {
-        let center = self.center(body);
-        let ends = self.times.first().into_iter().chain(self.times.last()).map(|&time| center.at(time));
-        self.ensemble.forces.is_empty() || ends.flat_map(|end| end.position.0).all(f64::is_finite)
+    /// Whether the centre of mass is known at all times; if not, the run of a single body reports the error.
+    fn knows_center(&self, body: usize) -> bool {
+        self.ensemble.forces.is_empty() || self.center(body).is_known_at(self.times)
     }
 
     pub fn record(&self, outcomes: impl IntoIterator<Item = Outcome>) {

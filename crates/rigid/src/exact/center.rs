@@ -1,12 +1,14 @@
 //! The centre of mass under constant forces, drag and springs, in closed form.
 //!
-//! `x'' = a − γ x' − κ x` with `a = (ΣF + Σk x_anchor)/m`, `γ` the drag and `κ` the stiffness over the mass. From
-//! the start `x₀, v₀` with the acceleration `f = a − κ x₀` of a body at rest there,
+//! `x'' = a − γ x' − κ (x − x_a)` with the constant force, the drag and the stiffness over the mass and the anchor `x_a`.
+//! From the start `x₀, v₀` with the acceleration `f = a − κ (x₀ − x_a)` of a body at rest there,
 //!
 //! ```text
-//! x(t) = x₀ + v₀ S(t) + f Q(t),    v(t) = v₀ S'(t) + f S(t),
-//! S'' + γ S' + κ S = 0,  S(0) = 0,  S'(0) = 1,    Q(t) = ∫₀ᵗ S,    S' = 1 − γ S − κ Q.
+//! x(t) = x₀ + v₀ S(t) + f Q(t) = x_a + (x₀ − x_a) K(t) + v₀ S(t) + a Q(t),    v(t) = v₀ S'(t) + f S(t),
+//! S'' + γ S' + κ S = 0,  S(0) = 0,  S'(0) = 1,    Q(t) = ∫₀ᵗ S,    K = 1 − κ Q = S' + γ S.
 //! ```
+//!
+//! with a the acceleration by the constant force. The second form keeps the digits of a distance from the anchor that decays.
 //!
 //! With the roots `λ± = −γ/2 ± √(γ²/4 − κ)`, `α = λ₊t` and `β = λ₋t`, these are divided differences of the exponential:
 //! `S = t exp[α, β]` and `Q = t² exp[0, α, β]`. No form of them is accurate everywhere:
@@ -32,7 +34,7 @@ const TERMS: usize = 32;
 /// A root whose exponent is at least this decays or grows so far that `κ Q` loses less than a digit.
 const FAR: f64 = 0.75;
 
-/// The law of motion of a centre of mass: `x'' = a − γ x' − κ x`.
+/// The law of motion of a centre of mass: `x'' = a − γ x' − κ (x − x_a)`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CenterLaw {
     /// a, in m/s².
@@ -41,6 +43,8 @@ pub(crate) struct CenterLaw {
     drag: f64,
     /// κ, in 1/s².
     spring: f64,
+    /// x_a, in m.
+    anchor: Vector,
     roots: Roots,
 }
 
@@ -51,23 +55,24 @@ enum Roots {
     Zero,
     /// λ₊, λ₋ and their difference, in 1/s.
     Real { upper: DoubleDouble, lower: DoubleDouble, apart: f64 },
-    /// `−γ/2 ± iω`, ω in rad/s, and ωt in turns.
-    Complex { omega: f64, phase: Phase },
+    /// `−γ/2 ± iω`: −γ/2 in 1/s, ω in rad/s, and ωt in turns.
+    Complex { growth: DoubleDouble, omega: f64, phase: Phase },
 }
 
-/// S, S' and Q at a time.
+/// S, S', Q and K at a time.
 struct Response {
     impulse: f64,
     rate: f64,
     step: f64,
+    kept: f64,
 }
 
 impl CenterLaw {
-    /// With the sum of constant forces and of stiffnesses times anchors in N, the drag in N s/m and the stiffness in N/m, of
-    /// a mass in kg.
-    pub fn new(force: Vector, drag: f64, stiffness: f64, mass: f64) -> CenterLaw {
+    /// With a constant force in N, the drag in N s/m, and the stiffness in N/m of a spring with this anchor, of a mass in kg.
+    pub fn new(force: Vector, drag: f64, (stiffness, anchor): (f64, Vector), mass: f64) -> CenterLaw {
         let [gamma, kappa] = [drag, stiffness].map(|k| divided(k, mass));
-        CenterLaw { acceleration: force / mass, drag: gamma.hi, spring: kappa.hi, roots: roots(gamma, kappa) }
+        let roots = roots(gamma, kappa);
+        CenterLaw { acceleration: force / mass, drag: gamma.hi, spring: kappa.hi, anchor, roots }
     }
 
     /// Whether the path is a parabola: nothing but a constant force acts.
@@ -83,6 +88,29 @@ impl CenterLaw {
     /// The fastest rate of change in 1/s.
     pub fn rate(&self) -> f64 {
         self.drag.abs().max(self.spring.abs().sqrt())
+    }
+
+    /// ω of an oscillation in rad/s, else 0.
+    pub fn oscillation(&self) -> f64 {
+        if let Roots::Complex { omega, .. } = self.roots { omega } else { 0.0 }
+    }
+
+    /// The rate of change in 1/s a time after the start in s, without that of modes which have decayed.
+    pub fn rate_after(&self, elapsed: f64) -> f64 {
+        let left = |exponent: f64| exponent.min(0.0).exp();
+        match &self.roots {
+            Roots::Zero => 0.0,
+            Roots::Real { upper, lower, .. } => {
+                [upper.hi, lower.hi].map(|root| root.abs() * left(root * elapsed)).iter().sum()
+            }
+            Roots::Complex { growth, omega, .. } => {
+                if left(growth.hi * elapsed) == 0.0 {
+                    0.0
+                } else {
+                    omega + growth.hi.abs()
+                }
+            }
+        }
     }
 
     /// How far in time, in s, the phase of an oscillation is accurate.
@@ -105,12 +133,17 @@ impl CenterLaw {
                 velocity: velocity + self.acceleration * t,
             };
         }
-        let Response { impulse, rate, step } = self.response(time);
+        let Response { impulse, rate, step, kept } = self.response(time);
         let mut end = Center::default();
         for k in 0..3 {
             let (x, v) = (start.position.0[k], start.velocity.0[k]);
-            let f = self.acceleration.0[k] - self.spring * x;
-            end.position.0[k] = x + (times(v, impulse) + times(f, step));
+            let (a, anchor) = (self.acceleration.0[k], self.anchor.0[k]);
+            let f = a - times(x - anchor, self.spring);
+            end.position.0[k] = if kept < 0.5 {
+                anchor + (times(x - anchor, kept) + times(v, impulse) + times(a, step))
+            } else {
+                x + (times(v, impulse) + times(f, step))
+            };
             end.velocity.0[k] = times(v, rate) + times(f, impulse);
         }
         end
@@ -123,10 +156,11 @@ impl CenterLaw {
         }
         let roots = match self.roots {
             Roots::Real { upper, lower, apart } => Roots::Real { upper: -lower, lower: -upper, apart },
-            same => same,
+            Roots::Complex { growth, omega, phase } => Roots::Complex { growth: -growth, omega, phase },
+            Roots::Zero => Roots::Zero,
         };
-        let Response { impulse, rate, step } = CenterLaw { drag: -self.drag, roots, ..*self }.forwards(-time);
-        Response { impulse: -impulse, rate, step }
+        let found = CenterLaw { drag: -self.drag, roots, ..*self }.forwards(-time);
+        Response { impulse: -found.impulse, ..found }
     }
 
     fn forwards(&self, time: DoubleDouble) -> Response {
@@ -145,15 +179,17 @@ impl CenterLaw {
                 } else {
                     (alpha.mean() - beta.mean()) * (t / apart)
                 };
-                Response { impulse, rate: beta.value() + upper.hi * impulse, step }
+                let (rate, kept) = (beta.value() + upper.hi * impulse, beta.value() - lower.hi * impulse);
+                Response { impulse, rate, step, kept }
             }
-            Roots::Complex { omega, phase } => {
+            Roots::Complex { growth, omega, phase } => {
                 let (turns, rest) = phase.turns_at_pair::<false>((t, time.lo));
                 let (sin, cos) = sin_cos_turns::<false>(turns, rest);
-                let size = f64::exp(-0.5 * drag * t);
+                let size = Exponential::new(*growth, time).value();
                 let impulse = size * sin / omega;
-                let half = 0.5 * drag * impulse;
-                Response { impulse, rate: size * cos - half, step: (1.0 - size * cos - half) / spring }
+                let (even, half) = (size * cos, 0.5 * drag * impulse);
+                let step = (1.0 - even - half) / spring;
+                Response { impulse, rate: even - half, step, kept: even + half }
             }
             Roots::Zero => self.series(t),
         }
@@ -170,7 +206,8 @@ impl CenterLaw {
             second += h / (factorial * (n + 2) as f64);
             (before, h) = (h, sum * h - product * before);
         }
-        Response { impulse: t * first, rate: 1.0 + sum * first - product * second, step: t * t * second }
+        let kept = 1.0 - product * second;
+        Response { impulse: t * first, rate: kept + sum * first, step: t * t * second, kept }
     }
 }
 
@@ -194,7 +231,7 @@ fn roots(gamma: DoubleDouble, kappa: DoubleDouble) -> Roots {
     if square.hi < 0.0 {
         let omega = scaled((-square).sqrt(), unit);
         let phase = Phase { rate: omega * DoubleDouble::OVER_TWO_PI, start: [0.0; 2] };
-        return Roots::Complex { omega: omega.hi, phase };
+        return Roots::Complex { growth: -scaled(half, unit), omega: omega.hi, phase };
     }
     let root = square.sqrt();
     // The root without cancellation, and the other one by the product of both.

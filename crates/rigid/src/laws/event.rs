@@ -1,6 +1,6 @@
 //! Events along a motion: zero crossings of a quantity.
 
-use super::formula::Formula;
+use super::formula::{Formula, Motion};
 use crate::error::TorqueError;
 use crate::state::carried::Carried;
 use crate::state::point::{Function, Point};
@@ -79,6 +79,17 @@ impl Quantity {
             Quantity::Position { .. } => self,
             Quantity::Formula(formula) => Quantity::Formula(formula.in_axes(frame)),
             Quantity::Function(function) => Quantity::Function(function.in_axes(frame)),
+        }
+    }
+
+    /// Whether it may depend on the centre of mass.
+    pub(crate) fn reads_center(&self) -> bool {
+        match self {
+            Quantity::Axis { .. } | Quantity::Spin { .. } => false,
+            Quantity::Position { .. } | Quantity::Function(_) => true,
+            Quantity::Formula(formula) => {
+                formula.needs(|motion| matches!(motion, Motion::Position | Motion::Velocity))
+            }
         }
     }
 

@@ -13,19 +13,28 @@ pub(crate) fn center_law<'f>(forces: impl IntoIterator<Item = &'f Force>, mass: 
         // The mass may be unknown.
         return Some(CenterLaw::default());
     }
-    let (mut constant, mut drag, mut stiffness) = (Vector::default(), 0.0, 0.0);
+    let (mut constant, mut drag) = (Vector::default(), 0.0);
+    let mut springs = Vec::new();
     for force in forces {
         match force {
             Force::Constant(force) => constant += *force,
             Force::Drag(k) => drag += k,
-            Force::Spring(k, anchor) => {
-                stiffness += k;
-                constant += *anchor * *k;
-            }
+            Force::Spring(k, anchor) => springs.push((*k, *anchor)),
             _ => return None,
         }
     }
-    Some(CenterLaw::new(constant, drag, stiffness, mass))
+    // Springs act as one. That of a single spring is exact.
+    let stiffness: f64 = springs.iter().map(|(k, _)| k).sum();
+    let pull = || springs.iter().fold(Vector::default(), |sum, (k, anchor)| sum + *anchor * *k);
+    let anchor = match springs[..] {
+        [(_, anchor)] => anchor,
+        _ if stiffness != 0.0 => pull() / stiffness,
+        _ => {
+            constant += pull();
+            Vector::default()
+        }
+    };
+    Some(CenterLaw::new(constant, drag, (stiffness, anchor), mass))
 }
 
 /// A centre of mass that moves by such a law.
@@ -43,5 +52,13 @@ impl CenterMotion {
     /// The centre of mass at a time in s.
     pub fn at(&self, time: f64) -> Center {
         self.law.after(&self.start, DoubleDouble::two_sum(time, -self.time))
+    }
+    /// Whether the centre of mass is finite and its phase known at all times: what grows is largest at the first or the last.
+    pub fn is_known_at(&self, times: &[f64]) -> bool {
+        let horizon = self.law.horizon();
+        times.first().into_iter().chain(times.last()).all(|&time| {
+            let Center { position, velocity } = self.at(time);
+            (time - self.time).abs() <= horizon && position.0.iter().chain(&velocity.0).all(|x| x.is_finite())
+        })
     }
 }

@@ -87,4 +87,10 @@ impl StepBounds {
             least_rate: (torque / largest).sqrt().max(1e-4 * wheels / smallest),
         }
     }
+
+    /// Shortens steps that a tolerance determines, in which events are sought, to some hundred radians of an oscillation of
+    /// the centre of mass, so that their number counts towards the limit.
+    pub fn count_oscillation(&mut self, rate: f64) {
+        self.longest = self.longest.min(400.0 / rate);
+    }
 }

@@ -186,9 +186,12 @@ impl Problem {
         let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options);
         let center = self.center_motion();
         bounds.limit.reports_stiffness &= center.is_some();
-        if let (Some(center), false) = (&center, options.events.is_empty()) {
-            // Steps resolve an event of the centre of mass, too.
-            bounds.longest = bounds.longest.min(1.0 / center.law.rate());
+        if let Some(center) = &center {
+            check_horizons(self.time, times, [center.law.horizon(); 2])?;
+            let sought = options.events.iter().any(|event| event.quantity.reads_center());
+            if sought && options.step.is_none() {
+                bounds.count_oscillation(center.law.oscillation());
+            }
         }
         let limit = bounds.limit;
         match self.run(times, &options, bounds.clone(), progress) {

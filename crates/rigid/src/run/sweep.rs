@@ -14,6 +14,7 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Gyrostat;
 use crate::state::point::Point;
+use std::cmp::Ordering;
 
 /// The fraction of the work done at a time.
 type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
@@ -328,23 +329,28 @@ impl Integrator<'_> {
 
     /// Finds the events within a step. Returns its end, or the event that ends the motion.
     ///
-    /// A point within a step is computed by a shorter step. A step may be a good part of a turn: events are evaluated at
-    /// pairs of pieces of less than [`EVENT_TURN`] rad, and at a minimum suggested by three values in a row.
+    /// A point within a step is computed by a shorter step. A step may be a good part of a turn: events are evaluated at the
+    /// ends and the middles of pieces of less than two [`EVENT_TURN`], and at a minimum suggested by three values in a row.
     fn find_events(
         &self,
         cursor: &mut Cursor,
         next: Carried,
         sweep: &mut Sweep,
     ) -> Result<Carried, SimulateError> {
-        let start = cursor.at;
-        let (from, h) = (start.phase.time, next.phase.time - start.phase.time);
-        let halves = 2 * self.pairs(cursor, &next);
-        let mut before = (from, std::mem::take(&mut cursor.values));
-        for half in (2..=halves).step_by(2) {
-            let [middle, after] = [half - 1, half].map(|k| from + h * (k as f64 / halves as f64));
+        let (start, end) = (cursor.at, next.phase.time);
+        let forwards = end >= start.phase.time;
+        let whole = self.piece(cursor, &next);
+        let mut before = (start.phase.time, std::mem::take(&mut cursor.values));
+        while before.0 != end {
+            let length = whole.min(self.center_piece(before.0, (end - start.phase.time).abs()));
+            let after = before.0 + if forwards { length } else { -length };
+            // A last piece of nearly this length is not divided.
+            let is_last = (end - before.0).abs() <= length * (1.0 + 1e-9) || after == before.0;
+            let after = if is_last { end } else { after };
+            let middle = before.0 + 0.5 * (after - before.0);
             let middle = (middle, self.values(&self.within(&start, middle, cursor, sweep)?)?);
-            let after = if half == halves {
-                (next.phase.time, self.values(&next)?)
+            let after = if is_last {
+                (end, self.values(&next)?)
             } else {
                 (after, self.values(&self.within(&start, after, cursor, sweep)?)?)
             };
@@ -353,7 +359,7 @@ impl Integrator<'_> {
                 let samples = [&before, &middle, &after].map(|(time, values)| (*time, values[k]));
                 self.crossings(k, samples, cursor, sweep, &mut found)?;
             }
-            found.sort_by(|a, b| (a.at.phase.time * h.signum()).total_cmp(&(b.at.phase.time * h.signum())));
+            found.sort_by(|a, b| if forwards { by_time(a, b) } else { by_time(b, a) });
             for occurrence in found {
                 sweep.events.push(occurrence);
                 if self.events[occurrence.event].terminal {
@@ -367,21 +373,31 @@ impl Integrator<'_> {
         Ok(next)
     }
 
-    /// Number of pairs of pieces into which a step is divided for events.
-    fn pairs(&self, cursor: &Cursor, next: &Carried) -> u64 {
-        let h = next.phase.time - cursor.at.phase.time;
-        let turn = self.body.omega(next.phase.momentum).norm().max(cursor.fastest) * h.abs();
-        // How far the velocity turns, and the path leaves its tangent. Three values resolve a parabola.
+    /// The length in s of the equal pieces into which a step is divided for events.
+    fn piece(&self, cursor: &Cursor, next: &Carried) -> f64 {
+        let h = (next.phase.time - cursor.at.phase.time).abs();
+        let turn = self.body.omega(next.phase.momentum).norm().max(cursor.fastest) * h;
+        // How far the velocity turns, and the path leaves its tangent.
         let (a, b) = (cursor.at.center, next.center);
         let speed = a.velocity.norm().max(b.velocity.norm());
-        let is_parabola = self.center.is_some_and(|center| center.law.is_uniform());
-        let bend = if is_parabola || speed == 0.0 {
+        let bend = if self.center.is_some() || speed == 0.0 {
             0.0
         } else {
-            let leaves = (b.position - a.position) / h - a.velocity;
+            let leaves = (b.position - a.position) / (next.phase.time - cursor.at.phase.time) - a.velocity;
             (b.velocity - a.velocity).norm().max(leaves.norm()) / speed
         };
-        (turn.max(bend) / (2.0 * EVENT_TURN)).ceil().clamp(1.0, 1e4) as u64
+        h / (turn.max(bend) / (2.0 * EVENT_TURN)).ceil().clamp(1.0, 1e4)
+    }
+
+    /// The longest piece at a time that resolves a motion of the centre of mass in closed form, if events depend on it, and at
+    /// least a millionth of the step. Three values resolve a parabola.
+    fn center_piece(&self, time: f64, step: f64) -> f64 {
+        match &self.center {
+            Some(center) if self.events.iter().any(|event| event.quantity.reads_center()) => {
+                (2.0 * EVENT_TURN / center.law.rate_after(time - center.time)).max(1e-6 * step)
+            }
+            _ => f64::INFINITY,
+        }
     }
 
     /// Finds the zeros of an event between three evaluations, pairs of time and value.
@@ -454,4 +470,8 @@ impl Integrator<'_> {
 pub(crate) fn is_finite(at: &Carried) -> bool {
     let numbers = [at.phase.momentum.0, at.center.position.0, at.center.velocity.0];
     numbers.iter().flatten().chain(&at.phase.rotor.components()).all(|x| x.is_finite())
+}
+
+fn by_time(a: &Occurrence, b: &Occurrence) -> Ordering {
+    a.at.phase.time.total_cmp(&b.at.phase.time)
 }

@@ -198,6 +198,7 @@ impl Stepper {
         for piece in &pieces {
             self.check_turns(piece.dt / piece.count as f64)?;
         }
+        let centers = self.centers_after(dt)?;
         match &mut self.bodies {
             Bodies::Alone(bodies) => {
                 let mut after = Vec::with_capacity(bodies.len());
@@ -226,15 +227,34 @@ impl Stepper {
                 }
             }
         }
-        let moving = if self.moves { &mut self.members[..] } else { &mut [] };
-        for (number, member) in moving.iter_mut().enumerate() {
-            member.center = match (&self.bodies, &member.law) {
-                (Bodies::Alone(bodies), None) => bodies[number].center(),
-                (_, law) => law.unwrap_or_default().after(&member.center, dt.into()),
-            };
+        for (member, center) in self.members.iter_mut().zip(centers) {
+            member.center = center;
+        }
+        if let Bodies::Alone(bodies) = &self.bodies {
+            for (member, body) in
+                self.members.iter_mut().zip(bodies).filter(|(member, _)| member.law.is_none())
+            {
+                member.center = body.center();
+            }
         }
         self.time += dt;
         Ok(())
+    }
+
+    /// The centres of mass that move in closed form after a step, none if all rest.
+    fn centers_after(&self, dt: f64) -> Result<Vec<Center>, Failed> {
+        let moving = if self.moves { &self.members[..] } else { &[] };
+        let after = |(body, member): (usize, &Member)| {
+            let center = member.law.map_or(member.center, |law| law.after(&member.center, dt.into()));
+            let mut numbers = center.position.0.iter().chain(&center.velocity.0);
+            let time = self.time + dt;
+            if numbers.all(|x| x.is_finite()) {
+                Ok(center)
+            } else {
+                Err((body, SimulateError::Diverged { time }))
+            }
+        };
+        moving.iter().enumerate().map(after).collect()
     }
 
     /// A step of length `dt` in pieces of equal steps, which end where a law jumps.

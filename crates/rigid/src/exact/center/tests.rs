@@ -2,11 +2,20 @@ use super::*;
 
 const START: Center = Center { position: Vector([1.0, -2.0, 0.5]), velocity: Vector([-0.25, 3.0, 1.0]) };
 
+const NO_SPRING: (f64, Vector) = (0.0, Vector([0.0; 3]));
+
+/// A spring with its anchor at the origin, of a mass of 1 kg.
+fn spring(drag: f64, stiffness: f64) -> CenterLaw {
+    CenterLaw::new(Vector::default(), drag, (stiffness, Vector::default()), 1.0)
+}
+
 /// None, weak, oscillating, critical, nearly critical, strong and stiff.
 fn laws() -> impl Iterator<Item = CenterLaw> {
     let drags = [0.0, 1e-9, 0.3, 2.0, 2.0 + 1e-12, 5.0, 1e6];
     let springs = [0.0, 1e-12, 0.04, 1.0, 1.0 + 1e-13, 400.0];
-    let law = |drag, stiffness| CenterLaw::new(Vector([0.5, 0.0, -9.0]), drag, stiffness, 1.0);
+    let law = |drag, stiffness| {
+        CenterLaw::new(Vector([0.5, 0.0, -9.0]), drag, (stiffness, Vector([0.0, 0.5, 0.0])), 1.0)
+    };
     drags.into_iter().flat_map(move |drag| springs.map(|stiffness| law(drag, stiffness)))
 }
 
@@ -55,17 +64,17 @@ fn the_start_is_kept_and_no_law_is_a_line() {
 fn extreme_numbers_neither_overflow_nor_vanish() {
     let still = Center { velocity: Vector::default(), ..START };
     // m g/k, at once.
-    let sinking = CenterLaw::new(Vector([0.0, 0.0, -9.0]), 1e300, 0.0, 1.0);
+    let sinking = CenterLaw::new(Vector([0.0, 0.0, -9.0]), 1e300, NO_SPRING, 1.0);
     assert_eq!(sinking.after(&still, 1.0.into()).velocity, Vector([0.0, 0.0, -9e-300]));
     // A heavy spring turns by half a turn.
     for stiffness in [1e-300, 1e300] {
-        let swing = CenterLaw::new(Vector::default(), 0.0, stiffness, 1.0);
+        let swing = spring(0.0, stiffness);
         let half = swing.after(&still, (std::f64::consts::PI / f64::sqrt(stiffness)).into());
         assert!((half.position + START.position).norm() <= 8.0 * f64::EPSILON, "{half:?}");
     }
     // Slow beside the drag: x' = −(κ/γ) x.
-    let creeping = CenterLaw::new(Vector::default(), 1e160, 1.0, 1.0);
+    let creeping = spring(1e160, 1.0);
     let later = creeping.after(&still, 1e160.into());
     assert!((later.position - START.position * f64::exp(-1.0)).norm() <= 8.0 * f64::EPSILON, "{later:?}");
-    assert_eq!(CenterLaw::new(Vector::default(), 0.0, 1.0, 1.0).horizon(), 2e17 * std::f64::consts::PI);
+    assert_eq!(spring(0.0, 1.0).horizon(), 2e17 * std::f64::consts::PI);
 }

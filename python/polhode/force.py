@@ -51,7 +51,9 @@ class Force(Sum):
         return super().__add__(constant(other) if isinstance(other, Multivector) else other)
 
     def __sub__(self, other: Multivector) -> Force:
-        return self + -other if isinstance(other, Multivector) else NotImplemented
+        if not isinstance(other, Multivector):
+            return NotImplemented
+        return self + constant(0.0 - as_point(other, "the force"))
 
     def __radd__(self, other: object) -> Force:
         return constant(other) + self if isinstance(other, Multivector) else super().__radd__(other)

@@ -27,7 +27,7 @@ use crate::state::center::Center;
 use polhode_ga::Vector;
 
 /// Up to this time, in units of the shorter of `1/|γ|` and `1/√|κ|`, the series are used. The roots are then at most
-/// `1 + √5`, and the first term left out, `(1 + √5)³² 33/34!`, is below 1e-20.
+/// `1 + √5`, and the first term left out, `(1 + √5)³² 33/33!`, is below 1e-19.
 const LONGEST_SERIES: f64 = 2.0;
 const TERMS: usize = 32;
 

@@ -1,10 +1,10 @@
 """Events for `polhode.simulate`: times at which a quantity of the motion crosses zero.
 
-The quantity is sampled at every step and its midpoint, every 0.2 rad of rotation, and where its values
-suggest a short excursion to the other sign; each crossing is then located to rounding by root finding. A
-quantity that only touches zero does not cross it, and a zero at the start is not a crossing. A quantity that
-changes much faster than the body turns, as a formula may, can cross zero twice between samples: use a shorter
-`step`.
+The quantity is sampled at every step and its midpoint, every 0.2 rad of rotation or of an oscillation of the
+centre of mass, and where its values suggest a short excursion to the other sign; each crossing is then
+located to rounding by root finding. A quantity that only touches zero does not cross it, and a zero at the
+start is not a crossing. A quantity that changes much faster than the body moves, as a formula may, can cross
+zero twice between samples: use a shorter `max_step`.
 """
 
 from __future__ import annotations

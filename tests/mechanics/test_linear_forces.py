@@ -193,3 +193,52 @@ def test_a_stepper_raises_where_the_centre_becomes_infinite():
     with pytest.raises(ValueError, match=r"infinite at t = 0\.5"):
         stepper.step(0.5)
     assert stepper.state == START
+
+
+@pytest.mark.parametrize(
+    "how", [{}, {"torque": ph.torque.viscous_damping(0.1)}, {"method": "rk4", "step": 5.0}]
+)
+def test_events_of_a_slow_turn_after_a_fast_decay(how):
+    """It rises to (v + w)/γ − w t, and passes the level on both sides of the top, long after the start."""
+    gamma, w, v = 5.0, 0.01, 10.0
+    state = ph.State(R0, [0, 0, 1e-4], velocity=[0, 0, v])
+    passed = ph.event.position(ph.e3, 1.98)
+    force = F.drag(gamma * M) - w * gamma * M * ph.e3
+    found = ph.simulate(BODY, state, [5.0], force=force, events=passed, **how).events[0]
+
+    def above(t):
+        return (v + w) / gamma * -mpmath.expm1(-gamma * t) - w * t - mpmath.mpf("1.98")
+
+    with mpmath.workdps(30):
+        expected = [float(mpmath.findroot(above, guess)) for guess in (1.0, 2.1)]
+    np.testing.assert_allclose(found.time, expected, rtol=1e-10)
+    assert found.rising.tolist() == [True, False]
+
+
+def test_events_of_an_oscillation_that_ends():
+    """Nothing is left of it after 1,500 decays, nor of a growth that starts from nothing."""
+    passed = ph.event.position(ph.e1, -0.1)
+    swinging = ph.State(R0, [0, 0, 1e-3], position=[1, 0, 0])
+    motion = ph.simulate(BODY, swinging, [1e7], force=F.spring(1e6) + F.drag(1e3), events=passed)
+    assert len(motion.events[0].time) == 2
+    resting = ph.State(R0, [0, 0, 1])
+    assert not len(ph.simulate(BODY, resting, [100.0], force=F.drag(-1e7), events=passed).events[0].time)
+
+
+def test_too_many_oscillations_are_an_error():
+    state = ph.State(R0, [0, 0, 1e-3], position=[1, 0, 0])
+    with pytest.raises(ValueError, match="more than max_steps = 1e8"):
+        ph.simulate(BODY, state, [1e4], force=F.spring(1e9), events=ph.event.position(ph.e1))
+
+
+def test_springs_with_one_anchor_keep_a_body_there():
+    anchor = np.array([1e7 / 3, -2e-9, 1e5 / 7])
+    state = ph.State(R0, [0, 0, 1], position=anchor)
+    motion = ph.simulate(BODY, state, [7.0], force=F.spring(0.1, anchor) + F.spring(0.2, anchor))
+    assert np.array_equal(motion.position.components, [anchor])
+    ends = [F.spring(0.5, [1, 2, 3]) + F.spring(1.5, [0, -1, 4]), F.spring(2.0, [0.25, -0.25, 3.75])]
+    one, other = (ph.simulate(BODY, START, [2.0], force=force).position.components for force in ends)
+    np.testing.assert_allclose(one, other, rtol=0, atol=32 * EPS)
+    ends = [F.spring(0.5, [1, 2, 3]) + F.spring(-0.5, [0, -1, 4]), F.constant([0.5, 1.5, -0.5])]
+    one, other = (ph.simulate(BODY, START, [2.0], force=force).position.components for force in ends)
+    np.testing.assert_allclose(one, other, rtol=0, atol=32 * EPS)

@@ -34,6 +34,9 @@ const TERMS: usize = 32;
 /// A root whose exponent is at least this decays or grows so far that `κ Q` loses less than a digit.
 const FAR: f64 = 0.75;
 
+/// An exponential from the least to the largest number has the exponent `ln 2²¹⁰⁰`.
+const RANGE: f64 = 1456.0;
+
 /// The law of motion of a centre of mass: `x'' = a − γ x' − κ (x − x_a)`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CenterLaw {
@@ -90,33 +93,35 @@ impl CenterLaw {
         self.drag.abs().max(self.spring.abs().sqrt())
     }
 
-    /// ω of an oscillation in rad/s, else 0.
-    pub fn oscillation(&self) -> f64 {
-        if let Roots::Complex { omega, .. } = self.roots { omega } else { 0.0 }
-    }
-
-    /// The rate of change in 1/s a time after the start in s, without that of modes which have decayed.
+    /// The rate of change in 1/s a time after the start in s: the sum of those of the modes that are within the range of
+    /// numbers.
     pub fn rate_after(&self, elapsed: f64) -> f64 {
-        let left = |exponent: f64| exponent.min(0.0).exp();
+        let within = |growth: f64| if (growth * elapsed).abs() <= RANGE { 1.0 } else { 0.0 };
         match &self.roots {
             Roots::Zero => 0.0,
             Roots::Real { upper, lower, .. } => {
-                [upper.hi, lower.hi].map(|root| root.abs() * left(root * elapsed)).iter().sum()
+                [upper.hi, lower.hi].map(|root| root.abs() * within(root)).iter().sum()
             }
-            Roots::Complex { growth, omega, .. } => {
-                if left(growth.hi * elapsed) == 0.0 {
-                    0.0
-                } else {
-                    omega + growth.hi.abs()
-                }
-            }
+            Roots::Complex { growth, omega, .. } => (omega + growth.hi.abs()) * within(growth.hi),
+        }
+    }
+
+    /// How many radians it oscillates in a time in s.
+    pub fn oscillates(&self, time: f64) -> f64 {
+        match &self.roots {
+            Roots::Complex { growth, omega, .. } => omega * time.min(RANGE / growth.hi.abs()),
+            _ => 0.0,
         }
     }
 
     /// How far in time, in s, the phase of an oscillation is accurate.
     pub fn horizon(&self) -> f64 {
         match &self.roots {
-            Roots::Complex { phase, .. } => MOST_TURNS / phase.rate.hi,
+            Roots::Complex { growth, phase, .. } => {
+                let horizon = MOST_TURNS / phase.rate.hi;
+                // A decay ends before.
+                if growth.hi.abs() * horizon > RANGE { f64::INFINITY } else { horizon }
+            }
             _ => f64::INFINITY,
         }
     }

@@ -23,17 +23,14 @@ pub(crate) fn center_law<'f>(forces: impl IntoIterator<Item = &'f Force>, mass: 
             _ => return None,
         }
     }
-    // Springs act as one. That of a single spring is exact.
+    // Springs act as one, whose anchor is their mean. That of springs with the same anchor is exact.
     let stiffness: f64 = springs.iter().map(|(k, _)| k).sum();
-    let pull = || springs.iter().fold(Vector::default(), |sum, (k, anchor)| sum + *anchor * *k);
-    let anchor = match springs[..] {
-        [(_, anchor)] => anchor,
-        _ if stiffness != 0.0 => pull() / stiffness,
-        _ => {
-            constant += pull();
-            Vector::default()
-        }
-    };
+    let first = springs.first().map_or(Vector::default(), |(_, anchor)| *anchor);
+    let pull = springs.iter().fold(Vector::default(), |sum, (k, anchor)| sum + (*anchor - first) * *k);
+    let anchor = if stiffness == 0.0 { Vector::default() } else { first + pull / stiffness };
+    if stiffness == 0.0 {
+        constant += pull;
+    }
     Some(CenterLaw::new(constant, drag, (stiffness, anchor), mass))
 }
 
@@ -53,6 +50,7 @@ impl CenterMotion {
     pub fn at(&self, time: f64) -> Center {
         self.law.after(&self.start, DoubleDouble::two_sum(time, -self.time))
     }
+
     /// Whether the centre of mass is finite and its phase known at all times: what grows is largest at the first or the last.
     pub fn is_known_at(&self, times: &[f64]) -> bool {
         let horizon = self.law.horizon();

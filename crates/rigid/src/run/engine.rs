@@ -34,7 +34,7 @@ impl Engine {
         translation: Option<Translation>,
         start: &Phase,
     ) -> Result<Engine, SimulateError> {
-        let moving = "of all forces supports only constant ones, drag and springs; use auto, dop853 or rk4";
+        let moving = "supports no other forces than constant ones, drag and springs; use auto, dop853 or rk4";
         let moving = (translation.is_some() && !matches!(method, Method::Classical | Method::RungeKutta))
             .then_some(moving);
         if let Some(reason) = method.unfit(&body, torques).or(moving) {

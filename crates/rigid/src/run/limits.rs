@@ -56,6 +56,11 @@ pub(crate) fn samples(
 }
 
 impl StepBounds {
+    /// The largest number of pieces of steps in which events of an oscillating centre of mass are sought.
+    pub fn most_pieces(&self) -> f64 {
+        self.limit.steps.max(MAX_STEPS)
+    }
+
     /// For laws in principal axes, with their samples.
     pub fn new(
         torques: &[Torque],
@@ -86,11 +91,5 @@ impl StepBounds {
             limit: Limit { steps: options.most_steps(), reports_stiffness: options.may_change_method() },
             least_rate: (torque / largest).sqrt().max(1e-4 * wheels / smallest),
         }
-    }
-
-    /// Shortens steps that a tolerance determines, in which events are sought, to some hundred radians of an oscillation of
-    /// the centre of mass, so that their number counts towards the limit.
-    pub fn count_oscillation(&mut self, rate: f64) {
-        self.longest = self.longest.min(400.0 / rate);
     }
 }

@@ -36,7 +36,7 @@ use polhode_ga::{Bivector, Rotor};
 use refine::{Accuracy, Convergence, Scales, SweepPlan};
 use stops::{aliasing_warning, is_aliased};
 pub use sweep::Progress;
-use sweep::{Integrator, StepRule, Sweep, is_finite};
+use sweep::{Integrator, StepRule, Sweep, check_pieces, is_finite};
 
 pub use motion::{Motion, States};
 pub use options::{MAX_STEPS, Options};
@@ -188,9 +188,9 @@ impl Problem {
         bounds.limit.reports_stiffness &= center.is_some();
         if let Some(center) = &center {
             check_horizons(self.time, times, [center.law.horizon(); 2])?;
-            let sought = options.events.iter().any(|event| event.quantity.reads_center());
-            if sought && options.step.is_none() {
-                bounds.count_oscillation(center.law.oscillation());
+            if options.events.iter().any(|event| event.quantity.reads_center()) {
+                let [first, last] = span(times, self.time);
+                check_pieces(&center.law, (self.time - first).max(last - self.time), &bounds)?;
             }
         }
         let limit = bounds.limit;

@@ -15,6 +15,8 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Gyrostat;
 
+pub(crate) use events::check_pieces;
+
 /// The fraction of the work done at a time.
 type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
 
@@ -91,6 +93,8 @@ pub(crate) struct Sweep {
     /// The longest step.
     pub longest: f64,
     pub steps: u64,
+    /// Number of pieces of steps in which events of a centre of mass in closed form were sought.
+    pub pieces: u64,
     pub evaluations: u64,
 }
 
@@ -302,7 +306,7 @@ impl Integrator<'_> {
             return Err(SimulateError::Diverged { time });
         }
         if !self.events.is_empty() {
-            next = self.find_events(cursor, next, sweep)?;
+            next = self.find_events(cursor, next, sweep, done)?;
         }
         self.monitor.record(&next.phase);
         cursor.fastest = cursor.fastest.max(self.body.omega(next.phase.momentum).norm());

@@ -1,8 +1,10 @@
 //! Events within the steps of a sweep.
 
-use super::{Cursor, Integrator, Sweep};
+use super::{Cursor, Done, Integrator, Progress, Sweep};
 use crate::error::{SimulateError, TorqueError};
+use crate::exact::center::CenterLaw;
 use crate::laws::event::{Occurrence, crossing, dip, root};
+use crate::run::limits::StepBounds;
 use crate::state::carried::Carried;
 use crate::state::point::Point;
 use std::cmp::Ordering;
@@ -13,23 +15,45 @@ const EVENT_TURN: f64 = 0.2;
 /// An event this close to the start, relative to the time to the next evaluation, is at the start.
 const ROUNDING_OF_START: f64 = 1e-12;
 
+/// Pieces between calls of `progress`.
+const PIECES_BETWEEN_CALLS: u64 = 4096;
+
+/// An error if the oscillation of a centre of mass over a time in s needs too many pieces.
+pub(crate) fn check_pieces(law: &CenterLaw, time: f64, bounds: &StepBounds) -> Result<(), SimulateError> {
+    let pieces = law.oscillates(time) / (2.0 * EVENT_TURN);
+    check_number(pieces, 2.0 * EVENT_TURN / law.rate_after(0.0), bounds)
+}
+
+fn check_number(steps: f64, step: f64, bounds: &StepBounds) -> Result<(), SimulateError> {
+    let limit = bounds.most_pieces();
+    if steps > limit { Err(SimulateError::TooManySteps { steps, step, limit }) } else { Ok(()) }
+}
+
 impl Integrator<'_> {
     /// Finds the events within a step. Returns its end, or the event that ends the motion.
     ///
     /// A point within a step is computed by a shorter step. A step may be a good part of a turn: events are evaluated at the
     /// ends and the middles of pieces of less than two [`EVENT_TURN`], and at a minimum suggested by three values in a row.
     pub(super) fn find_events(
-        &self,
+        &mut self,
         cursor: &mut Cursor,
         next: Carried,
         sweep: &mut Sweep,
+        done: Done,
     ) -> Result<Carried, SimulateError> {
         let (start, end) = (cursor.at, next.phase.time);
         let forwards = end >= start.phase.time;
         let whole = self.piece(cursor, &next);
         let mut before = (start.phase.time, std::mem::take(&mut cursor.values));
         while before.0 != end {
-            let length = whole.min(self.center_piece(before.0, (end - start.phase.time).abs()));
+            let length = match self.center_piece(before.0) {
+                piece if piece < whole => {
+                    sweep.pieces += 1;
+                    self.count_pieces(sweep.pieces, piece, || done(before.0))?;
+                    piece
+                }
+                _ => whole,
+            };
             let after = before.0 + if forwards { length } else { -length };
             // A last piece of nearly this length is not divided.
             let is_last = (end - before.0).abs() <= length * (1.0 + 1e-9) || after == before.0;
@@ -76,15 +100,31 @@ impl Integrator<'_> {
         h / (turn.max(bend) / (2.0 * EVENT_TURN)).ceil().clamp(1.0, 1e4)
     }
 
-    /// The longest piece at a time that resolves a motion of the centre of mass in closed form, if events depend on it, and at
-    /// least a millionth of the step. Three values resolve a parabola.
-    fn center_piece(&self, time: f64, step: f64) -> f64 {
+    /// The longest piece at a time that resolves a motion of the centre of mass in closed form, if events depend on it. Three
+    /// values resolve a parabola.
+    fn center_piece(&self, time: f64) -> f64 {
         match &self.center {
             Some(center) if self.events.iter().any(|event| event.quantity.reads_center()) => {
-                (2.0 * EVENT_TURN / center.law.rate_after(time - center.time)).max(1e-6 * step)
+                2.0 * EVENT_TURN / center.law.rate_after(time - center.time)
             }
             _ => f64::INFINITY,
         }
+    }
+
+    /// An error if there are too many pieces, the last one of this length in s, or if the run is interrupted.
+    fn count_pieces(
+        &mut self,
+        pieces: u64,
+        length: f64,
+        done: impl FnOnce() -> f64,
+    ) -> Result<(), SimulateError> {
+        if !pieces.is_multiple_of(PIECES_BETWEEN_CALLS) {
+            return Ok(());
+        }
+        check_number(pieces as f64, length, self.bounds)?;
+        let fraction = done().min(1.0);
+        let goes_on = (self.progress)(Progress { pass: self.number, fraction });
+        if goes_on { Ok(()) } else { Err(SimulateError::Interrupted) }
     }
 
     /// Finds the zeros of an event between three evaluations, pairs of time and value.

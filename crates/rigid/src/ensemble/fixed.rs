@@ -89,8 +89,9 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
         let point = |points: &LanePoints<W>, l: usize, time: f64| {
             LanePoint::new(points, l, (&gyrostats[l], &torques[l]), time)
         };
-        let moves = |member: &Member| member.own.centers.as_ref().map(|_| scheduler.center(member.body));
-        let centers: Vec<_> = members.iter().map(moves).collect();
+        // Of bodies that move; the others have none.
+        let moving = if members[0].own.centers.is_some() { &members[..] } else { &[] };
+        let centers: Vec<_> = moving.iter().map(|member| scheduler.center(member.body)).collect();
         let mut monitor = LaneMonitor::<W>::default();
         let at_start = bodies.points(LanePhases::starts(&members));
         (0..members.len()).for_each(|l| monitor.follow(l, &point(&at_start, l, start)));
@@ -156,7 +157,7 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
                     monitor.record(l, &point);
                     let (rotor, omega) = points.in_body(l);
                     member.own.put(index, rotor, omega, point.momentum, point.energy);
-                    if let Some(center) = &centers[l] {
+                    if let Some(center) = centers.get(l) {
                         member.own.place(index, &center.at(time));
                     }
                 }

@@ -245,8 +245,12 @@ def test_formulas_and_functions_equal_built_in_forces(law, text, function):
     for other in (formula, given):
         assert np.all(other.position.is_close(law.position, rtol=1e-12, atol=1e-12))
         assert np.all(other.velocity.is_close(law.velocity, rtol=1e-12, atol=1e-12))
-        if law.certificate.method == other.certificate.method:
-            assert other.certificate.evaluations == law.certificate.evaluations
+    assert given.certificate.evaluations == formula.certificate.evaluations
+    # The method of the rotation differs where the centre of mass has a closed form.
+    if law.certificate.method == formula.certificate.method:
+        assert law.certificate.evaluations == formula.certificate.evaluations
+    else:
+        assert text in ("-k v", "-k x")
 
 
 def test_a_formula_knows_time_and_mass():

@@ -54,9 +54,10 @@ impl CenterMotion {
     /// Whether the centre of mass is finite and its phase known at all times: what grows is largest at the first or the last.
     pub fn is_known_at(&self, times: &[f64]) -> bool {
         let horizon = self.law.horizon();
-        times.first().into_iter().chain(times.last()).all(|&time| {
-            let Center { position, velocity } = self.at(time);
-            (time - self.time).abs() <= horizon && position.0.iter().chain(&velocity.0).all(|x| x.is_finite())
-        })
+        times
+            .first()
+            .into_iter()
+            .chain(times.last())
+            .all(|&time| (time - self.time).abs() <= horizon && self.at(time).is_finite())
     }
 }

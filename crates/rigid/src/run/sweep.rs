@@ -326,6 +326,6 @@ impl Integrator<'_> {
 }
 
 pub(crate) fn is_finite(at: &Carried) -> bool {
-    let numbers = [at.phase.momentum.0, at.center.position.0, at.center.velocity.0];
-    numbers.iter().flatten().chain(&at.phase.rotor.components()).all(|x| x.is_finite())
+    let mut turning = at.phase.momentum.0.into_iter().chain(at.phase.rotor.components());
+    turning.all(f64::is_finite) && at.center.is_finite()
 }

@@ -10,3 +10,10 @@ pub struct Center {
     /// In m/s.
     pub velocity: Vector,
 }
+
+impl Center {
+    /// Whether all numbers are.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.position.0.iter().chain(&self.velocity.0).all(|x| x.is_finite())
+    }
+}

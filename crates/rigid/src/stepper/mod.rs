@@ -246,13 +246,8 @@ impl Stepper {
         let moving = if self.moves { &self.members[..] } else { &[] };
         let after = |(body, member): (usize, &Member)| {
             let center = member.law.map_or(member.center, |law| law.after(&member.center, dt.into()));
-            let mut numbers = center.position.0.iter().chain(&center.velocity.0);
             let time = self.time + dt;
-            if numbers.all(|x| x.is_finite()) {
-                Ok(center)
-            } else {
-                Err((body, SimulateError::Diverged { time }))
-            }
+            if center.is_finite() { Ok(center) } else { Err((body, SimulateError::Diverged { time })) }
         };
         moving.iter().enumerate().map(after).collect()
     }

@@ -9,9 +9,8 @@ import { statesOf, type Steps } from "../stage/steps.ts";
 /** States per turn of the body, and per column at most: beyond that the chart shows where ω is, not how it gets there. */
 const PER_TURN = 14;
 const PER_COLUMN = 24;
-/** Irrational steps spread the times within columns, and differently in each: equal steps may agree with the motion. */
+/** Multiples of the golden ratio spread the times evenly within a column; those of squares move each within its share, as at random. */
 const GOLDEN = (Math.sqrt(5) - 1) / 2;
-const ROOT = Math.SQRT2;
 
 /** The least and the largest ω along each of the named axes, rad/s, in columns of equal duration. */
 export interface Envelope {
@@ -22,6 +21,8 @@ export interface Envelope {
   range: [least: number, most: number];
   /** Whether columns hold more than a part of a turn, so that bands are drawn and not lines. */
   bands: boolean;
+  /** Whether this is the last pass. */
+  complete: boolean;
 }
 
 /** ω along named axes in a row of states, which begins at an offset. */
@@ -49,7 +50,9 @@ export function* sampled(
   const [first, last] = span(about);
   for (let pass = 0; pass < passes; pass++) {
     const times = Float64Array.from({ length: columns }, (_, k) => {
-      const part = passes === 1 ? 0.5 : (0.5 + pass * GOLDEN + k * ROOT) % 1;
+      // Equal steps alone may agree with the turns of the motion, of which they then show a few phases only.
+      const moved = ((pass * columns + k) ** 2 * GOLDEN) % 1;
+      const part = passes === 1 ? 0.5 : (pass * GOLDEN + moved / passes) % 1;
       return Math.min(Math.max(from + (length * (k + part)) / columns, first), last);
     });
     const rows = yield* statesOf(motion, times);
@@ -63,7 +66,8 @@ export function* sampled(
     }
     yield;
     // The first pass at once, so that there is something to see; then now and then.
-    if (pass === passes - 1 || pass % 4 === 0) show({ least, most, range: [...range], bands: passes > 1 });
+    const complete = pass === passes - 1;
+    if (complete || pass % 4 === 0) show({ least, most, range: [...range], bands: passes > 1, complete });
   }
 }
 

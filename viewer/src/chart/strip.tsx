@@ -93,7 +93,7 @@ function Plot({ model, about, first, hovered }: PlotProps) {
     <div
       class="plot"
       ref={place}
-      data-complete={envelope.value !== null}
+      data-complete={envelope.value?.complete ?? false}
       onPointerDown={(event) => {
         if (event.button !== 0) return;
         event.preventDefault();

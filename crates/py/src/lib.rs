@@ -30,7 +30,7 @@ mod _native {
     };
 
     #[pymodule_export]
-    use crate::mechanics::bodies::{Body, Inertia};
+    use crate::mechanics::bodies::{Body, Inertia, types_of};
     #[pymodule_export]
     use crate::mechanics::ensemble::simulate_many;
     #[pymodule_export]

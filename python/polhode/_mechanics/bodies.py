@@ -31,7 +31,7 @@ _BYTES = 800  # of an inertia, in Python and in the core
 
 def matrices(inertias: Iterable[Inertia]) -> Array:
     """Return the matrices (n, 3, 3) of inertias."""
-    return _native.Inertia.matrices([inertia._core for inertia in inertias]).reshape(-1, 3, 3)
+    return _native.Inertia.matrices(list(inertias)).reshape(-1, 3, 3)
 
 
 @with_foreign_names(INERTIA)
@@ -609,7 +609,7 @@ def objects_of(values: Any, kinds: tuple[type, ...], what: str, remedy: str = ""
 
 def types_of(array: Any) -> set[type]:
     """Return the types of the objects of an array."""
-    return {*map(type, array.ravel().tolist())}
+    return {*_native.types_of(array.ravel().tolist())}
 
 
 def inertia_of(body: Any, held: bool) -> Any:

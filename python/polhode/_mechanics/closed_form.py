@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import operator
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Self
 
@@ -197,7 +196,7 @@ def given(
     shapes = [inertias.shape, *(numbers.shape[:-1] for numbers in rows)]
     if not any(shapes):
         # Broadcasting a single body would take as long as its solution.
-        return ([inertias[()]._core], *map(np.ascontiguousarray, rows)), inertias[()]
+        return ([inertias[()]], *map(np.ascontiguousarray, rows)), inertias[()]
     try:
         shape = np.broadcast_shapes(*shapes)
     except ValueError:
@@ -209,9 +208,10 @@ def given(
     one = not inertias.shape
     if not one:
         inertias = np.broadcast_to(inertias, shape)
-    cores = list(map(operator.attrgetter("_core"), inertias.ravel()))
     broadcast = (np.broadcast_to(x, (*shape, x.shape[-1])) for x in rows)
-    return (cores, *map(np.ascontiguousarray, broadcast)), inertias[()] if one else inertias
+    return (inertias.ravel().tolist(), *map(np.ascontiguousarray, broadcast)), inertias[
+        ()
+    ] if one else inertias
 
 
 def bivectors(numbers: Array, shape: Shape) -> Multivector:

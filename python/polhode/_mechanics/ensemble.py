@@ -7,7 +7,6 @@ import sys
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -33,7 +32,6 @@ StepLimits = tuple[float | None, float | None, list[float]]
 
 _VECTOR, _BIVECTOR = 0b0010, 0b0100
 _NOWHERE: Any = (None, None)
-_CORE = attrgetter("_core")
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +186,7 @@ class Ensemble(Results):
         centers = np.concatenate(np.broadcast_arrays(self.positions, self.velocities), axis=-1)
         arrays, summary = _native.simulate_many(
             self.shape,
-            ([*map(_CORE, self.inertias.ravel().tolist())], self.inertias.shape),
+            (self.inertias.ravel().tolist(), self.inertias.shape),
             np.ascontiguousarray(self.start_times),
             self.rotors,
             self.omegas,

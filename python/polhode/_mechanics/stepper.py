@@ -107,7 +107,7 @@ class Stepper:
         self.shape = setup.shape
         self._core = _native.Stepper(
             setup.shape,
-            ([inertia._core for inertia in setup.inertias.flat], setup.inertias.shape),
+            (setup.inertias.ravel().tolist(), setup.inertias.shape),
             _common_time(setup.start_times),
             setup.rotors,
             setup.omegas,

@@ -34,13 +34,14 @@ impl Rotor {
         if length == 0.0 {
             return Err(MathError::ZeroRotor);
         }
+        if (length - 1.0).abs() <= 4.0 * f64::EPSILON {
+            return Ok(Rotor::from_unit_components(c));
+        }
         // Scaling by a power of two keeps the quotient accurate for subnormal components.
         let scale = scale_of(&c);
         let d = c.map(|x| x / scale);
         let n = norm(&d);
-        let unit = (length - 1.0).abs() <= 4.0 * f64::EPSILON;
-        let [s, x, y, z] = if unit { c } else { d.map(|x| x / n) };
-        Ok(Rotor { scalar: s, bivector: Bivector([x, y, z]) })
+        Ok(Rotor::from_unit_components(d.map(|x| x / n)))
     }
 
     /// From components of norm 1 to rounding, which is not checked.

@@ -7,13 +7,44 @@ use polhode_ga::simd::threads::for_each;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::inertia;
 use polhode_rigid::{Amount, BodyError, Solid, TriangleMesh, body};
+use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PyType};
 use std::convert::Infallible;
 use std::path::PathBuf;
 
 /// The inertia map.
 #[pyclass(frozen, module = "polhode._native")]
 pub(crate) struct Inertia(pub(crate) inertia::Inertia);
+
+/// Inertias from a list of objects of the Python class.
+pub(crate) struct Inertias(pub(crate) Vec<inertia::Inertia>);
+
+impl FromPyObject<'_, '_> for Inertias {
+    type Error = PyErr;
+
+    fn extract(list: Borrowed<'_, '_, PyAny>) -> PyResult<Inertias> {
+        let core = intern!(list.py(), "_core");
+        let list = list.cast::<PyList>()?;
+        let mut inertias = Vec::with_capacity(list.len());
+        for one in list.iter() {
+            inertias.push(one.getattr(core)?.cast::<Inertia>()?.get().0);
+        }
+        Ok(Inertias(inertias))
+    }
+}
+
+/// The types of the objects in a list, each at least once.
+#[pyfunction]
+pub(crate) fn types_of<'py>(objects: Bound<'py, PyList>) -> Vec<Bound<'py, PyType>> {
+    let mut types: Vec<Bound<'py, PyType>> = Vec::new();
+    for object in objects {
+        if types.last().is_none_or(|last| object.get_type_ptr() != last.as_type_ptr()) {
+            types.push(object.get_type());
+        }
+    }
+    types
+}
 
 fn points(masses: &Rows<'_>, positions: &Rows<'_>) -> PyResult<(Vec<f64>, Vec<Vector>)> {
     let positions = numbers(positions)?.as_chunks::<3>().0.iter().map(|x| Vector(*x)).collect();
@@ -116,8 +147,8 @@ impl Inertia {
 
     /// The matrices of n inertias, (3n, 3).
     #[staticmethod]
-    fn matrices<'py>(py: Python<'py>, inertias: Vec<PyRef<'py, Inertia>>) -> Out<'py> {
-        let rows: Vec<[f64; 3]> = inertias.iter().flat_map(|inertia| inertia.0.matrix()).collect();
+    fn matrices(py: Python<'_>, inertias: Inertias) -> Out<'_> {
+        let rows: Vec<[f64; 3]> = inertias.0.iter().flat_map(|inertia| inertia.matrix()).collect();
         table(py, rows.into_iter())
     }
 

@@ -1,6 +1,6 @@
 //! Motions in closed form of one body or a batch, with solutions kept in Rust.
 
-use super::bodies::Inertia;
+use super::bodies::Inertias;
 use crate::algebra::value::{number, one as one_value, one_rotor};
 use crate::support::arrays::{Array, Rows, bad, numbers, place, table, threads};
 use crate::support::pool;
@@ -53,7 +53,7 @@ enum Motions {
 /// Bodies and starts of a batch, as Python has them: one inertia, or one for each; rotors (…, 4), angular velocities
 /// (…, 3) and the numbers of the law (…, N).
 pub(crate) struct Given<'py> {
-    pub inertias: Vec<PyRef<'py, Inertia>>,
+    pub inertias: Inertias,
     pub rotors: Rows<'py>,
     pub omegas: Rows<'py>,
     pub parameters: Option<Rows<'py>>,
@@ -144,14 +144,14 @@ impl ClosedForm {
     /// The motions, and a single one. An error has the place of the body in the batch.
     pub fn new<M: ExactMotion + Copy + 'static, const N: usize>(
         py: Python<'_>,
-        given: &Given<'_>,
+        given: Given<'_>,
         new: impl Fn(&inertia::Inertia, Rotor, Bivector, [f64; N]) -> Result<M, String> + Sync,
     ) -> PyResult<(ClosedForm, Option<M>)> {
         let shape = given.rotors.shape().split_last().map_or(&[][..], |(_, batch)| batch).to_vec();
         let rotors = numbers(&given.rotors)?.as_chunks::<4>().0;
         let omegas = numbers(&given.omegas)?.as_chunks::<3>().0;
         let starts: Vec<Start> = rotors.iter().zip(omegas).map(|(rotor, omega)| (*rotor, *omega)).collect();
-        let inertias: Vec<inertia::Inertia> = given.inertias.iter().map(|inertia| inertia.0).collect();
+        let Inertias(inertias) = given.inertias;
         if inertias.len() != 1 && inertias.len() != starts.len() {
             return Err(bad(format!("{} inertias for {} motions", inertias.len(), starts.len())));
         }

@@ -1,6 +1,6 @@
 //! Closed forms: Lagrange's top, the damped body, the sphere in a field, the free symmetric top.
 
-use super::bodies::{Inertia, rotor};
+use super::bodies::{Inertia, Inertias, rotor};
 use super::closed_form::{ClosedForm, Given, States, check_times, filled, pieces};
 use crate::support::arrays::{Rows, bad, numbers, one};
 use crate::support::facts::{columns, dict};
@@ -37,13 +37,13 @@ impl LagrangeTop {
     #[new]
     fn new(
         py: Python<'_>,
-        inertias: Vec<PyRef<'_, Inertia>>,
+        inertias: Inertias,
         rotors: Rows<'_>,
         omegas: Rows<'_>,
         c: Rows<'_>,
     ) -> PyResult<PyClassInitializer<LagrangeTop>> {
         let given = Given { inertias, rotors, omegas, parameters: Some(c) };
-        let (tops, one) = ClosedForm::new(py, &given, heavy)?;
+        let (tops, one) = ClosedForm::new(py, given, heavy)?;
         Ok(PyClassInitializer::from(tops).add_subclass(LagrangeTop { one: one.map(Box::new) }))
     }
 
@@ -70,13 +70,13 @@ impl LagrangeTop {
 #[pyfunction]
 pub(crate) fn damped_tops(
     py: Python<'_>,
-    inertias: Vec<PyRef<'_, Inertia>>,
+    inertias: Inertias,
     rotors: Rows<'_>,
     omegas: Rows<'_>,
     g: Rows<'_>,
 ) -> PyResult<ClosedForm> {
     let given = Given { inertias, rotors, omegas, parameters: Some(g) };
-    let (tops, _) = ClosedForm::new(py, &given, |inertia, rotor, omega, [g]| {
+    let (tops, _) = ClosedForm::new(py, given, |inertia, rotor, omega, [g]| {
         DampedTop::new(inertia, rotor, omega, g).map_err(|error| error.to_string())
     })?;
     Ok(tops)
@@ -86,13 +86,13 @@ pub(crate) fn damped_tops(
 #[pyfunction]
 pub(crate) fn larmor_spheres(
     py: Python<'_>,
-    inertias: Vec<PyRef<'_, Inertia>>,
+    inertias: Inertias,
     rotors: Rows<'_>,
     omegas: Rows<'_>,
     b: Rows<'_>,
 ) -> PyResult<ClosedForm> {
     let given = Given { inertias, rotors, omegas, parameters: Some(b) };
-    let (spheres, _) = ClosedForm::new(py, &given, |inertia, rotor, omega, b| {
+    let (spheres, _) = ClosedForm::new(py, given, |inertia, rotor, omega, b| {
         LarmorSphere::new(inertia, rotor, omega, Vector(b)).map_err(|error| error.to_string())
     })?;
     Ok(spheres)

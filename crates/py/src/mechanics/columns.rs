@@ -9,6 +9,7 @@ use polhode_ga::{Graded, Vector};
 use polhode_rigid::laws::torque::Torque;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use std::borrow::Cow;
 use std::fmt::Display;
 
 /// Values of `polhode._mechanics.parameters.Batch`: a row for each body.
@@ -115,7 +116,12 @@ impl<'a, 'py> Arguments<'a, 'py> {
 }
 
 /// Broadcasts values to the shape of a batch; a single value stays single.
-pub(crate) fn spread<T: Clone>(own: Vec<T>, own_shape: &[usize], shape: &[usize]) -> Vec<T> {
+pub(crate) fn spread<'a, T: Clone>(
+    own: impl Into<Cow<'a, [T]>>,
+    own_shape: &[usize],
+    shape: &[usize],
+) -> Cow<'a, [T]> {
+    let own = own.into();
     if own.len() == 1 || own_shape == shape {
         return own;
     }

@@ -1,6 +1,6 @@
 //! Simulation of ensembles.
 
-use super::bodies::Inertia;
+use super::bodies::Inertias;
 use super::columns::spread;
 use super::forces_and_events::Force;
 use super::law_value::{LawValue, interrupted};
@@ -33,7 +33,7 @@ pub(crate) type Results<'py> = (Vec<Array<'py>>, Bound<'py, PyDict>);
 pub(crate) fn simulate_many<'py>(
     py: Python<'py>,
     shape: Vec<usize>,
-    inertias: (Vec<PyRef<'py, Inertia>>, Vec<usize>),
+    inertias: (Inertias, Vec<usize>),
     begins: Rows<'py>,
     rotors: Rows<'py>,
     omegas: Rows<'py>,
@@ -70,21 +70,20 @@ pub(crate) fn callbacks(laws: &[Bound<'_, Law>], forces: &[Bound<'_, Force>]) ->
 /// The bodies of a batch shape; `numbers` are start times, rotors, angular velocities, places with velocities, and masses.
 pub(crate) fn ensemble_of(
     shape: &[usize],
-    (inertias, own_shape): (Vec<PyRef<'_, Inertia>>, Vec<usize>),
+    (Inertias(inertias), own_shape): (Inertias, Vec<usize>),
     [begins, rotors, omegas, centers, masses]: &[Rows<'_>; 5],
     laws: &[Bound<'_, Law>],
     forces: &[Bound<'_, Force>],
 ) -> PyResult<Ensemble> {
-    let inertias = inertias.iter().map(|inertia| inertia.0).collect();
     let each_law = |law: &Bound<'_, Law>| {
         let Law { torques, shape: own } = law.get();
-        ensemble::Rows::new(spread(torques.clone(), own, shape))
+        ensemble::Rows::new(spread(torques, own, shape).into_owned())
     };
     Ok(Ensemble {
-        inertias: ensemble::Rows::new(spread(inertias, &own_shape, shape)),
+        inertias: ensemble::Rows::new(spread(inertias, &own_shape, shape).into_owned()),
         starts: starts(shape, begins, rotors, omegas, centers)?,
         laws: laws.iter().map(each_law).collect(),
-        masses: ensemble::Rows::new(spread(numbers(masses)?.to_vec(), masses.shape(), shape)),
+        masses: ensemble::Rows::new(spread(numbers(masses)?, masses.shape(), shape).into_owned()),
         forces: forces.iter().map(|force| ensemble::Rows::new(vec![force.get().force.clone()])).collect(),
     })
 }
@@ -139,16 +138,19 @@ pub(crate) fn starts(
     centers: &Rows<'_>,
 ) -> PyResult<Vec<Start>> {
     let count = shape.iter().product();
-    let begins = spread(numbers(begins)?.to_vec(), begins.shape(), shape);
+    let begins = spread(numbers(begins)?, begins.shape(), shape);
     let rotors = {
         let own = batch(rotors);
         let rows = numbers(rotors)?.as_chunks::<4>().0.iter().enumerate();
         let failed = |row, error| bad(format!("{}{error}", place(row, own)));
-        let rotors = rows.map(|(row, c)| Rotor::from_components(*c).map_err(|error| failed(row, error)));
-        spread(rotors.collect::<PyResult<Vec<_>>>()?, own, shape)
+        let mut rotors = Vec::with_capacity(rows.len());
+        for (row, components) in rows {
+            rotors.push(Rotor::from_components(*components).map_err(|error| failed(row, error))?);
+        }
+        spread(rotors, own, shape)
     };
-    let omegas = spread(numbers(omegas)?.as_chunks::<3>().0.to_vec(), batch(omegas), shape);
-    let centers = spread(numbers(centers)?.as_chunks::<6>().0.to_vec(), batch(centers), shape);
+    let omegas = spread(numbers(omegas)?.as_chunks::<3>().0, batch(omegas), shape);
+    let centers = spread(numbers(centers)?.as_chunks::<6>().0, batch(centers), shape);
     let start = |body: usize| {
         let [x, y, z, u, v, w] = *one_of(&centers, body);
         Start {

@@ -1,6 +1,6 @@
 //! Free motion of one body or a batch, with solutions kept in Rust.
 
-use super::bodies::Inertia;
+use super::bodies::{Inertia, Inertias};
 use super::closed_form::{ClosedForm, Given, pieces};
 use crate::algebra::value::Multivector;
 use crate::support::arrays::{Array, Rows, bad, numbers, place, table};
@@ -71,13 +71,13 @@ impl FreeMotion {
     #[staticmethod]
     fn batch(
         py: Python<'_>,
-        inertias: Vec<PyRef<'_, Inertia>>,
+        inertias: Inertias,
         rotors: Rows<'_>,
         omegas: Rows<'_>,
     ) -> PyResult<Py<FreeMotion>> {
         let given = Given { inertias, rotors, omegas, parameters: None };
         let (motions, one) =
-            ClosedForm::new(py, &given, |inertia, rotor, omega, []| motion(inertia, rotor, omega))?;
+            ClosedForm::new(py, given, |inertia, rotor, omega, []| motion(inertia, rotor, omega))?;
         let one = one.map(Box::new);
         Py::new(py, PyClassInitializer::from(motions).add_subclass(FreeMotion { one }))
     }

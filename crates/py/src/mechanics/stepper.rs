@@ -1,6 +1,6 @@
 //! Bodies stepped by a caller, who holds a torque over each step.
 
-use super::bodies::Inertia;
+use super::bodies::Inertias;
 use super::ensemble::{callbacks, ensemble_of, starts};
 use super::forces_and_events::Force;
 use super::free::components;
@@ -34,7 +34,7 @@ impl Stepper {
     #[allow(clippy::too_many_arguments)]
     fn new(
         shape: Vec<usize>,
-        inertias: (Vec<PyRef<'_, Inertia>>, Vec<usize>),
+        inertias: (Inertias, Vec<usize>),
         begins: Rows<'_>,
         rotors: Rows<'_>,
         omegas: Rows<'_>,

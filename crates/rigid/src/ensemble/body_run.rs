@@ -8,7 +8,7 @@ use crate::methods::runge_kutta::{Points, RungeKutta};
 use crate::methods::step_control::{StepController, next_stop};
 use crate::methods::{ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
-use crate::run::limits::span;
+use crate::run::limits::{StepBounds, span};
 use crate::run::noise::Noise;
 use crate::run::refine::{Accuracy, Converged, Convergence, Scales, SweepPlan};
 use crate::run::sweep::{StepRule, Sweep};
@@ -19,6 +19,7 @@ use std::mem;
 /// A body in a lane, with the state of its sweeps.
 pub(super) struct BodyRun<'a> {
     pub member: Member<'a>,
+    bounds: StepBounds,
     /// A guess of the first step of a sweep, in s.
     first: f64,
     sweeps: Convergence,
@@ -42,17 +43,19 @@ pub(super) struct BodyRun<'a> {
 impl<'a> BodyRun<'a> {
     pub fn new(member: Member<'a>, torques: &[Torque], scheduler: &Scheduler<'a>) -> BodyRun<'a> {
         let start = Carried::new(member.start, Center::default());
+        let bounds = scheduler.bounds(&member, torques);
         let first = 0.1 / fastest_rate(&member.gyrostat, torques, &member.start).max(f64::MIN_POSITIVE);
         let accuracy = Accuracy::new(METHOD.order(), scheduler.options.rtol);
         let scales = Scales {
             body: member.gyrostat,
             rounding: ROUNDING_OF_RUNGE_KUTTA,
             in_space: true,
-            is_smooth: member.bounds.is_smooth,
+            is_smooth: bounds.is_smooth,
         };
         BodyRun {
-            controller: StepController::new(first, member.bounds.longest),
+            controller: StepController::new(first, bounds.longest),
             member,
+            bounds,
             first,
             sweeps: Convergence::new(accuracy.tolerance(), accuracy, scales),
             sweep: Sweep::default(),
@@ -77,7 +80,7 @@ impl<'a> BodyRun<'a> {
     }
 
     fn first_steps(&self) -> StepController {
-        StepController::new(self.first, self.member.bounds.longest)
+        StepController::new(self.first, self.bounds.longest)
     }
 
     /// The magnitude of the angular velocity, bounded below by its scale, in rad/s.
@@ -86,7 +89,7 @@ impl<'a> BodyRun<'a> {
             .gyrostat
             .omega(at.phase.momentum)
             .norm()
-            .max(self.member.bounds.least_rate)
+            .max(self.bounds.least_rate)
             .max(self.known_rate)
     }
 
@@ -114,7 +117,7 @@ impl<'a> BodyRun<'a> {
             }
             let time = times[if taken < early { early - 1 - taken } else { taken }];
             if at.phase.time != time {
-                self.stop = next_stop(&self.member.bounds.breaks, at.phase.time, time);
+                self.stop = next_stop(&self.bounds.breaks, at.phase.time, time);
                 return Ok(None);
             }
             self.sweep.states.push(*at);
@@ -140,7 +143,7 @@ impl<'a> BodyRun<'a> {
         }
         let turn = self.member.gyrostat.omega(next.get(l).phase.momentum).norm() * h;
         let time = next.time.0[l];
-        self.member.bounds.limit.check(self.sweep.steps, h, turn, || self.fraction(time, scheduler))
+        self.bounds.limit.check(self.sweep.steps, h, turn, || self.fraction(time, scheduler))
     }
 
     /// The error of a law that cannot be evaluated, from a single-body step; none if the step is just too long.

@@ -3,8 +3,8 @@
 use super::columns::Record;
 use super::laws::{LaneForcing, Laws};
 use super::member::{Member, Plan, of};
-use super::monitor::{LaneMonitor, LanePoint};
-use super::observe::{LaneBodies, LanePhases, LanePoints};
+use super::monitor::{LaneMonitor, LaneStates};
+use super::observe::{LaneBodies, LanePhases};
 use super::scheduler::Scheduler;
 use super::steppers::{Advance, Components, Kicks, Segment, Stepper};
 use crate::error::SimulateError;
@@ -86,18 +86,13 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
         let times = scheduler.times;
         let (bodies, gyrostats): (LaneBodies<W>, Vec<Gyrostat>) =
             (LaneBodies::new(&members), members.iter().map(|member| member.gyrostat).collect());
-        let point = |points: &LanePoints<W>, l: usize, time: f64| {
-            LanePoint::new(points, l, (&gyrostats[l], &torques[l]), time)
-        };
+        let states = |phases, time| LaneStates::new(bodies.points(phases), (&gyrostats[..], torques), time);
         // Of bodies that move; the others have none.
         let moving = if members[0].own.centers.is_some() { &members[..] } else { &[] };
         let centers: Vec<_> = moving.iter().map(|member| scheduler.center(member.body)).collect();
-        let mut monitor = LaneMonitor::<W>::default();
-        let at_start = bodies.points(LanePhases::starts(&members));
-        (0..members.len()).for_each(|l| monitor.follow(l, &point(&at_start, l, start)));
+        let mut monitor = LaneMonitor::new(&states(LanePhases::starts(&members), start));
         // Their products with the numbers of a moderate state are finite.
-        let sizes = members.iter().flat_map(|m| m.gyrostat.moments.into_iter().chain(m.gyrostat.wheel.0));
-        let are_moderate = moderate(sizes);
+        let are_moderate = moderate(bodies.numbers());
         let mut failures: [Option<(f64, SimulateError)>; W] = [const { None }; W];
         let mut norm_drifts = [0.0_f64; W];
         let (mut steps, mut longest, mut so_far) = (0, 0.0_f64, 0);
@@ -121,7 +116,7 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
                             Advance::<_, W, F> { stepper, state: &mut state, segment, steps: part.clone() };
                         fastest(advance);
                         steps += last - first;
-                        let are_finite = are_moderate && S::numbers(&state).all(|x| moderate(*x));
+                        let are_finite = are_moderate && moderate(S::numbers(&state));
                         for (l, member) in members.iter().enumerate() {
                             if are_finite {
                                 break;
@@ -146,17 +141,17 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
                     }
                 }
                 time = times[index];
-                let points = bodies.points(stepper.phases(&bodies, &state));
+                let states = states(stepper.phases(&bodies, &state), time);
+                monitor.record(&states, &lost);
+                let points = states.points();
                 for (l, member) in members.iter_mut().enumerate() {
                     if lost[l] {
                         member.own.unknown(index);
                         continue;
                     }
-                    let point = point(&points, l, time);
                     norm_drifts[l] = norm_drifts[l].max(points.off_unit.0[l]);
-                    monitor.record(l, &point);
                     let (rotor, omega) = points.in_body(l);
-                    member.own.put(index, rotor, omega, point.momentum, point.energy);
+                    member.own.put(index, rotor, omega, points.momentum_of(l), states.energy[l]);
                     if let Some(center) = centers.get(l) {
                         member.own.place(index, &center.at(time));
                     }
@@ -182,10 +177,10 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
     }
 }
 
-/// Whether products of two such numbers are finite.
+/// Whether products of two of the numbers in the lanes are finite.
 #[inline]
-fn moderate(numbers: impl IntoIterator<Item = f64>) -> bool {
-    numbers.into_iter().fold(true, |all, x| all & (x.abs() < 1e100))
+fn moderate<'a, const W: usize>(mut lanes: impl Iterator<Item = &'a [f64; W]>) -> bool {
+    lanes.all(|numbers| numbers.iter().fold(true, |all, x| all & (x.abs() < 1e100)))
 }
 
 /// Ascending times at which the laws are not smooth; all bodies share such laws.

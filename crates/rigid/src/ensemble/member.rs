@@ -6,7 +6,6 @@ use crate::methods::Method;
 use crate::methods::splitting::turns::Kind;
 use crate::run::certificate::Certificate;
 use crate::run::closed_form::ClosedForm;
-use crate::run::limits::StepBounds;
 use crate::run::output::BodyOutput;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor};
@@ -34,8 +33,6 @@ pub(super) struct Member<'a> {
     /// At the start, rad/s.
     pub omega: Bivector,
     pub start: Phase,
-    /// Bounds of its steps.
-    pub bounds: StepBounds,
     pub own: BodyOutput<'a>,
 }
 

@@ -5,73 +5,82 @@ use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
 use crate::run::certificate::{larger, nonzero};
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::{Bivector, Vector};
+use polhode_ga::Vector;
 use std::array::from_fn;
+use std::borrow::Cow;
 
-/// A point of the body of a lane, with what is computed in lanes.
-pub(super) struct LanePoint<'m> {
-    pub body: &'m Gyrostat,
-    pub torques: &'m [Torque],
-    pub phase: Phase,
-    /// Kinetic energy in J.
-    kinetic: f64,
-    /// Kinetic and potential energy in J.
-    pub energy: f64,
-    /// Magnitude of the momentum, kg m²/s.
-    size: f64,
-    /// In space, kg m²/s.
-    pub momentum: Bivector,
+/// The bodies of the lanes with their torques. The lanes after them hold copies of the first one.
+pub(super) type Acted<'m> = (&'m [Gyrostat], &'m [Cow<'m, [Torque]>]);
+
+/// The bodies of the lanes at a time.
+pub(super) struct LaneStates<'m, const W: usize> {
+    acted: Acted<'m>,
+    points: LanePoints<W>,
+    /// Kinetic and potential energies in J.
+    pub energy: [f64; W],
+    /// In s.
+    time: f64,
 }
 
-impl<'m> LanePoint<'m> {
-    pub fn new<const W: usize>(
-        points: &LanePoints<W>,
-        l: usize,
-        (body, torques): (&'m Gyrostat, &'m [Torque]),
-        time: f64,
-    ) -> Self {
-        let (phase, kinetic) = (points.phases.phase(l, time), points.kinetic.0[l]);
-        let potential = torques.iter().filter_map(|law| law.potential(body, &phase)).sum::<f64>();
-        LanePoint {
-            body,
-            torques,
-            phase,
-            kinetic,
-            energy: kinetic + potential,
-            size: points.size.0[l],
-            momentum: Bivector(from_fn(|k| points.momentum[k].0[l])),
+impl<'m, const W: usize> LaneStates<'m, W> {
+    pub fn new(points: LanePoints<W>, acted: Acted<'m>, time: f64) -> Self {
+        let energy = points.kinetic.0;
+        let mut states = LaneStates { acted, points, energy, time };
+        for (l, (body, torques)) in acted.0.iter().zip(acted.1).enumerate() {
+            if !torques.is_empty() {
+                let phase = states.phase(l);
+                let potential = torques.iter().filter_map(|law| law.potential(body, &phase)).sum::<f64>();
+                states.energy[l] += potential;
+            }
+        }
+        states
+    }
+
+    /// What is computed in lanes.
+    pub fn points(&self) -> &LanePoints<W> {
+        &self.points
+    }
+
+    fn phase(&self, l: usize) -> Phase {
+        self.points.phases.phase(l, self.time)
+    }
+
+    /// [`Conserved::value`] of each lane that has the quantity.
+    fn values(&self, tracked: &Tracked<W>) -> [f64; W] {
+        match tracked.kind {
+            Conserved::Energy => self.energy,
+            Conserved::AngularMomentum => self.points.size.0,
+            _ => from_fn(|l| tracked.each[l].map_or(0.0, |quantity| self.value(quantity, l))),
         }
     }
 
-    /// [`Conserved::value`].
-    fn value(&self, quantity: Conserved) -> f64 {
+    fn value(&self, quantity: Conserved, l: usize) -> f64 {
         match quantity {
-            Conserved::Energy => self.energy,
-            Conserved::AngularMomentum => self.size,
-            Conserved::AxialAngularMomentum(axis) => Vector(self.momentum.0).dot(axis),
-            _ => quantity.value(self.body, self.torques, &self.phase),
+            Conserved::AxialAngularMomentum(axis) => Vector(self.points.momentum_of(l).0).dot(axis),
+            _ => quantity.value(&self.acted.0[l], &self.acted.1[l], &self.phase(l)),
         }
     }
 
     /// [`Conserved::scale`], 1 for 0.
-    fn scale(&self, quantity: Conserved) -> f64 {
-        match quantity {
+    fn scale(&self, quantity: Conserved, l: usize) -> f64 {
+        let (body, torques) = (&self.acted.0[l], &self.acted.1[l][..]);
+        nonzero(match quantity {
             Conserved::Energy => {
-                nonzero(self.kinetic + self.torques.iter().map(|law| law.size(self.body)).sum::<f64>())
+                self.points.kinetic.0[l] + torques.iter().map(|law| law.size(body)).sum::<f64>()
             }
-            Conserved::AngularMomentum => nonzero(self.size),
-            _ => nonzero(quantity.scale(self.body, self.torques, &self.phase)),
-        }
+            Conserved::AngularMomentum => self.points.size.0[l],
+            _ => quantity.scale(body, torques, &self.phase(l)),
+        })
     }
 }
 
 /// The conserved quantities of the bodies in the lanes.
-#[derive(Default)]
 pub(super) struct LaneMonitor<const W: usize>(Vec<Tracked<W>>);
 
 /// A quantity of some lanes: its value at the start, the size of its terms, and its largest change so far.
 struct Tracked<const W: usize> {
-    number: usize,
+    /// That of the first of these lanes.
+    kind: Conserved,
     each: [Option<Conserved>; W],
     start: [f64; W],
     scale: [f64; W],
@@ -79,27 +88,49 @@ struct Tracked<const W: usize> {
 }
 
 impl<const W: usize> LaneMonitor<W> {
-    /// Adds the quantities of the body of a lane, which starts at a point.
-    pub fn follow(&mut self, l: usize, start: &LanePoint) {
-        for quantity in Conserved::under(start.body, start.torques, &start.phase) {
-            let number = quantity.number();
-            let place = self.0.iter().position(|tracked| tracked.number == number).unwrap_or_else(|| {
-                let zeros = [0.0; W];
-                self.0.push(Tracked { number, each: [None; W], start: zeros, scale: zeros, drift: zeros });
-                self.0.len() - 1
-            });
-            let tracked = &mut self.0[place];
-            tracked.each[l] = Some(quantity);
-            (tracked.start[l], tracked.scale[l]) = (start.value(quantity), start.scale(quantity));
+    /// The quantities that the bodies conserve from these states on.
+    pub fn new(starts: &LaneStates<W>) -> Self {
+        let mut monitor = LaneMonitor(Vec::new());
+        let (bodies, torques) = starts.acted;
+        let under = |l: usize| Conserved::under(&bodies[l], &torques[l], &starts.phase(l));
+        if torques.iter().all(|torques| torques.is_empty()) {
+            // Bodies without torques conserve the same.
+            under(0).for_each(|quantity| monitor.tracked(quantity).each = [Some(quantity); W]);
+        } else {
+            for l in 0..bodies.len() {
+                under(l).for_each(|quantity| monitor.tracked(quantity).each[l] = Some(quantity));
+            }
         }
+        for tracked in &mut monitor.0 {
+            tracked.start = starts.values(tracked);
+            for l in 0..bodies.len() {
+                tracked.scale[l] = tracked.each[l].map_or(1.0, |quantity| starts.scale(quantity, l));
+            }
+        }
+        monitor
     }
 
-    /// Measures the changes at a point of the body of a lane.
-    pub fn record(&mut self, l: usize, point: &LanePoint) {
+    /// The entry of a kind of quantity, a new one if there is none.
+    fn tracked(&mut self, kind: Conserved) -> &mut Tracked<W> {
+        let known = self.0.iter().position(|tracked| tracked.kind.number() == kind.number());
+        let place = known.unwrap_or_else(|| {
+            let (each, zeros) = ([None; W], [0.0; W]);
+            self.0.push(Tracked { kind, each, start: zeros, scale: [1.0; W], drift: zeros });
+            self.0.len() - 1
+        });
+        &mut self.0[place]
+    }
+
+    /// Measures the changes of the bodies that are not lost.
+    pub fn record(&mut self, states: &LaneStates<W>, lost: &[bool; W]) {
         for tracked in &mut self.0 {
-            let Some(quantity) = tracked.each[l] else { continue };
-            let change = (point.value(quantity) - tracked.start[l]).abs();
-            tracked.drift[l] = larger(tracked.drift[l], change / tracked.scale[l]);
+            let values = states.values(tracked);
+            for l in 0..W {
+                let change = (values[l] - tracked.start[l]).abs() / tracked.scale[l];
+                if !lost[l] {
+                    tracked.drift[l] = larger(tracked.drift[l], change);
+                }
+            }
         }
     }
 

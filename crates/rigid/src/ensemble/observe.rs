@@ -66,6 +66,11 @@ impl<const W: usize> LanePoints<W> {
         let rotor = Rotor::from_unit_components(from_fn(|k| self.rotor[k].0[l]));
         (rotor, Bivector(from_fn(|k| self.omega[k].0[l])))
     }
+
+    /// The momentum in space of a lane.
+    pub fn momentum_of(&self, l: usize) -> Bivector {
+        Bivector(from_fn(|k| self.momentum[k].0[l]))
+    }
 }
 
 impl<const W: usize> LaneBodies<W> {
@@ -75,6 +80,11 @@ impl<const W: usize> LaneBodies<W> {
             moments: in_lanes(|l| of(members, l).gyrostat.moments),
             wheel: in_lanes(|l| of(members, l).gyrostat.wheel.0),
         }
+    }
+
+    /// Moments and momenta of wheels, lane by lane.
+    pub fn numbers(&self) -> impl Iterator<Item = &[f64; W]> {
+        self.moments.iter().chain(&self.wheel).map(|lanes| &lanes.0)
     }
 
     /// `m = I(Ω) + h`.

@@ -103,12 +103,9 @@ impl<'a> Scheduler<'a> {
                 self.run_single(body, own, progress);
                 continue;
             }
-            let mut member = self.member(body, own);
+            let member = self.member(body, own);
             match self.strategy(&member) {
-                Strategy::Lanes => {
-                    member.bounds = self.bounds(&member);
-                    return Some(member);
-                }
+                Strategy::Lanes => return Some(member),
                 Strategy::Free => {
                     self.free(member);
                     self.report(progress);
@@ -188,12 +185,12 @@ impl<'a> Scheduler<'a> {
         let omega = frame.reverse().apply_bivector(start.omega);
         let (rotor, momentum) = (start.rotor * frame, gyrostat.momentum(omega));
         let start = Phase { rotor, momentum, time: start.time };
-        Member { body, frame, gyrostat, torques, omega, start, bounds: StepBounds::default(), own }
+        Member { body, frame, gyrostat, torques, omega, start, own }
     }
 
-    /// Bounds of the steps of a body. Laws in lanes are not user functions, so sampling does not fail.
-    fn bounds(&self, member: &Member) -> StepBounds {
-        let Member { gyrostat, torques, start, .. } = member;
+    /// Bounds of the steps of a body under its torques. Laws in lanes are not user functions, so sampling does not fail.
+    pub fn bounds(&self, member: &Member, torques: &[Torque]) -> StepBounds {
+        let Member { gyrostat, start, .. } = member;
         let sample = || samples(torques, gyrostat, start, self.times, self.options).unwrap_or_default();
         let own;
         // They depend on the law alone, which the bodies may share.

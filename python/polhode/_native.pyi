@@ -340,6 +340,8 @@ def free_flow_derivatives(moments: Array, rotors: Array, omegas: Array, times: A
 @final
 class Force(LawValue):
     def __new__(cls, name: str, *arguments: Any) -> Force: ...
+    @property
+    def shape(self) -> tuple[int, ...]: ...
 
 @final
 class Event(LawValue):

@@ -1,6 +1,9 @@
 """Forces on the centre of mass for `polhode.simulate`: ``x' = v``, ``v' = F/m``, the x0 of handout eq. (4.1).
 
 Forces add up, and a vector is a constant force in N: ``ph.vector([0, 0, -9.81]) + ph.force.drag(0.1)``.
+
+Arguments may be batches of any shape, with a value for each of many bodies that `simulate` moves at once: an
+array of numbers, or batched vectors. Python functions are shared by all bodies.
 """
 
 from __future__ import annotations
@@ -10,10 +13,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from polhode import _native
-from polhode._algebra.constructors import as_point
+from polhode._algebra.constructors import as_points, as_vectors
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import Sum, function_of, law_of_formula, number, shown
+from polhode._mechanics.laws import Sum, function_of, law_of_formula, shown
+from polhode._mechanics.parameters import Batch, named_together, numbers, rows, together
 from polhode._mechanics.registry import FORCES
 
 __all__ = [
@@ -53,7 +57,7 @@ class Force(Sum):
     def __sub__(self, other: Multivector) -> Force:
         if not isinstance(other, Multivector):
             return NotImplemented
-        return self + constant(0.0 - as_point(other, "the force"))
+        return self + constant(0.0 - as_vectors(other, "the force"))
 
     def __radd__(self, other: object) -> Force:
         return constant(other) + self if isinstance(other, Multivector) else super().__radd__(other)
@@ -67,7 +71,7 @@ def __dir__() -> list[str]:
 
 
 def constant(F: Any) -> Force:
-    """Return a force constant in space, a vector or (3,) in N.
+    """Return a force constant in space, a vector or (..., 3) in N.
 
     Examples
     --------
@@ -83,7 +87,7 @@ def constant(F: Any) -> Force:
 
 
 def thrust(force: Any, at: Any = None) -> Force:
-    """Return a force F constant in body axes, a vector or (3,) in N, such as a thruster's.
+    """Return a force F constant in body axes, a vector or (..., 3) in N, such as a thruster's.
 
     It acts at the point `at` of the body (in body axes, m) and so exerts the torque ``(at − c)∧F`` about the
     centre of mass c; by default it acts at the centre of mass.
@@ -101,8 +105,8 @@ def thrust(force: Any, at: Any = None) -> Force:
     return _force("thrust", force) if at is None else _force("thrust", force, at)
 
 
-def drag(k: float) -> Force:
-    """Return ``−k v``, k in N s/m. The centre of mass moves in closed form.
+def drag(k: Any) -> Force:
+    """Return ``−k v``, k (...) in N s/m. The centre of mass moves in closed form.
 
     Examples
     --------
@@ -111,12 +115,20 @@ def drag(k: float) -> Force:
     >>> motion = ph.simulate(ball, thrown, [0, 1, 2], force=ph.force.drag(1))
     >>> motion.velocity["e1"].round(4)  # exp(-k t/m)
     array([1.    , 0.6065, 0.3679])
+
+    Three balls, each with its own drag:
+
+    >>> motion = ph.simulate(ball, thrown, [1], force=ph.force.drag([0, 1, 2]))
+    >>> motion.velocity["e1"].round(4)
+    array([[1.    ],
+           [0.6065],
+           [0.3679]])
     """
     return _force("drag", k)
 
 
-def quadratic_drag(k: float) -> Force:
-    """Return ``−k |v| v``, k in N s²/m².
+def quadratic_drag(k: Any) -> Force:
+    """Return ``−k |v| v``, k (...) in N s²/m².
 
     Examples
     --------
@@ -131,8 +143,8 @@ def quadratic_drag(k: float) -> Force:
     return _force("quadratic_drag", k)
 
 
-def spring(stiffness: float, anchor: Any = 0) -> Force:
-    """Return ``−k (x − anchor)``, the stiffness k in N/m, the anchor a point in space in m.
+def spring(stiffness: Any, anchor: Any = 0) -> Force:
+    """Return ``−k (x − anchor)``, the stiffness k (...) in N/m, the anchor a point in space, (..., 3) in m.
 
     The centre of mass moves in closed form.
 
@@ -149,8 +161,8 @@ def spring(stiffness: float, anchor: Any = 0) -> Force:
     return _force("spring", stiffness, anchor)
 
 
-def central(mu: float) -> Force:
-    """Return ``−μ m x/|x|³``: attraction by a centre at the origin of space, μ = G M in m³/s².
+def central(mu: Any) -> Force:
+    """Return ``−μ m x/|x|³``: attraction by a centre at the origin of space, μ = G M (...) in m³/s².
 
     Examples
     --------
@@ -182,7 +194,8 @@ def formula(text: str, /, **values: Any) -> Force:
     text
         The formula.
     values
-        Values of the other names: single multivectors, rotors, linear maps, numbers.
+        Values of the other names: multivectors and rotors, single or batched, numbers, single linear maps.
+        Write a batch of numbers as `ph.scalar`.
 
     Raises
     ------
@@ -200,7 +213,11 @@ def formula(text: str, /, **values: Any) -> Force:
     >>> ph.simulate(ball, dropped, [0, 10, 20], force=law).velocity["e3"].round(4)
     array([ 0., -5., -5.])
     """
-    return law_of_formula(lambda given: _native_force("formula", text, given), text, values)
+
+    def law(given: tuple[tuple[str, Any], ...]) -> Force:
+        return _native_force("formula", text, named_together(given))
+
+    return law_of_formula(law, text, values, batches=True)
 
 
 def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Force:
@@ -224,16 +241,16 @@ def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Forc
 def _force(name: str, *values: Any) -> Force:
     """Return the force of the registry with these values for its arguments."""
     arguments = zip(FORCES[name].arguments, values, strict=False)
-    convert: dict[str, Any] = {"scalar": number, "vector": _point}
+    convert: dict[str, Any] = {"scalar": numbers, "vector": _vectors}
     return _native_force(name, *(convert[x.shape](value, x.name) for x, value in arguments))
 
 
 def _native_force(name: str, *arguments: Any) -> Force:
-    return Force((_native.Force(name, *arguments),))
+    return Force((_native.Force(name, *together(arguments, name)),))
 
 
-def _point(value: Any, name: str) -> tuple[float, ...]:
-    return tuple(as_point(value, f"the force's {name}").tolist())
+def _vectors(value: Any, name: str) -> tuple[float, ...] | Batch:
+    return rows(as_points(value, f"the force's {name}"), f"the force's {name}")
 
 
 def _shown(law: _native.Force) -> str:

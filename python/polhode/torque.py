@@ -26,7 +26,6 @@ from polhode._mechanics.laws import Sum, finite, function_of, law_of_formula, sh
 from polhode._mechanics.orbits import DipoleField, KeplerOrbit, dipole_field
 from polhode._mechanics.parameters import (
     bivectors,
-    common,
     gains,
     named_together,
     numbers,
@@ -37,7 +36,7 @@ from polhode._mechanics.parameters import (
 from polhode._mechanics.pivot import HOLDING, about_pivot
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.wheels import wheel_arguments
-from polhode._support.arrays import Shape, as_float, as_floats
+from polhode._support.arrays import as_float, as_floats
 
 if TYPE_CHECKING:
     from polhode._mechanics.state import State
@@ -100,11 +99,6 @@ class Torque(Sum):
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Torque(())"
-
-    @property
-    def shape(self) -> Shape:
-        """Shape of the batch of bodies that the arguments describe; ``()`` for a single body."""
-        return common({law.name: law.shape for law in self.laws}, "the laws")
 
     @property
     def holds(self) -> bool:

@@ -334,7 +334,7 @@ def test_invalid_arguments_raise():
     for make in (lambda: F.function(3), lambda: F.formula(3), lambda: F.drag("much")):
         with pytest.raises(TypeError):
             make()
-    for make in (lambda: F.drag(np.nan), lambda: F.spring(1.0, [0, 0]), lambda: F.constant(np.eye(3))):
+    for make in (lambda: F.drag(np.nan), lambda: F.spring(1.0, [0, 0]), lambda: F.constant(np.eye(2))):
         with pytest.raises(ValueError):
             make()
 

@@ -228,11 +228,16 @@ def as_vectors(values: Any, what: str) -> Array:
     return pure(values, 1, what) if isinstance(values, Multivector) else as_components(values, 3, what)
 
 
+def as_points(values: Any, what: str) -> Array:
+    """Return components (..., 3) from a vector, an array, or 0."""
+    if not isinstance(values, Multivector) and np.ndim(values) == 0 and np.all(values == 0):
+        return np.zeros(3)
+    return as_vectors(values, what)
+
+
 def as_point(value: Any, what: str) -> Array:
     """Return the components (3,) of a single finite vector, from a vector, an array, or 0."""
-    if not isinstance(value, Multivector) and np.ndim(value) == 0 and np.all(value == 0):
-        return np.zeros(3)
-    components = as_vectors(value, what)
+    components = as_points(value, what)
     if components.shape != (3,):
         raise ValueError(f"{what} must be a single vector, got shape {components.shape}")
     if not np.isfinite(components).all():

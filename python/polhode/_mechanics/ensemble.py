@@ -129,7 +129,7 @@ class Results:
 class Ensemble(Results):
     """Bodies with their starts, torques and forces.
 
-    `rotors` (..., 4), `omegas` (..., 3), `masses` (...), NaN where unknown; `laws` may be batches.
+    `rotors` (..., 4), `omegas` (..., 3), `masses` (...), NaN where unknown; laws and forces may be batches.
     """
 
     rotors: Array
@@ -163,15 +163,16 @@ class Ensemble(Results):
             array = getattr(self, name)
             return array[rows] if array.ndim - components == n and array.shape[0] > 1 else array
 
-        def law(one: _native.Law) -> _native.Law:
+        def law(one: Any) -> Any:
             if len(one.shape) < n or one.shape[0] == 1:
                 return one
-            return _native.Law(one.name, *(_rows_of(argument, rows) for argument in one.arguments))
+            return type(one)(one.name, *(_rows_of(argument, rows) for argument in one.arguments))
 
         return replace(
             self,
             shape=(len(range(*rows.indices(self.shape[0]))), *self.shape[1:]),
             laws=tuple(map(law, self.laws)),
+            forces=tuple(map(law, self.forces)),
             **{name: own(name, 0) for name in ("inertias", "start_times", "masses")},
             **{name: own(name) for name in ("rotors", "omegas", "positions", "velocities")},
         )

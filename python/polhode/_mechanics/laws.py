@@ -15,7 +15,8 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._formula.arguments import narrowed
 from polhode._formula.errors import FormulaError
-from polhode._support.arrays import as_float, as_floats
+from polhode._mechanics.parameters import common
+from polhode._support.arrays import Shape, as_float, as_floats
 
 T = TypeVar("T")
 
@@ -32,6 +33,11 @@ class Sum:
     def __radd__(self, other: object) -> Self:
         """``0 + law``, so that ``sum(laws)`` works."""
         return self if other == 0 else NotImplemented
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of the batch of bodies that the arguments describe; ``()`` for a single body."""
+        return common({law.name: law.shape for law in self.laws}, "the laws")
 
 
 def finite(value: float, name: str) -> float:

@@ -11,11 +11,11 @@ import numpy as np
 from polhode import _native
 from polhode import force as forces
 from polhode._algebra.coefficients import as_coefficients
-from polhode._algebra.constructors import as_point, vector
+from polhode._algebra.constructors import vector
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of, mapped_objects, types_of
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, warn_of
-from polhode._mechanics.parameters import common
+from polhode._mechanics.parameters import Batch, common
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import BYTES_OF_POINT, Trajectory
@@ -53,8 +53,8 @@ def simulate(
 ) -> Trajectory:
     """Return the motion of a body at given times: in closed form if there is one, else by integration.
 
-    Bodies, states and parameters of torque laws may be batches, whose shapes broadcast. Each body moves as it
-    would alone, and a body that fails does not stop the others: see ``trajectory.failures``.
+    Bodies, states and parameters of torques and forces may be batches, whose shapes broadcast. Each body
+    moves as it would alone, and a body that fails does not stop the others: see ``trajectory.failures``.
 
     Parameters
     ----------
@@ -72,8 +72,9 @@ def simulate(
         A law of `polhode.torque`, a sum of them, or a function as for `polhode.torque.function`; None for
         free motion. Parameters of laws may be batches, (...).
     force
-        Force on the centre of mass: a law of `polhode.force`, a sum of them, a vector or (3,) in N for a
-        constant force in space, or a function as for `polhode.force.function`. Requires a `Body`.
+        Force on the centre of mass: a law of `polhode.force`, a sum of them, a vector or (..., 3) in N for a
+        constant force in space, or a function as for `polhode.force.function`. Requires a `Body`. Parameters
+        of forces may be batches, (...).
     method
         ``"auto"``: ``"exact"`` where the motion has a closed form and no `step` is given (free bodies,
         symmetric ones under `heavy` along their axis, damping alone, spheres under `larmor`; constant forces,
@@ -285,18 +286,23 @@ def _ensemble(
     when = output_times(times)
     pushes, thrust = _forces(force, bodies)
     held = torque is not None and torque.holds
-    if held and pushes:
+    if held and pushes.laws:
         raise ValueError("ph.torque.gravity and heavy fix a point of the body; leave force out")
     if thrust is not None:
         torque = thrust if torque is None else torque + thrust
-    shapes = {"the body": bodies.shape, **state._shapes(), "the torque": torque.shape if torque else ()}
+    shapes = {
+        "the body": bodies.shape,
+        **state._shapes(),
+        "the torque": torque.shape if torque else (),
+        "the force": pushes.shape,
+    }
     masses = np.array(math.nan)
     if Body in types_of(bodies):
         rows = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
         masses = np.array(rows).reshape(bodies.shape)
         bodies = mapped_objects(lambda one: inertia_of(one, held), bodies)
     return Ensemble(
-        common(shapes, "body, state and torque"),
+        common(shapes, "body, state, torque and force"),
         bodies,
         np.array(state.time),
         state.position._data,
@@ -307,7 +313,7 @@ def _ensemble(
         state.omega_body._data,
         masses,
         torque.laws if torque else (),
-        tuple(pushes),
+        pushes.laws,
         None if step is None else as_float(step, "step"),
         _tolerance(rtol, atol),
         limits,
@@ -359,20 +365,24 @@ def _tolerance(rtol: float | None, atol: float | None) -> float | None:
     return max(given.values(), default=None)
 
 
-def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None]:
+def _forces(force: Any, bodies: Any) -> tuple[Force, Torque | None]:
     """Return the forces, and the torque of thrusts that act away from the centre of mass."""
     if force is None:
-        return [], None
+        return Force(()), None
     if Inertia in types_of(bodies):
         raise TypeError("a force needs a Body, which has a mass, got an Inertia")
     law = as_force(force)
     thrusts = [law.arguments for law in law.laws if law.name == "thrust" and len(law.arguments) == 2]
     if not thrusts:
-        return list(law.laws), None
+        return law, None
     rows = [body._core.center_of_mass() for body in bodies.flat]
     centers = vector(np.array(rows).reshape(*bodies.shape, 3))
-    torques = [constant_body((vector(at) - centers) ^ vector(F)) for F, at in thrusts]
-    return list(law.laws), sum(torques[1:], torques[0])
+    torques = [constant_body((_vectors(at) - centers) ^ _vectors(F)) for F, at in thrusts]
+    return law, sum(torques[1:], torques[0])
+
+
+def _vectors(argument: Any) -> Multivector:
+    return vector(argument.rows if isinstance(argument, Batch) else argument)
 
 
 def as_force(force: Any) -> Force:
@@ -383,7 +393,7 @@ def as_force(force: Any) -> Force:
         if getattr(force, "__module__", None) == forces.__name__:
             raise TypeError(f"force must be a law of polhode.force, such as drag(k), got {force.__name__}")
         return forces.function(force)
-    return forces.constant(as_point(force, "the force"))
+    return forces.constant(force)
 
 
 def _events(events: Event | Sequence[Event]) -> list[Event]:

@@ -23,7 +23,7 @@ from polhode._algebra.transform import RigidTransform
 from polhode._mechanics.bodies import Body, Inertia, bodies_of
 from polhode._mechanics.closed_form import ClosedForm
 from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere
-from polhode._mechanics.laws import finite
+from polhode._mechanics.laws import Sum, finite
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.simulate import as_force, as_torque, simulate
 from polhode._mechanics.state import State
@@ -65,7 +65,7 @@ def document(
         if not isinstance(state, State):
             raise TypeError(f"state must be a State, got {type(state).__name__}")
         law, push = as_torque(torque), None if force is None else as_force(force)
-        _refuse_batch(state, law)
+        _refuse_batch(state, law, push)
         bodies, law = settled(bodies_of(x), law)
         return _of_problem(_problem(bodies[()], state, law, push, duration))
     _refuse(x, state=state, torque=torque, force=force)
@@ -244,7 +244,7 @@ def _problem(body: Body | Inertia, state: State, torque: Torque | None, force: A
 
 def _of_problem(problem: Problem) -> Document:
     """Return the document of a problem; if no scene can describe it, it is solved here."""
-    _refuse_batch(problem.state, problem.torque)
+    _refuse_batch(problem.state, problem.torque, problem.force)
     try:
         return _of_scene_text(problem)
     except UnwritableError:
@@ -252,8 +252,8 @@ def _of_problem(problem: Problem) -> Document:
         return of_trajectory(motion)
 
 
-def _refuse_batch(state: State, torque: Torque | None) -> None:
-    if state.rotor.shape or state.omega_body.shape or (torque is not None and torque.shape):
+def _refuse_batch(state: State, *laws: Sum | None) -> None:
+    if state.shape or any(law.shape for law in laws if law is not None):
         raise ValueError("the viewer shows one body, this is a batch: pick one body")
 
 

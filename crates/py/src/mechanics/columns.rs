@@ -1,15 +1,21 @@
 //! Arguments of laws: numbers shared by all bodies, or a row for each body of a batch.
 
+use super::law_value::{Known, Values, formula};
 use crate::algebra::value::{self, Operand};
 use crate::support::arrays::{Rows, bad, numbers, place};
 use crate::support::face::BATCH;
 use numpy::PyUntypedArrayMethods;
+use polhode_ga::formula::{Given, Input, canonical};
 use polhode_ga::product::Grades;
 use polhode_ga::{Graded, Vector};
-use polhode_rigid::laws::torque::Torque;
+use polhode_rigid::ensemble;
+use polhode_rigid::error::TorqueError;
+use polhode_rigid::laws::formula::{Formula, Purpose};
+use polhode_rigid::laws::registry::Entry;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::borrow::Cow;
+use std::convert::Infallible;
 use std::fmt::Display;
 
 /// Values of `polhode._mechanics.parameters.Batch`: a row for each body.
@@ -108,10 +114,71 @@ impl<'a, 'py> Arguments<'a, 'py> {
     }
 
     /// A law for each body, or one; an error names the body.
-    pub fn each<E: Display>(&self, law: impl Fn(usize) -> Result<Torque, E>) -> PyResult<Vec<Torque>> {
+    pub fn each<T, E: Display>(&self, law: impl Fn(usize) -> Result<T, E>) -> PyResult<Vec<T>> {
         let count = self.shape.iter().product();
         let failed = |body, error| bad(format!("{}{error}", place(body, &self.shape)));
         (0..count).map(|body| law(body).map_err(|error| failed(body, error))).collect()
+    }
+
+    /// The laws that `build` makes from the numbers of the first arguments of an entry of the registry.
+    pub fn registered<E, T>(
+        &self,
+        entry: &Entry<E>,
+        build: impl Fn(&[f64]) -> Result<T, TorqueError>,
+    ) -> PyResult<Vec<T>> {
+        let columns = entry.arguments.iter().take(self.all.len()).enumerate();
+        let columns: Vec<Column> =
+            columns.map(|(k, argument)| self.column(k, argument.shape.size())).collect::<PyResult<_>>()?;
+        self.each(|body| {
+            let numbers: Vec<f64> = columns.iter().flat_map(|column| column.of(body)).copied().collect();
+            entry.check(&numbers)?;
+            build(&numbers)
+        })
+    }
+
+    /// A formula, compiled once, with the values of each body.
+    pub fn formulas(&self, text: &str, purpose: Purpose, values: Values<'py>) -> PyResult<Vec<Formula>> {
+        let (mut first, mut own) = (Values::with_capacity(values.len()), Vec::new());
+        for (name, value) in values {
+            let Some(batch) = Batch::of(&value)? else {
+                first.push((name, value));
+                continue;
+            };
+            let like = batch.like()?;
+            own.push((canonical(&name).unwrap_or_else(|| name.clone()), batch.graded(&like)?));
+            first.push((name, like));
+        }
+        let compile = |names, value: &mut Known<'_>| Formula::new(text, purpose, names, value);
+        let law = formula(self.all.py(), text, &first, compile)?;
+        self.each(|body| {
+            let rows = |input: &Input| own.iter().find(|(name, _)| *name == input.name);
+            let value = |input: &Input| rows(input).map(|(_, rows)| Given::Value(rows[body]));
+            Ok::<_, Infallible>(law.with_values(value))
+        })
+    }
+}
+
+/// A law for all bodies, or one for each body of a batch.
+pub(crate) struct Laws<T> {
+    pub rows: Vec<T>,
+    /// Shape of the batch.
+    pub shape: Vec<usize>,
+}
+
+impl<T: Clone> Laws<T> {
+    /// The law of a single body.
+    pub fn single(&self) -> PyResult<&T> {
+        match (&self.rows[..], &self.shape[..]) {
+            ([law], []) => Ok(law),
+            _ => {
+                Err(bad(format!("expected the law of a single body, got a batch of shape {:?}", self.shape)))
+            }
+        }
+    }
+
+    /// The laws of the bodies of a batch.
+    pub fn of_bodies(&self, shape: &[usize]) -> ensemble::Rows<T> {
+        ensemble::Rows::new(spread(&self.rows, &self.shape, shape).into_owned())
     }
 }
 

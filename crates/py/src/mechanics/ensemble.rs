@@ -75,16 +75,12 @@ pub(crate) fn ensemble_of(
     laws: &[Bound<'_, Law>],
     forces: &[Bound<'_, Force>],
 ) -> PyResult<Ensemble> {
-    let each_law = |law: &Bound<'_, Law>| {
-        let Law { torques, shape: own } = law.get();
-        ensemble::Rows::new(spread(torques, own, shape).into_owned())
-    };
     Ok(Ensemble {
         inertias: ensemble::Rows::new(spread(inertias, &own_shape, shape).into_owned()),
         starts: starts(shape, begins, rotors, omegas, centers)?,
-        laws: laws.iter().map(each_law).collect(),
+        laws: laws.iter().map(|law| law.get().0.of_bodies(shape)).collect(),
         masses: ensemble::Rows::new(spread(numbers(masses)?, masses.shape(), shape).into_owned()),
-        forces: forces.iter().map(|force| ensemble::Rows::new(vec![force.get().force.clone()])).collect(),
+        forces: forces.iter().map(|force| force.get().0.of_bodies(shape)).collect(),
     })
 }
 

@@ -1,6 +1,6 @@
 //! Forces, events and the registry of laws for Python.
 
-use super::columns::Arguments;
+use super::columns::{Arguments, Laws};
 use super::law_value::{
     Callback, Known, LawValue, Raised, Values, bivector_of, formula, number, rotor_of, sole, vector,
     vector_of,
@@ -17,9 +17,7 @@ use pyo3::types::PyTuple;
 
 /// A force on the centre of mass.
 #[pyclass(frozen, extends = LawValue, module = "polhode._native")]
-pub(crate) struct Force {
-    pub(crate) force: force::Force,
-}
+pub(crate) struct Force(pub(crate) Laws<force::Force>);
 
 #[pymethods]
 impl Force {
@@ -28,22 +26,32 @@ impl Force {
     #[pyo3(signature = (name, *arguments))]
     fn new(name: String, arguments: Bound<'_, PyTuple>) -> PyResult<PyClassInitializer<Force>> {
         let raised = Raised::default();
-        let force = force(&name, &arguments, &raised)?;
-        Ok(PyClassInitializer::from(LawValue::new(name, arguments, raised)).add_subclass(Force { force }))
+        let force = Force(forces(&name, &arguments, &raised)?);
+        Ok(PyClassInitializer::from(LawValue::new(name, arguments, raised)).add_subclass(force))
+    }
+
+    /// Shape of the batch of bodies; () for one.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.0.shape)
     }
 }
 
-fn force(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<force::Force> {
+/// The forces of this name and these arguments.
+fn forces(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<Laws<force::Force>> {
     use force::Force as Law;
-    Ok(match name {
+    let values: Values<'_> = if name == "formula" { arguments.get_item(1)?.extract()? } else { Vec::new() };
+    let batches = arguments.iter().chain(values.iter().map(|(_, value)| value.clone()));
+    let given = Arguments::new(arguments, batches)?;
+    let rows = match name {
         "formula" => {
-            let (text, values): (String, Values<'_>) = arguments.extract()?;
-            let compile = |names, value: &mut Known<'_>| Formula::new(&text, Purpose::Force, names, value);
-            Law::Formula(formula(arguments.py(), &text, &values, compile)?)
+            let text: String = arguments.get_item(0)?.extract()?;
+            let formulas = given.formulas(&text, Purpose::Force, values)?;
+            formulas.into_iter().map(Law::Formula).collect()
         }
         "function" => {
             let callback = Callback { call: sole(arguments)?, raised: raised.clone(), what: "force" };
-            Law::Function(Function::new(move |seen| {
+            vec![Law::Function(Function::new(move |seen| {
                 callback.at(
                     seen.time,
                     |py| {
@@ -52,20 +60,14 @@ fn force(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResul
                     },
                     vector,
                 )
-            }))
+            }))]
         }
         _ => {
             let entry = registry::force(name).ok_or_else(|| bad(format!("{name} is not a force")))?;
-            let given = Arguments::new(arguments, [])?;
-            let arguments = entry.arguments.iter().take(arguments.len()).enumerate();
-            let mut numbers = Vec::new();
-            for (k, argument) in arguments {
-                numbers.extend_from_slice(given.column(k, argument.shape.size())?.of(0));
-            }
-            entry.check(&numbers).map_err(bad)?;
-            entry.build(&numbers).map_err(bad)?.force
+            given.registered(entry, |numbers| entry.build(numbers).map(|push| push.force))?
         }
-    })
+    };
+    Ok(Laws { rows, shape: given.shape })
 }
 
 /// An event to detect along a motion.

@@ -225,8 +225,9 @@ pub(crate) fn simulate<'py>(
         .chain(forces.iter().map(|force| force.as_super().clone().unbind()))
         .chain(events.iter().map(|event| event.as_super().clone().unbind()))
         .collect();
-    let torques: Vec<_> = laws.iter().map(|law| law.get().single()).collect::<PyResult<_>>()?;
-    let forces: Vec<_> = forces.iter().map(|force| force.get().force.clone()).collect();
+    let torques: Vec<_> = laws.iter().map(|law| law.get().0.single().cloned()).collect::<PyResult<_>>()?;
+    let forces: Vec<_> =
+        forces.iter().map(|force| force.get().0.single().cloned()).collect::<PyResult<_>>()?;
     let events = events.iter().map(|event| event.get().event.clone()).collect();
     let [x, y, z, u, v, w] = one(&center)?;
     let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };

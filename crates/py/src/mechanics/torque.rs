@@ -1,18 +1,16 @@
 //! Torque laws by name and arguments, and the torque at a state.
 
 use super::bodies::{Inertia, rotor};
-use super::columns::{Arguments, Batch, Column};
+use super::columns::{Arguments, Laws};
 use super::law_value::{
-    Callback, Known, LawValue, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
-    vector, vector_of,
+    Callback, LawValue, Raised, Values, bivector, bivector_of, failed, rotor_of, sole, vector, vector_of,
 };
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::support::facts::dict;
-use polhode_ga::formula::{Given, Input, canonical};
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::body::weight_moment;
 use polhode_rigid::describe::law_facts;
-use polhode_rigid::laws::formula::{Formula, Purpose};
+use polhode_rigid::laws::formula::Purpose;
 use polhode_rigid::laws::registry::{Entry, Kernel, torque};
 use polhode_rigid::laws::torque::{
     Axes, KeplerOrbit, Kind, Orbit, Table, Torque, Wheel, Wheels, dipole_field, on_orbit, total, wheel,
@@ -24,13 +22,9 @@ use pyo3::types::{PyDict, PyTuple};
 use std::convert::Infallible;
 use std::sync::Arc;
 
-/// A torque law, or one for each body of a batch.
+/// A torque law.
 #[pyclass(frozen, extends = LawValue, module = "polhode._native")]
-pub(crate) struct Law {
-    pub(crate) torques: Vec<Torque>,
-    /// Shape of the batch.
-    pub(crate) shape: Vec<usize>,
-}
+pub(crate) struct Law(pub(crate) Laws<Torque>);
 
 impl Law {
     /// Wraps a law with its name and arguments.
@@ -41,18 +35,8 @@ impl Law {
         arguments: Bound<'_, PyTuple>,
     ) -> PyResult<Py<Law>> {
         let value = LawValue::new(name.to_owned(), arguments, Raised::default());
-        let law = Law { torques: vec![torque], shape: Vec::new() };
+        let law = Law(Laws { rows: vec![torque], shape: Vec::new() });
         Py::new(py, PyClassInitializer::from(value).add_subclass(law))
-    }
-
-    /// The law of a single body.
-    pub(crate) fn single(&self) -> PyResult<Torque> {
-        match (&self.torques[..], &self.shape[..]) {
-            ([torque], []) => Ok(torque.clone()),
-            _ => {
-                Err(bad(format!("expected the law of a single body, got a batch of shape {:?}", self.shape)))
-            }
-        }
     }
 }
 
@@ -63,15 +47,15 @@ impl Law {
     #[pyo3(signature = (name, *arguments))]
     fn new(name: String, arguments: Bound<'_, PyTuple>) -> PyResult<PyClassInitializer<Law>> {
         let raised = Raised::default();
-        let (torques, shape) = laws(&name, &arguments, &raised)?;
-        let law = Law { torques, shape };
+        let law = Law(laws(&name, &arguments, &raised)?);
         Ok(PyClassInitializer::from(LawValue::new(name, arguments, raised)).add_subclass(law))
     }
 
     /// The moments of the weight, rows (n, 3) in body axes, of a weight; None for other laws.
     fn weight_moments<'py>(&self, py: Python<'py>) -> PyResult<Option<Array<'py>>> {
         let moments: Option<Vec<[f64; 3]>> = self
-            .torques
+            .0
+            .rows
             .iter()
             .map(|torque| if let Torque::Heavy(c) = torque { Some(c.0) } else { None })
             .collect();
@@ -86,7 +70,7 @@ impl Law {
         times: Rows<'py>,
         omegas: Rows<'py>,
     ) -> PyResult<Option<[Array<'py>; 2]>> {
-        let [Torque::Wheels(wheels)] = &self.torques[..] else { return Ok(None) };
+        let [Torque::Wheels(wheels)] = &self.0.rows[..] else { return Ok(None) };
         let (times, omegas) = (numbers(&times)?, numbers(&omegas)?.as_chunks::<3>().0);
         let momenta = times.iter().flat_map(|&time| wheels.momenta(time)).collect();
         let each = times.iter().zip(omegas);
@@ -96,19 +80,19 @@ impl Law {
 
     /// Its name in scenes and its formula or numbers as text, for a single body.
     fn facts<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        let torque = slf.get().single()?;
-        let name = match &torque {
+        let torque = slf.get().0.single()?;
+        let name = match torque {
             Torque::Formula(law) if law.axes() == Axes::Space => "torque_space",
             Torque::Formula(_) => "torque_body",
             _ => slf.as_super().get().name(),
         };
-        dict(slf.py(), law_facts(name, &torque, None))
+        dict(slf.py(), law_facts(name, torque, None))
     }
 
     /// Shape of the batch of bodies; () for one.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, &self.shape)
+        PyTuple::new(py, &self.0.shape)
     }
 }
 
@@ -124,7 +108,7 @@ pub(crate) fn torque_at<'py>(
 ) -> PyResult<Array<'py>> {
     let frame = inertia.0.principal_frame();
     let torques: Vec<Torque> =
-        laws.iter().map(|law| Ok(law.get().single()?.in_axes(frame))).collect::<PyResult<_>>()?;
+        laws.iter().map(|law| Ok(law.get().0.single()?.clone().in_axes(frame))).collect::<PyResult<_>>()?;
     let body = Gyrostat { moments: inertia.0.principal_moments(), wheel: wheel(&torques) };
     if body.moments.contains(&0.0) {
         let [a, b, c] = body.moments;
@@ -152,34 +136,22 @@ pub(crate) fn orbit_directions<'py>(
     table(py, numbers(&times)?.iter().map(|&time| orbit.place(time).0.0))
 }
 
-/// The law of this name and these arguments, or one for each body.
-fn laws(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<(Vec<Torque>, Vec<usize>)> {
+/// The laws of this name and these arguments.
+fn laws(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<Laws<Torque>> {
     let values: Values<'_> = if name == "formula" { arguments.get_item(2)?.extract()? } else { Vec::new() };
     let batches = arguments.iter().chain(values.iter().map(|(_, value)| value.clone()));
     let given = Arguments::new(arguments, batches)?;
-    let laws = match (name, torque(name)) {
+    let rows = match (name, torque(name)) {
         ("gravity", _) => gravity(&given)?,
         ("magnetic_on_orbit", _) => vec![magnetic_on_orbit(arguments, raised)?],
         ("reaction_wheels", _) => vec![reaction_wheels(arguments)?],
         ("formula", _) => formulas(&given, values)?,
         ("function", _) => vec![function(sole(arguments)?, raised)],
         (_, Some(Entry { kernel: Kernel::Table, .. })) => vec![tabulated(arguments)?],
-        (_, Some(entry)) => registered(entry, &given)?,
+        (_, Some(entry)) => given.registered(entry, |numbers| entry.build(numbers))?,
         _ => return Err(bad(format!("{name} is not a torque law"))),
     };
-    Ok((laws, given.shape))
-}
-
-/// A law of the registry, for each body.
-fn registered(entry: &'static Entry<Torque>, given: &Arguments<'_, '_>) -> PyResult<Vec<Torque>> {
-    let columns = entry.arguments.iter().enumerate();
-    let columns: Vec<Column> =
-        columns.map(|(k, argument)| given.column(k, argument.shape.size())).collect::<PyResult<_>>()?;
-    given.each(|body| {
-        let numbers: Vec<f64> = columns.iter().flat_map(|column| column.of(body)).copied().collect();
-        entry.check(&numbers)?;
-        entry.build(&numbers)
-    })
+    Ok(Laws { rows, shape: given.shape })
 }
 
 /// The weight of bodies: acceleration, mass, centre of mass and pivot.
@@ -270,26 +242,10 @@ fn function(call: Py<PyAny>, raised: &Raised) -> Torque {
     }))
 }
 
-/// A formula, compiled once, with the values of each body.
-fn formulas(given: &Arguments<'_, '_>, values: Values<'_>) -> PyResult<Vec<Torque>> {
+fn formulas<'py>(given: &Arguments<'_, 'py>, values: Values<'py>) -> PyResult<Vec<Torque>> {
     let (text, frame): (String, String) = given.all.get_slice(0, 2).extract()?;
-    let (mut first, mut own) = (Values::with_capacity(values.len()), Vec::new());
-    for (name, value) in values {
-        let Some(batch) = Batch::of(&value)? else {
-            first.push((name, value));
-            continue;
-        };
-        let like = batch.like()?;
-        own.push((canonical(&name).unwrap_or_else(|| name.clone()), batch.graded(&like)?));
-        first.push((name, like));
-    }
-    let purpose = Purpose::Torque(axes(&frame));
-    let compile = |names, value: &mut Known<'_>| Formula::new(&text, purpose, names, value);
-    let law = formula(given.all.py(), &text, &first, compile)?;
-    given.each(|k| {
-        let value = |input: &Input| own.iter().find(|(name, _)| *name == input.name).map(|(_, rows)| rows[k]);
-        Ok::<_, Infallible>(Torque::Formula(law.with_values(|input| value(input).map(Given::Value))))
-    })
+    let formulas = given.formulas(&text, Purpose::Torque(axes(&frame)), values)?;
+    Ok(formulas.into_iter().map(Torque::Formula).collect())
 }
 
 fn axes(frame: &str) -> Axes {

@@ -85,12 +85,7 @@ impl<'a> BodyRun<'a> {
 
     /// The magnitude of the angular velocity, bounded below by its scale, in rad/s.
     pub fn rate(&self, at: &Carried) -> f64 {
-        self.member
-            .gyrostat
-            .omega(at.phase.momentum)
-            .norm()
-            .max(self.bounds.least_rate)
-            .max(self.known_rate)
+        self.member.gyrostat.omega(at.phase.momentum).norm().max(self.bounds.least_rate).max(self.known_rate)
     }
 
     /// Records the points at output times and sets the next stop, also on the other side of the start and in the next

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import itertools
 import re
 
 from docutils import nodes
 from docutils.statemachine import StringList
 from sphinx.util.docutils import SphinxDirective
+
+import polhode
 
 ANY = re.compile(r": ~?(typing\.)?Any\b")
 # Attributes with a description in common, as napoleon writes them, and what stands for the spaces in them.
@@ -65,10 +68,23 @@ def described(module, name):
     """Lines of reStructuredText for one name."""
     found = getattr(importlib.import_module(module), name)
     if inspect.isclass(found):
-        return [f".. autoclass:: {module}.{name}", "   :members:"]
+        others = ", ".join(base.__name__ for base in shown_elsewhere(found))
+        return [f".. autoclass:: {module}.{name}", "   :members:", f"   :inherited-members: {others}"]
     if callable(found):
         return [f".. autofunction:: {module}.{name}"]
     return [f".. autodata:: {module}.{name}"]
+
+
+def shown_elsewhere(found):
+    """The classes that a class extends, from the first on that is public or of another package."""
+    bases = found.__mro__[1:]
+    return itertools.dropwhile(
+        lambda base: base.__module__.startswith("polhode.") and not is_public(base), bases
+    )
+
+
+def is_public(found):
+    return getattr(polhode, found.__name__, None) is found
 
 
 def escaped(line):

@@ -48,6 +48,14 @@ def _value(owner, name):
     return found() if inspect.isroutine(found) else found
 
 
+def _solved(name, make):
+    """The states of a motion in closed form."""
+    return {
+        f"{name}.at": Call(lambda t: make().at(t), (TIMES,)),
+        f"{name}.at_each": Call(lambda t: make().at_each(t), (TIMES,)),
+    }
+
+
 def _solid(name, *sizes):
     return Call(lambda *given: getattr(ph.Body, name)(*given, mass=2.0), tuple(map(np.array, sizes)))
 
@@ -166,6 +174,10 @@ CALLS = {
     "LagrangeTop.describe": Call(
         lambda w: ph.LagrangeTop(inertia(_SYMMETRIC), rotor(TURN), w, [0, 0, 0.5]).describe(), (OMEGA,)
     ),
+    **_solved("FreeMotion", _free),
+    **_solved("DampedTop", lambda: ph.DampedTop(inertia(), rotor(TURN), OMEGA, 0.1)),
+    **_solved("LarmorSphere", lambda: ph.LarmorSphere(inertia(np.ones(3)), rotor(TURN), OMEGA, PLACE)),
+    **_solved("LagrangeTop", lambda: ph.LagrangeTop(inertia(_SYMMETRIC), rotor(TURN), OMEGA, [0, 0, 0.5])),
     "describe_free": Call(lambda w: ph.describe_free(inertia(), w), (OMEGA,)),
     "omega_from_periods": Call(
         lambda m: ph.omega_from_periods(m, 5.41, 7.35, mode="long"), (np.array([3.09, 3.22, 1.0]),)
@@ -265,22 +277,24 @@ _ORBIT = torque.KeplerOrbit(7e6)
 WITHOUT_NUMBERS = """
     Body.from_mesh Certificate Certificate.conserved Certificate.drift Certificate.error_estimate
     Certificate.evaluations Certificate.method Certificate.norm_drift Certificate.step Certificate.steps
-    Certificate.warnings Certificate.worst Crossings Crossings.rising Crossings.states Crossings.time Failure
-    Fit Fit.covariance Fit.interval Fit.plot Fit.residuals Fit.state Fit.stderr Fit.summary Fit.times
-    Fit.to_dict Fit.values FlowDerivatives.d_omega_d_moments FlowDerivatives.d_omega_d_omega
-    FlowDerivatives.d_omega_dt FlowDerivatives.d_rotor_d_attitude FlowDerivatives.d_rotor_d_moments
-    FlowDerivatives.d_rotor_d_omega FlowDerivatives.d_rotor_dt Inertia.algebra Inertia.grade Inertia.identity
-    ReducedEnsemble ReducedEnsemble.to_xarray Scene Scene.alone Scene.block Scene.block_of_motions
-    Scene.elapsed Scene.held Scene.kind Scene.name Scene.read Scene.reduce Scene.result_bytes Scene.run
-    Scene.run_blocks Scene.shift Scene.surface Scene.times Scene.view SceneError Stepper.wheel_speed
-    Trajectory.events Trajectory.failures Trajectory.film Trajectory.plot Trajectory.read Trajectory.save
-    Trajectory.to_dataframe Trajectory.to_xarray Trajectory.view Trajectory.wheel_momentum
-    Trajectory.wheel_speed event.Event.name io.AttitudeHistory.energy io.AttitudeHistory.inertia
-    io.AttitudeHistory.momentum_space io.AttitudeHistory.of io.AttitudeHistory.omega_body
-    io.AttitudeHistory.position io.AttitudeHistory.velocity io.AttitudeHistory.wheel_speed io.CkFrame
-    io.FileError io.FrameVector io.FrameVector.position io.FrameVector.velocity io.TwoVectorFrame io.read
-    io.read_aem io.read_ck io.read_csv io.read_mesh io.read_netcdf io.read_parquet io.read_zarr io.write_aem
-    io.write_ck io.write_fk io.write_gltf io.write_mjcf io.write_sclk io.write_stl io.write_urdf read_mjcf
-    read_sdf read_urdf torque.KeplerOrbit.eccentricity torque.KeplerOrbit.mean_anomaly torque.KeplerOrbit.mu
-    torque.Torque.holds torque.Torque.shape view
+    Certificate.warnings Certificate.worst Crossings Crossings.rising Crossings.states Crossings.time
+    DampedTop.shape DampedTop.view Failure Fit Fit.covariance Fit.interval Fit.plot Fit.residuals Fit.state
+    Fit.stderr Fit.summary Fit.times Fit.to_dict Fit.values FlowDerivatives.d_omega_d_moments
+    FlowDerivatives.d_omega_d_omega FlowDerivatives.d_omega_dt FlowDerivatives.d_rotor_d_attitude
+    FlowDerivatives.d_rotor_d_moments FlowDerivatives.d_rotor_d_omega FlowDerivatives.d_rotor_dt
+    FreeMotion.shape FreeMotion.view Inertia.algebra Inertia.grade Inertia.identity LagrangeTop.shape
+    LagrangeTop.view LarmorSphere.shape LarmorSphere.view ReducedEnsemble ReducedEnsemble.to_xarray Scene
+    Scene.alone Scene.block Scene.block_of_motions Scene.elapsed Scene.held Scene.kind Scene.name Scene.read
+    Scene.reduce Scene.result_bytes Scene.run Scene.run_blocks Scene.shift Scene.surface Scene.times
+    Scene.view SceneError Stepper.wheel_speed Trajectory.events Trajectory.failures Trajectory.film
+    Trajectory.plot Trajectory.read Trajectory.save Trajectory.to_dataframe Trajectory.to_xarray
+    Trajectory.view Trajectory.wheel_momentum Trajectory.wheel_speed event.Event.name force.Force.shape
+    io.AttitudeHistory.energy io.AttitudeHistory.inertia io.AttitudeHistory.momentum_space
+    io.AttitudeHistory.of io.AttitudeHistory.omega_body io.AttitudeHistory.position
+    io.AttitudeHistory.velocity io.AttitudeHistory.wheel_speed io.CkFrame io.FileError io.FrameVector
+    io.FrameVector.position io.FrameVector.velocity io.TwoVectorFrame io.read io.read_aem io.read_ck
+    io.read_csv io.read_mesh io.read_netcdf io.read_parquet io.read_zarr io.write_aem io.write_ck io.write_fk
+    io.write_gltf io.write_mjcf io.write_sclk io.write_stl io.write_urdf read_mjcf read_sdf read_urdf
+    torque.KeplerOrbit.eccentricity torque.KeplerOrbit.mean_anomaly torque.KeplerOrbit.mu torque.Torque.holds
+    torque.Torque.shape view
 """

@@ -20,9 +20,18 @@ def public():
 
 
 def methods(found):
-    """The public methods and properties that a class defines itself, by name; no names of other libraries."""
+    """The public methods and properties of a class by name; no names of other libraries.
+
+    They are its own and those of the classes that it extends, up to the first that is public itself.
+    """
+    members = {}
+    for one in found.__mro__:
+        own = one.__module__.startswith("polhode.") and getattr(ph, one.__name__, None) is not one
+        if one is not found and not own:
+            break
+        members = {**vars(one), **members}
     return {
         name: member
-        for name, member in vars(found).items()
+        for name, member in members.items()
         if not name.startswith("_") and not isinstance(member, ForeignName)
     }

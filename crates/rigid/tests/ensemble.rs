@@ -115,7 +115,7 @@ fn bodies_match_single_runs() {
                     }
                 };
                 let states = motion.states();
-                assert_eq!(summary.methods[body], motion.certificate.method);
+                assert_eq!(summary.method(body), motion.certificate.method);
                 assert_eq!(summary.steps[body][0], motion.certificate.steps);
                 for (k, row) in found[body * TIMES.len()..][..TIMES.len()].iter().enumerate() {
                     let single = states.rotors[k].components().into_iter().chain(states.omegas[k].0);

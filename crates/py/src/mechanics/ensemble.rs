@@ -169,22 +169,7 @@ fn batch<'a>(rows: &'a Rows<'_>) -> &'a [usize] {
 
 /// The summary as a dict: arrays with one number per body, and lists of numbers, times and messages of failures.
 fn dictionary<'py>(py: Python<'py>, summary: Summary) -> PyResult<Bound<'py, PyDict>> {
-    let mut names: Vec<&str> = Vec::new();
-    let mut code = |name| {
-        names.iter().position(|known| *known == name).unwrap_or_else(|| {
-            names.push(name);
-            names.len() - 1
-        })
-    };
-    let mut last = ("", code(summary.methods.first().copied().unwrap_or_default()));
-    let mut codes: Vec<i64> = Vec::with_capacity(summary.methods.len());
-    for name in &summary.methods {
-        // Most bodies have the method of the one before.
-        if !std::ptr::eq(last.0, *name) {
-            last = (name, code(name));
-        }
-        codes.push(last.1 as i64);
-    }
+    let methods = PyArray1::from_iter(py, summary.methods.iter().map(|&place| place as i64));
     let counts = |k: usize| PyArray1::from_iter(py, summary.steps.iter().map(|counts| counts[k] as i64));
     let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
     for (name, rows) in &summary.drifts {
@@ -193,7 +178,7 @@ fn dictionary<'py>(py: Python<'py>, summary: Summary) -> PyResult<Bound<'py, PyD
     }
     let failures = &summary.failures;
     let result = PyDict::new(py);
-    result.set_item("methods", (names, PyArray1::from_vec(py, codes)))?;
+    result.set_item("methods", (&summary.method_names, methods))?;
     result.set_item("steps", counts(0))?;
     result.set_item("evaluations", counts(1))?;
     result.set_item("step", line(py, summary.longest))?;

@@ -42,8 +42,21 @@ impl<const N: usize> Column<N> {
     }
 }
 
-fn single(column: Column<1>) -> Vec<f64> {
-    column.numbers().into_iter().map(|[number]| number).collect()
+/// Names in the order in which the numbers refer to them, which are changed accordingly: threads add names in any order.
+fn by_first_use(names: Vec<&'static str>, numbers: &mut [u64]) -> Vec<&'static str> {
+    if names.len() == 1 {
+        return names;
+    }
+    let mut ordered: Vec<&'static str> = Vec::with_capacity(names.len());
+    for number in numbers {
+        let name = names.get(*number as usize).copied().unwrap_or_default();
+        let place = ordered.iter().position(|known| *known == name).unwrap_or_else(|| {
+            ordered.push(name);
+            ordered.len() - 1
+        });
+        *number = place as u64;
+    }
+    ordered
 }
 
 /// What is recorded of few bodies.
@@ -163,7 +176,8 @@ impl Columns {
         let mut rare = mem::take(&mut *lock(&self.rare));
         rare.failures.sort_by_key(|failure| failure.body);
         rare.warnings.sort_by_key(|(body, place, _)| (*body, *place));
-        let named = |[number]: [u64; 1]| rare.methods.get(number as usize).copied().unwrap_or_default();
+        let mut methods = self.methods.finish().into_flattened();
+        let method_names = by_first_use(rare.methods, &mut methods);
         let mut drifts = Vec::new();
         for (name, column) in NAMES.into_iter().zip(self.drifts) {
             let Some(column) = column.into_inner() else { continue };
@@ -174,11 +188,12 @@ impl Columns {
         }
         drifts.sort_by_key(|(first, _): &(usize, _)| *first);
         Summary {
-            methods: self.methods.finish().into_iter().map(named).collect(),
+            method_names,
+            methods,
             steps: self.steps.finish(),
-            longest: single(self.longest),
-            estimates: single(self.estimates),
-            norm_drifts: single(self.norm_drifts),
+            longest: self.longest.numbers().into_flattened(),
+            estimates: self.estimates.numbers().into_flattened(),
+            norm_drifts: self.norm_drifts.numbers().into_flattened(),
             drifts: drifts.into_iter().map(|(_, column)| column).collect(),
             failures: rare.failures,
             warnings: rare.warnings.into_iter().map(|(_, _, text)| text).collect(),

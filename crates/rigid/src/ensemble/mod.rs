@@ -32,7 +32,7 @@ use crate::state::checks::check_moments;
 pub use output::{Outputs, Summary};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use scheduler::Scheduler;
+use scheduler::{Scheduler, Shared};
 
 /// One value for all bodies, or one for each.
 #[derive(Clone, Debug)]
@@ -133,13 +133,16 @@ impl Ensemble {
         outputs: Outputs,
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Summary, SimulateError> {
-        self.check(times, options)?;
+        options.check(times)?;
+        let extremes = self.start_times()?;
+        extremes.into_iter().try_for_each(|start| check_steps(times, start, options))?;
         let rows = [self.inertias.0.len(), self.masses.0.len()];
         let rows = rows.into_iter().chain(self.laws.iter().map(|law| law.0.len()));
         let rows = rows.chain(self.forces.iter().map(|force| force.0.len()));
         assert!(rows.into_iter().all(|n| n == 1 || n == self.starts.len()), "one for all, or one for each");
         let shared = self.shared_laws();
-        Scheduler::new(self, shared.as_deref(), times, options, outputs).work(threads, progress)
+        let shared = Shared { laws: shared.as_deref(), start: extremes[0] == extremes[1] };
+        Scheduler::new(self, shared, times, options, outputs).work(threads, progress)
     }
 
     /// The laws in principal axes, if all bodies share them and an inertia.
@@ -149,22 +152,13 @@ impl Ensemble {
         alike.then(|| self.laws.iter().map(|law| law.of(0).clone().in_axes(frame)).collect())
     }
 
-    /// Checks input that concerns all bodies.
-    fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
-        options.check(times)?;
-        self.starts.iter().try_for_each(|start| check_start_time(start.time))?;
-        let Some(step) = options.step else { return Ok(()) };
-        if options.exact {
-            return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
-        }
-        let span = self.starts.iter().map(|start| span(times, start.time)).map(|[a, b]| b - a);
-        let span = span.fold(0.0, f64::max);
-        let steps = span / step + times.len() as f64;
-        let limit = options.most_steps();
-        if steps > limit {
-            return Err(SimulateError::TooManySteps { steps, step, limit });
-        }
-        Ok(())
+    /// The earliest and the latest start, in s; an error if one is not finite.
+    fn start_times(&self) -> Result<[f64; 2], SimulateError> {
+        let first = self.starts.first().map_or(0.0, |start| start.time);
+        self.starts.iter().try_fold([first; 2], |[earliest, latest], start| {
+            check_start_time(start.time)?;
+            Ok([earliest.min(start.time), latest.max(start.time)])
+        })
     }
 
     /// The first body that is invalid, by its number, and its error.
@@ -189,4 +183,16 @@ impl Ensemble {
         let driven = |law: &Rows<Torque>| matches!(law.of(0), Torque::Wheels(_));
         !moved && !self.laws.iter().any(|law| apart(law) || called(law) || driven(law))
     }
+}
+
+/// Checks the number of equal steps, if they are given, of a body with this start; no other start between two needs more.
+fn check_steps(times: &[f64], start: f64, options: &Options) -> Result<(), SimulateError> {
+    let Some(step) = options.step else { return Ok(()) };
+    if options.exact {
+        return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
+    }
+    let [begin, end] = span(times, start);
+    let steps = (end - begin) / step + times.len() as f64;
+    let limit = options.most_steps();
+    if steps > limit { Err(SimulateError::TooManySteps { steps, step, limit }) } else { Ok(()) }
 }

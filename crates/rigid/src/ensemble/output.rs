@@ -24,8 +24,10 @@ pub struct Outputs<'a> {
 /// Results of an ensemble besides its points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
-    /// For each body the name of its method.
-    pub methods: Vec<&'static str>,
+    /// The names of the methods, in the order of the first bodies that have them.
+    pub method_names: Vec<&'static str>,
+    /// For each body the place of its method among the names.
+    pub methods: Vec<u64>,
     /// For each body the steps of all its sweeps, and the evaluations of its torque.
     pub steps: Vec<[u64; 2]>,
     /// For each body its longest step in s.
@@ -41,6 +43,16 @@ pub struct Summary {
     pub failures: Vec<Failure>,
     /// Each once: see [`crate::run::certificate::Certificate::warnings`].
     pub warnings: Vec<String>,
+}
+
+impl Summary {
+    /// The name of the method of a body.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn method(&self, body: usize) -> &'static str {
+        self.method_names[self.methods[body] as usize]
+    }
 }
 
 /// Successive bodies with their output arrays.

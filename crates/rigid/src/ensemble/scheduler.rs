@@ -22,6 +22,14 @@ use std::sync::{Condvar, Mutex, OnceLock};
 /// Parts into which the progress of a body is divided.
 const PARTS: f64 = 1024.0;
 
+/// What all bodies share.
+pub(super) struct Shared<'a> {
+    /// The laws in principal axes, with an inertia.
+    pub laws: Option<&'a [Torque]>,
+    /// Whether they start at one time.
+    pub start: bool,
+}
+
 /// State shared by the threads.
 pub(super) struct Scheduler<'a> {
     pub ensemble: &'a Ensemble,
@@ -45,13 +53,12 @@ pub(super) struct Scheduler<'a> {
 impl<'a> Scheduler<'a> {
     pub fn new(
         ensemble: &'a Ensemble,
-        shared: Option<&'a [Torque]>,
+        shared: Shared<'a>,
         times: &'a [f64],
         options: &'a Options,
         outputs: Outputs<'a>,
     ) -> Scheduler<'a> {
         let all = Share::all(outputs, times.len());
-        let same_start = ensemble.starts.iter().all(|start| start.time == ensemble.starts[0].time);
         Scheduler {
             ensemble,
             times,
@@ -62,8 +69,8 @@ impl<'a> Scheduler<'a> {
             done: AtomicU64::new(0),
             running: Mutex::new(0),
             ended: Condvar::new(),
-            shared,
-            samples: (shared.is_some() && same_start).then(OnceLock::new),
+            shared: shared.laws,
+            samples: (shared.laws.is_some() && shared.start).then(OnceLock::new),
         }
     }
 

@@ -89,8 +89,8 @@ def constant(F: Any) -> Force:
 def thrust(force: Any, at: Any = None) -> Force:
     """Return a force F constant in body axes, a vector or (..., 3) in N, such as a thruster's.
 
-    It acts at the point `at` of the body (in body axes, m) and so exerts the torque ``(at − c)∧F`` about the
-    centre of mass c; by default it acts at the centre of mass.
+    It acts at the point `at` of the body, (..., 3) in body axes in m, and so exerts the torque
+    ``(at − c)∧F`` about the centre of mass c; by default it acts at the centre of mass.
 
     Examples
     --------
@@ -240,13 +240,14 @@ def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Forc
 
 def _force(name: str, *values: Any) -> Force:
     """Return the force of the registry with these values for its arguments."""
-    arguments = zip(FORCES[name].arguments, values, strict=False)
+    entries = FORCES[name].arguments
     convert: dict[str, Any] = {"scalar": numbers, "vector": _vectors}
-    return _native_force(name, *(convert[x.shape](value, x.name) for x, value in arguments))
+    arguments = [convert[x.shape](value, x.name) for x, value in zip(entries, values, strict=False)]
+    return _native_force(name, *together(arguments, name, [x.name for x in entries]))
 
 
 def _native_force(name: str, *arguments: Any) -> Force:
-    return Force((_native.Force(name, *together(arguments, name)),))
+    return Force((_native.Force(name, *arguments),))
 
 
 def _vectors(value: Any, name: str) -> tuple[float, ...] | Batch:

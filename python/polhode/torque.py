@@ -21,7 +21,7 @@ from polhode import _native
 from polhode._algebra.constructors import as_bivectors, bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of
+from polhode._mechanics.bodies import Body, Inertia, bodies_of, has, inertia_of
 from polhode._mechanics.laws import Sum, finite, function_of, law_of_formula, shown
 from polhode._mechanics.orbits import DipoleField, KeplerOrbit, dipole_field
 from polhode._mechanics.parameters import (
@@ -185,7 +185,7 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
     1.18034
     """
     bodies = bodies_of(body)
-    if Inertia in {*map(type, bodies.flat)}:
+    if has(Inertia, bodies):
         raise TypeError("gravity needs a Body, which has a mass, got an Inertia; see ph.torque.heavy(c)")
     masses = np.array([one.mass for one in bodies.flat]).reshape(bodies.shape)
     centers = np.array([one._core.center_of_mass() for one in bodies.flat]).reshape(*bodies.shape, 3)
@@ -250,6 +250,8 @@ def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0
     array([1.81, 1.81, 1.81, 1.81, 1.81])
     """
     if isinstance(rate, KeplerOrbit):
+        if np.any(eccentricity) or np.any(mean_anomaly):
+            raise TypeError("an orbit has its own eccentricity and mean anomaly; leave these arguments out")
         rate, eccentricity, mean_anomaly = rate.rate, rate.eccentricity, rate.mean_anomaly
     return _law("gravity_gradient", rate, eccentricity, mean_anomaly)
 
@@ -691,8 +693,9 @@ def settled(bodies: Any, torque: Torque | None) -> tuple[Any, Torque | None]:
 
 def _law(name: str, *values: Any) -> Torque:
     """Return the law of the registry with these values for its arguments."""
-    arguments = zip(TORQUES[name].arguments, values, strict=True)
-    return _native_law(name, *(_CONVERSIONS[x.shape](value, x.name) for x, value in arguments))
+    entries = TORQUES[name].arguments
+    arguments = [_CONVERSIONS[x.shape](value, x.name) for x, value in zip(entries, values, strict=True)]
+    return _native_law(name, *together(arguments, name, [x.name for x in entries]))
 
 
 def _native_law(name: str, *arguments: Any) -> Torque:

@@ -61,6 +61,36 @@ def test_an_array_of_vectors_is_a_force_for_each_body():
     assert_same(many, ph.simulate(BODY, START, TIMES, force=F.constant(VECTORS)))
 
 
+@pytest.mark.parametrize("module", ["force", "torque"])
+def test_laws_of_one_kind_broadcast(module):
+    """The batch shape of a sum is that of all its laws, in any order."""
+    make = ph.force.drag if module == "force" else ph.torque.damping
+    one, few, column = make(0.25), make([0.1, 0.2, 0.3]), make([[1.0], [2.0]])
+    alone = make(2.0) + make(0.3) + make(0.25)
+    for law in (few + column + one, one + column + few, column + few + one):
+        assert law.shape == (2, 3)
+        many = ph.simulate(BODY, START, TIMES, **{module: law})
+        assert many.shape == (2, 3)
+        assert_same(many[1, 2], ph.simulate(BODY, START, TIMES, **{module: alone}))
+    with pytest.raises(ValueError, match=r"the laws do not broadcast .*\(3,\) of \w+, \(2,\) of \w+ \(2\)"):
+        ph.simulate(BODY, START, TIMES, **{module: few + make([1.0, 2.0])})
+
+
+def test_bodies_and_thrusts_broadcast():
+    class Satellite(ph.Body):
+        """A body with a name."""
+
+    bodies = [BODY, BODY.moved(position=[0, 0, 1]), Satellite(3.0, BODY.inertia, [0, 1, 0])]
+    law = F.thrust(VECTORS, ph.e1) + F.thrust(VECTORS[:2, np.newaxis], VECTORS)
+    many = ph.simulate(bodies, START, TIMES, force=law)
+    assert many.shape == (2, 3)
+    for j, k in np.ndindex(2, 3):
+        own = F.thrust(VECTORS[k], ph.e1) + F.thrust(VECTORS[j], VECTORS[k])
+        assert_same(many[j, k], ph.simulate(bodies[k], START, TIMES, force=own))
+    with pytest.raises(ValueError, match=r"of body and force do not broadcast together: \(2,\) of the body"):
+        ph.simulate(bodies[:2], START, TIMES, force=law)
+
+
 def test_parameters_and_starts_broadcast():
     starts = ph.State(R0, [0, 0, 1], velocity=VECTORS[:, np.newaxis])
     law, torque = F.spring(NUMBERS + 1, VECTORS[:2, np.newaxis]), ph.torque.damping([0.1, 0.2, 0.3])
@@ -114,12 +144,21 @@ def test_errors_name_the_body():
         F.drag([0.1, np.inf])
     with pytest.raises(ValueError, match=r"at index \(1,\): .*F is \[0\.0, nan, 0\.0\]"):
         F.constant([[0, 0, 1], [0, np.nan, 0]])
-    with pytest.raises(ValueError, match=r"the batch shapes of spring do not broadcast together: \(3,\)"):
+    with pytest.raises(ValueError, match=r"spring do not broadcast .*\(3,\) of k, \(2,\) of anchor"):
         F.spring(NUMBERS, VECTORS[:2])
     with pytest.raises(ValueError, match=r"of the laws do not broadcast .*\(3,\) of drag, \(2,\) of spring"):
         ph.simulate(BODY, START, TIMES, force=F.drag(NUMBERS) + F.spring([1.0, 2.0]))
     with pytest.raises(ValueError, match=r"events are not supported for batches, got batch shape \(3,\)"):
         ph.simulate(BODY, START, TIMES, force=F.drag(NUMBERS), events=ph.event.position(ph.e3, 0))
+    with pytest.raises(ValueError, match=r"at index \(1,\): k is nan; it must be finite"):
+        F.formula("-k v", k=ph.scalar([1.0, np.nan]))
+    for force in ([F.drag(1), F.drag(2)], ph.torque.damping(1)):
+        with pytest.raises(TypeError, match=r"force must be a law of polhode.force, got .*; (add|give) "):
+            ph.simulate(BODY, START, TIMES, force=force)
+    with pytest.raises(TypeError, match=r"torque must be a law .* got Force; give a force as force="):
+        ph.simulate(BODY, START, TIMES, F.drag(1))
+    with pytest.raises(TypeError, match=r"unsupported operand"):
+        VECTORS + F.drag(1)
     with pytest.raises(TypeError, match=r"a force needs a Body"):
         ph.simulate(BODY.inertia, START, TIMES, force=F.drag(NUMBERS))
 

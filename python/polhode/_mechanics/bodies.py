@@ -612,6 +612,11 @@ def types_of(array: Any) -> set[type]:
     return {*_native.types_of(array.ravel().tolist())}
 
 
+def has(kind: type, array: Any) -> bool:
+    """Return whether an array of objects has one of this type."""
+    return any(issubclass(one, kind) for one in types_of(array))
+
+
 def inertia_of(body: Any, held: bool) -> Any:
     """Return the inertia of a body, if it is held about the origin of its axes; anything else unchanged."""
     if not isinstance(body, Body):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self, TypeVar
@@ -15,7 +16,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._formula.arguments import narrowed
 from polhode._formula.errors import FormulaError
-from polhode._mechanics.parameters import common
+from polhode._mechanics.parameters import check_finite, common
 from polhode._support.arrays import Shape, as_float, as_floats
 
 T = TypeVar("T")
@@ -26,6 +27,8 @@ class Sum:
     """A sum of laws; laws are immutable values: equal if their arguments are equal, hashable, picklable."""
 
     laws: tuple[Any, ...]
+    # An array does not add a law to each of its elements.
+    __array_ufunc__ = None
 
     def __add__(self, other: Self) -> Self:
         return type(self)(self.laws + other.laws) if isinstance(other, type(self)) else NotImplemented
@@ -37,7 +40,13 @@ class Sum:
     @property
     def shape(self) -> Shape:
         """Shape of the batch of bodies that the arguments describe; ``()`` for a single body."""
-        return common({law.name: law.shape for law in self.laws}, "the laws")
+        shapes: dict[str, Shape] = {}
+        numbers: Counter[str] = Counter()
+        for law in self.laws:
+            numbers[law.name] += 1
+            number = numbers[law.name]
+            shapes[law.name if number == 1 else f"{law.name} ({number})"] = law.shape
+        return common(shapes, "the laws")
 
 
 def finite(value: float, name: str) -> float:
@@ -73,7 +82,9 @@ def formula_value(value: Any, name: str, batches: bool = False) -> Any:
     if value.shape and not batches:
         raise ValueError(f"{name} must be a single value, got batch shape {value.shape}")
     data = as_coefficients(value._data, name, float)
-    if not np.isfinite(data).all():
+    if value.shape:
+        check_finite(data, name)
+    elif not np.isfinite(data).all():
         raise ValueError(f"{name} is {value}; it must be finite")
     return Rotor._from_rows(data) if isinstance(value, Rotor) else Multivector._of(data, value._mask)
 

@@ -1,8 +1,8 @@
-"""Arguments of torque laws: numbers shared by all bodies, or a row for each body of a batch."""
+"""Arguments of laws: numbers shared by all bodies, or a row for each body of a batch."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -123,11 +123,11 @@ def place(index: tuple[int, ...]) -> str:
     return f"at index {index}: " if index else ""
 
 
-def together(arguments: tuple[Any, ...], names: str) -> tuple[Any, ...]:
-    """Return arguments whose batches are broadcast to one shape."""
-    shape = common(
-        {f"argument {k}": x.shape for k, x in enumerate(arguments, 1) if isinstance(x, Batch)}, names
-    )
+def together(arguments: Sequence[Any], law: str, names: Sequence[str] = ()) -> tuple[Any, ...]:
+    """Return arguments of a law, whose batches are broadcast to one shape; errors have their `names`."""
+    labels = [*names, *(f"argument {k + 1}" for k in range(len(names), len(arguments)))]
+    shapes = {label: x.shape for label, x in zip(labels, arguments, strict=False) if isinstance(x, Batch)}
+    shape = common(shapes, law)
     return tuple(_broadcast(x, shape) if isinstance(x, Batch) else x for x in arguments)
 
 

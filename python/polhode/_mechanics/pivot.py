@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._mechanics.bodies import Body, Inertia, mapped_objects, types_of
+from polhode._mechanics.bodies import Body, Inertia, has, mapped_objects
 from polhode._mechanics.parameters import Batch, common, place
 from polhode._support.arrays import Array, first_index
 
@@ -50,7 +50,7 @@ def _text(points: Array) -> str:
 
 def _moved(bodies: Any, pivot: Array) -> Any:
     """Return the bodies in parallel axes with the origin at the pivot (..., 3)."""
-    if not pivot.any() or types_of(bodies) <= {Inertia}:
+    if not pivot.any() or not has(Body, bodies):
         return bodies
     shape = common({"the body": bodies.shape, "the pivot": pivot.shape[:-1]}, "body and pivot")
     shifts = iter(-np.broadcast_to(pivot, (*shape, 3)).reshape(-1, 3))
@@ -94,7 +94,7 @@ def _numbers(body: Body | Inertia) -> list[float]:
 
 def _check_weight(bodies: Any, law: _native.Law) -> None:
     """Raise if c of `heavy` does not point along the centre of mass, where that is known."""
-    if Body not in types_of(bodies):
+    if not has(Body, bodies):
         return
     c = _rows(law.arguments[0])
     shape = common({"the body": bodies.shape, "c": c.shape[:-1]}, "body and torque")

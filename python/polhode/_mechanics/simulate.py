@@ -13,8 +13,9 @@ from polhode import force as forces
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import vector
 from polhode._algebra.multivector import Multivector
-from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of, mapped_objects, types_of
+from polhode._mechanics.bodies import Body, Inertia, bodies_of, has, inertia_of, mapped_objects
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, warn_of
+from polhode._mechanics.laws import Sum
 from polhode._mechanics.parameters import Batch, common
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
@@ -93,8 +94,9 @@ def simulate(
         motion. A result whose estimate exceeds the tolerance is an error. By default the tolerance is 1e-10,
         or up to 1e-6 where rounding allows no less; the certificate has the estimate.
     step
-        A fixed step in s, shortened slightly so that steps end at the output times. A law that changes too
-        fast for it raises a `RuntimeWarning`.
+        A fixed step in s, shortened slightly so that steps end at the output times. The error is then not
+        estimated; a law that changes too fast for it, or a body that turns by more than 2 rad in a step,
+        raises a `RuntimeWarning`.
     max_step
         The longest step in s. Laws that depend on time are sampled at 4096 times first, and steps are
         shortened where they change; a pulse shorter than 1/4096 of the run needs `max_step` or `breaks`.
@@ -297,7 +299,7 @@ def _ensemble(
         "the force": pushes.shape,
     }
     masses = np.array(math.nan)
-    if Body in types_of(bodies):
+    if has(Body, bodies):
         rows = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
         masses = np.array(rows).reshape(bodies.shape)
         bodies = mapped_objects(lambda one: inertia_of(one, held), bodies)
@@ -350,9 +352,11 @@ def as_torque(torque: Any) -> Torque | None:
     own = getattr(torque, "__module__", None) == function.__module__
     if callable(torque) and not own and not isinstance(torque, Multivector):
         return function(torque)
+    remedy = "a constant torque is constant_body(N) or constant_space(N)"
+    if isinstance(torque, Force):
+        remedy = "give a force as force="
     raise TypeError(
-        f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}; a constant "
-        "torque is constant_body(N) or constant_space(N)"
+        f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}; {remedy}"
     )
 
 
@@ -369,9 +373,10 @@ def _forces(force: Any, bodies: Any) -> tuple[Force, Torque | None]:
     """Return the forces, and the torque of thrusts that act away from the centre of mass."""
     if force is None:
         return Force(()), None
-    if Inertia in types_of(bodies):
+    if has(Inertia, bodies):
         raise TypeError("a force needs a Body, which has a mass, got an Inertia")
     law = as_force(force)
+    common({"the body": bodies.shape, "the force": law.shape}, "body and force")
     thrusts = [law.arguments for law in law.laws if law.name == "thrust" and len(law.arguments) == 2]
     if not thrusts:
         return law, None
@@ -393,6 +398,12 @@ def as_force(force: Any) -> Force:
         if getattr(force, "__module__", None) == forces.__name__:
             raise TypeError(f"force must be a law of polhode.force, such as drag(k), got {force.__name__}")
         return forces.function(force)
+    given = force if isinstance(force, list | tuple) else [force]
+    if any(isinstance(one, Sum) for one in given):
+        remedy = "add forces with +; for many bodies give arrays of parameters, such as drag([1, 2])"
+        if isinstance(force, Torque):
+            remedy = "give a torque as torque="
+        raise TypeError(f"force must be a law of polhode.force, got {type(force).__name__}; {remedy}")
     return forces.constant(force)
 
 

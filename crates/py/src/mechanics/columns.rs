@@ -177,8 +177,8 @@ impl<T: Clone> Laws<T> {
     }
 
     /// The laws of the bodies of a batch.
-    pub fn of_bodies(&self, shape: &[usize]) -> ensemble::Rows<T> {
-        ensemble::Rows::new(spread(&self.rows, &self.shape, shape).into_owned())
+    pub fn of_bodies(&self, shape: &[usize]) -> PyResult<ensemble::Rows<T>> {
+        Ok(ensemble::Rows::new(spread(&self.rows, &self.shape, shape)?.into_owned()))
     }
 }
 
@@ -187,10 +187,14 @@ pub(crate) fn spread<'a, T: Clone>(
     own: impl Into<Cow<'a, [T]>>,
     own_shape: &[usize],
     shape: &[usize],
-) -> Cow<'a, [T]> {
+) -> PyResult<Cow<'a, [T]>> {
     let own = own.into();
     if own.len() == 1 || own_shape == shape {
-        return own;
+        return Ok(own);
+    }
+    let mut axes = own_shape.iter().rev().zip(shape.iter().rev());
+    if own_shape.len() > shape.len() || !axes.all(|(&own, &all)| own == 1 || own == all) {
+        return Err(bad(format!("the batch shape {own_shape:?} does not broadcast to {shape:?}")));
     }
     let count = shape.iter().product();
     let mut strides = vec![0; shape.len()];
@@ -203,5 +207,5 @@ pub(crate) fn spread<'a, T: Clone>(
         let axes = shape.iter().zip(&strides).rev();
         axes.fold((body, 0), |(rest, at), (length, stride)| (rest / length, at + rest % length * stride)).1
     };
-    (0..count).map(|body| own[place(body)].clone()).collect()
+    Ok((0..count).map(|body| own[place(body)].clone()).collect())
 }

@@ -76,11 +76,11 @@ pub(crate) fn ensemble_of(
     forces: &[Bound<'_, Force>],
 ) -> PyResult<Ensemble> {
     Ok(Ensemble {
-        inertias: ensemble::Rows::new(spread(inertias, &own_shape, shape).into_owned()),
+        inertias: ensemble::Rows::new(spread(inertias, &own_shape, shape)?.into_owned()),
         starts: starts(shape, begins, rotors, omegas, centers)?,
-        laws: laws.iter().map(|law| law.get().0.of_bodies(shape)).collect(),
-        masses: ensemble::Rows::new(spread(numbers(masses)?, masses.shape(), shape).into_owned()),
-        forces: forces.iter().map(|force| force.get().0.of_bodies(shape)).collect(),
+        laws: laws.iter().map(|law| law.get().0.of_bodies(shape)).collect::<PyResult<_>>()?,
+        masses: ensemble::Rows::new(spread(numbers(masses)?, masses.shape(), shape)?.into_owned()),
+        forces: forces.iter().map(|force| force.get().0.of_bodies(shape)).collect::<PyResult<_>>()?,
     })
 }
 
@@ -134,7 +134,7 @@ pub(crate) fn starts(
     centers: &Rows<'_>,
 ) -> PyResult<Vec<Start>> {
     let count = shape.iter().product();
-    let begins = spread(numbers(begins)?, begins.shape(), shape);
+    let begins = spread(numbers(begins)?, begins.shape(), shape)?;
     let rotors = {
         let own = batch(rotors);
         let rows = numbers(rotors)?.as_chunks::<4>().0.iter().enumerate();
@@ -143,10 +143,10 @@ pub(crate) fn starts(
         for (row, components) in rows {
             rotors.push(Rotor::from_components(*components).map_err(|error| failed(row, error))?);
         }
-        spread(rotors, own, shape)
+        spread(rotors, own, shape)?
     };
-    let omegas = spread(numbers(omegas)?.as_chunks::<3>().0, batch(omegas), shape);
-    let centers = spread(numbers(centers)?.as_chunks::<6>().0, batch(centers), shape);
+    let omegas = spread(numbers(omegas)?.as_chunks::<3>().0, batch(omegas), shape)?;
+    let centers = spread(numbers(centers)?.as_chunks::<6>().0, batch(centers), shape)?;
     let start = |body: usize| {
         let [x, y, z, u, v, w] = *one_of(&centers, body);
         Start {

@@ -314,3 +314,28 @@ def test_stiff_damping_uses_the_midpoint_rule(many):
     weight = (~found.rotor)(gamma).wedge(ph.vector([0, 1, 0])).components[..., -1, :]
     # The correction is of the relative size (N i/d²).
     np.testing.assert_allclose(found.omega_body.components[..., -1, :], weight / d, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("method", ["rk4", "dop853", "kahan_li8", "midpoint"])
+@pytest.mark.parametrize("batch", [(), (20,)])
+def test_steps_in_which_the_body_turns_too_far_are_reported(method, batch):
+    """A rate of 1 rad/s: 1.9 and 2.1 rad a step."""
+    state, law = ph.State(ONE, np.broadcast_to([1e-3, 1, 1e-3], (*batch, 3))), ph.torque.heavy([0, 0, 1e-6])
+    for step, is_reported in ((1.9, False), (2.1, True), (5.0, False)):
+        if is_reported:
+            with pytest.warns(RuntimeWarning, match=r"step = 2\.1 s the body turns by more than 2 rad"):
+                motion = ph.simulate(BODY, state, [4 * step], law, method=method, step=step)
+        else:
+            # Steps end at the output times.
+            motion = ph.simulate(BODY, state, np.arange(1, 5) * min(step, 1.9), law, method=method, step=step)
+        assert len(motion.certificate.warnings) == is_reported
+
+
+def test_the_turns_of_a_symmetric_body_are_exact():
+    """Its steps may be as long as the torque allows, but not those of another method."""
+    body = ph.Inertia.from_principal_moments(2, 2, 3)
+    state, law = ph.State(ONE, [0.01, 0, 100]), ph.torque.gravity_gradient(1e-3)
+    motion = ph.simulate(body, state, [100.0], law, method="rkn6", step=1.0)
+    assert motion.certificate.warnings == ()
+    with pytest.warns(RuntimeWarning, match="turns by more than 2 rad"):
+        ph.simulate(body, state, [1.0], law, method="rk4", step=0.025)

@@ -16,7 +16,7 @@ use crate::methods::splitting::turns::Turns;
 use crate::run::Progress;
 use crate::run::engine::Engine;
 use crate::run::limits::span;
-use crate::run::stops::{aliasing_warning, is_aliased};
+use crate::run::stops::{aliasing_warning, is_aliased, turn_warning};
 use crate::run::sweep::is_finite;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
@@ -90,7 +90,9 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
         // Of bodies that move; the others have none.
         let moving = if members[0].own.centers.is_some() { &members[..] } else { &[] };
         let centers: Vec<_> = moving.iter().map(|member| scheduler.center(member.body)).collect();
-        let mut monitor = LaneMonitor::new(&states(LanePhases::starts(&members), start));
+        let at_start = states(LanePhases::starts(&members), start);
+        let (mut monitor, mut squared_rates) =
+            (LaneMonitor::new(&at_start), at_start.points().squared_rates());
         // Their products with the numbers of a moderate state are finite.
         let are_moderate = moderate(bodies.numbers());
         let mut failures: [Option<(f64, SimulateError)>; W] = [const { None }; W];
@@ -144,6 +146,8 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
                 let states = states(stepper.phases(&bodies, &state), time);
                 monitor.record(&states, &lost);
                 let points = states.points();
+                let rates = points.squared_rates();
+                (0..W).for_each(|l| squared_rates[l] = squared_rates[l].max(rates[l]));
                 for (l, member) in members.iter_mut().enumerate() {
                     if lost[l] {
                         member.own.unknown(index);
@@ -165,6 +169,14 @@ impl<const W: usize> FixedSteps<'_, '_, W> {
         let aliased = torques[0].iter().filter(is_aliased);
         let columns = &scheduler.columns;
         columns.warn(first.body, aliased.map(|law| aliasing_warning(law, step)));
+        let turns_too_far = |l: &usize| {
+            // A failure is reported already.
+            let rate = squared_rates[*l].sqrt();
+            failures[*l].is_none() && method.turns_too_far(&gyrostats[*l], rate, longest)
+        };
+        if let Some(l) = (0..members.len()).find(turns_too_far) {
+            columns.warn(members[l].body, [turn_warning(step)]);
+        }
         let (method, evaluations) = (columns.method(method.name()), steps * plan.evaluations());
         for (l, Member { body, .. }) in members.iter().enumerate() {
             let (estimate, norm_drift) = (f64::NAN, norm_drifts[l]);

@@ -67,6 +67,12 @@ impl<const W: usize> LanePoints<W> {
         (rotor, Bivector(from_fn(|k| self.omega[k].0[l])))
     }
 
+    /// The squares of the angular velocities.
+    pub fn squared_rates(&self) -> [f64; W] {
+        let [x, y, z] = &self.omega;
+        from_fn(|l| x.0[l] * x.0[l] + y.0[l] * y.0[l] + z.0[l] * z.0[l])
+    }
+
     /// The momentum in space of a lane.
     pub fn momentum_of(&self, l: usize) -> Bivector {
         Bivector(from_fn(|k| self.momentum[k].0[l]))

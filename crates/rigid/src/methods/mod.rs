@@ -11,7 +11,11 @@ pub(crate) mod step_control;
 use crate::body::inertia::equal;
 use crate::laws::torque::{Dependence, Torque, damping_rate};
 use crate::state::phase::{Gyrostat, Phase};
+use splitting::turns::Kind;
 use splitting::{COMPOSITIONS, RKN6, Sequence};
+
+/// The turn of a body in an equal step, in rad, beyond which the error of a few steps is of the size of the motion.
+pub(crate) const LARGEST_TURN: f64 = 2.0;
 
 /// A stepping method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +39,12 @@ pub fn methods() -> impl Iterator<Item = Method> {
 }
 
 impl Method {
+    /// Whether a body that turns at this rate (rad/s) turns too far in a step (s). Splittings turn symmetric bodies exactly.
+    pub(crate) fn turns_too_far(&self, body: &Gyrostat, rate: f64, step: f64) -> bool {
+        let is_exact = matches!(self, Method::Splitting(_)) && Kind::of(body).is_symmetric();
+        rate * step > LARGEST_TURN && !is_exact
+    }
+
     /// The method of this name.
     pub fn from_name(name: &str) -> Option<Method> {
         methods().find(|m| m.name() == name)

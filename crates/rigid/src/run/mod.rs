@@ -34,7 +34,7 @@ use engine::Engine;
 use limits::{StepBounds, samples, span};
 use polhode_ga::{Bivector, Rotor};
 use refine::{Accuracy, Convergence, Scales, SweepPlan};
-use stops::{aliasing_warning, is_aliased};
+use stops::{aliasing_warning, is_aliased, turn_warning};
 pub use sweep::Progress;
 use sweep::{Integrator, StepRule, Sweep, check_pieces, is_finite};
 
@@ -287,6 +287,7 @@ impl Problem {
             return Err(SimulateError::Diverged { time: state.phase.time });
         }
         let exact = name == "exact";
+        let warnings = options.step.map_or(Vec::new(), |step| self.warnings(times, step, (method, &sweep)));
         let certificate = Certificate {
             method: name,
             step: if exact { 0.0 } else { sweep.longest },
@@ -295,7 +296,7 @@ impl Problem {
             error_estimate: error,
             drifts: sweep.drifts,
             norm_drift: sweep.states.iter().map(|s| off_unit(s.phase.rotor)).fold(0.0, f64::max),
-            warnings: options.step.map_or(Vec::new(), |step| self.aliased(times, step)),
+            warnings,
         };
         Ok(Motion {
             problem: self.clone(),
@@ -308,12 +309,16 @@ impl Problem {
         })
     }
 
-    /// Warnings for laws that change too fast for fixed steps.
-    fn aliased(&self, times: &[f64], step: f64) -> Vec<String> {
-        let start = self.start().phase;
-        let span = span(times, start.time);
-        let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start, span, step);
-        self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step)).collect()
+    /// Warnings for fixed steps that are too long for the laws, or for the turns of the body.
+    fn warnings(&self, times: &[f64], step: f64, (method, sweep): (Method, &Sweep)) -> Vec<String> {
+        let start = self.start();
+        let span = span(times, start.phase.time);
+        let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start.phase, span, step);
+        let aliased = self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step));
+        let states = [&start].into_iter().chain(&sweep.states);
+        let fastest = states.map(|state| self.body.omega(state.phase.momentum).norm()).fold(0.0, f64::max);
+        let too_far = method.turns_too_far(&self.body, fastest, sweep.longest);
+        aliased.chain(too_far.then(|| turn_warning(step))).collect()
     }
 
     /// The best stepping method.

@@ -6,6 +6,7 @@
 
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
+use crate::methods::LARGEST_TURN;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor};
 
@@ -122,6 +123,14 @@ pub(crate) fn aliasing_warning(law: &Torque, step: f64) -> String {
         _ => "a torque".to_owned(),
     };
     format!("{what} changes too fast for step = {step} s; use a shorter step, or omit step")
+}
+
+/// The warning for equal steps in which a body turns too far.
+pub(crate) fn turn_warning(step: f64) -> String {
+    format!(
+        "with step = {step} s the body turns by more than {LARGEST_TURN} rad in a step, which is not accurate; use a \
+         shorter step, or omit step"
+    )
 }
 
 /// Whether fixed steps miss more than a tenth of the impulse of a law that depends on time: compares Simpson's rule,

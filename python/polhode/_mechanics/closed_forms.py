@@ -32,6 +32,9 @@ class LagrangeTop(ClosedForm):
     neglects an angle of about ``d ω t``, ω the largest rate, which grows as an unstable top falls; `simulate`
     reports it as the error estimate.
 
+    Batch shapes broadcast to `shape`; ``m[i]`` indexes the batch as in NumPy. The tops of a batch are
+    computed in SIMD lanes, in any regimes.
+
     Parameters
     ----------
     inertia
@@ -42,9 +45,6 @@ class LagrangeTop(ClosedForm):
         At time 0, a bivector or an array (..., 3), in rad/s.
     c
         ``m g (centre of mass)`` in body axes, a vector or an array (..., 3), in N m.
-
-    Batch shapes broadcast to `shape`; ``m[i]`` indexes the batch as in NumPy. The tops of a batch are
-    computed in SIMD lanes, in any regimes.
 
     Raises
     ------

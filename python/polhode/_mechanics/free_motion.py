@@ -35,6 +35,9 @@ class FreeMotion(ClosedForm):
     close to an axis are resolved. For a matrix that is not diagonal, rounding of the moments and axes adds
     a turn of about ``ε |ω| t``.
 
+    Batch shapes broadcast to `shape`; ``m[i]`` indexes the batch as in NumPy. The bodies of a batch are
+    computed in SIMD lanes, in any regimes.
+
     Parameters
     ----------
     inertia
@@ -43,9 +46,6 @@ class FreeMotion(ClosedForm):
         From body axes to space axes at time 0.
     omega_body
         Angular velocity in body axes at time 0, a bivector or an array (..., 3), in rad/s.
-
-    Batch shapes broadcast to `shape`; ``m[i]`` indexes the batch as in NumPy. The bodies of a batch are
-    computed in SIMD lanes, in any regimes.
 
     Raises
     ------

@@ -76,7 +76,7 @@ def test_stacks_of_rotors_are_rotors():
         (lambda A: ph.stack([A, 1]), TypeError, "item 1 is int"),
         (lambda A: ph.stack([A, A], axis=3), ValueError, "axis 3 is out of range for 3"),
         (lambda A: ph.stack([A, A], axis=-4), ValueError, "axis -4 is out of range"),
-        (lambda A: ph.concatenate([e1, e1]), ValueError, "equal numbers of batch axes"),
+        (lambda A: ph.concatenate([e1, e1]), ValueError, "got single values; join them with ph.stack"),
         (lambda A: ph.concatenate([A, A[0]]), ValueError, "equal numbers of batch axes"),
         (lambda A: ph.concatenate([A, A], axis=2), ValueError, "axis 2 is out of range for 2"),
         (lambda A: ph.concatenate([A, A[:, :2]]), ValueError, "must agree except in axis 0"),

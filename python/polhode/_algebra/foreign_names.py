@@ -46,7 +46,7 @@ _ROTOR = {
     "as_rotvec": "to_rotation_vector()",
     "axis": "to_rotation_vector(), or plane_angle() for the plane and the angle",
     "between": "Rotor.from_vectors(a, b)",
-    "concatenate": "ph.concatenate([R, S])",
+    "concatenate": "ph.stack([R, S]), or ph.concatenate([R, S]) of batches",
     "euler": "to_euler(seq)",
     "create_group": "group(name)",
     "from_dcm": "from_matrix(M)",

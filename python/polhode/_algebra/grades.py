@@ -218,7 +218,9 @@ def concatenate(values: Iterable[V], axis: int = 0) -> V:
     """
     parts, shapes, build = _unified(values, "concatenate")
     dimensions = {len(shape) for shape in shapes}
-    if dimensions == {0} or len(dimensions) > 1:
+    if dimensions == {0}:
+        raise ValueError("concatenate joins batches, got single values; join them with ph.stack")
+    if len(dimensions) > 1:
         raise ValueError(f"concatenate needs equal numbers of batch axes, got shapes {_listed(shapes)}")
     axis = _batch_axis(axis, dimensions.pop())
     if len({shape[:axis] + shape[axis + 1 :] for shape in shapes}) > 1:

@@ -9,7 +9,7 @@ import { statesOf, type Steps } from "../stage/steps.ts";
 /** States per turn of the body, and per column at most: beyond that the chart shows where ω is, not how it gets there. */
 const PER_TURN = 14;
 const PER_COLUMN = 24;
-/** Multiples of the golden ratio spread the times evenly within a column; those of squares move each within its share, as at random. */
+/** Its multiples spread the times evenly within a column; its multiples by square numbers shift each within its share, as if at random. */
 const GOLDEN = (Math.sqrt(5) - 1) / 2;
 
 /** The least and the largest ω along each of the named axes, rad/s, in columns of equal duration. */

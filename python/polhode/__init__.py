@@ -120,8 +120,11 @@ _MODULES = ("event", "force", "io", "jax", "torque")
 # What other libraries call them.
 _HABITS = {
     "Cl": "algebra",
+    "KeplerOrbit": "torque.KeplerOrbit",
+    "Layout": "algebra",
     "MultiVector": "multivector",
     "Quaternion": "Rotor",
+    "RigidBody": "Body",
     "Rotation": "Rotor",
     "RotationSpline": "RotorSpline",
     "Slerp": "slerp",

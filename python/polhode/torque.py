@@ -321,7 +321,7 @@ def radiation_pressure(
 
     The "cannonball" model: with s the unit vector to the Sun, light exerts the force ``F = −C P A s`` at the
     centre of pressure c at any attitude. The torque in body axes is ``c∧(~R F R)``, its potential
-    ``V = −c·(~R F R)`` (Montenbruck & Gill, *Satellite Orbits*, sec. 3.4). For plates write a `formula`.
+    ``V = −c·(~R F R)`` (Montenbruck & Gill, Satellite Orbits, sec. 3.4). For plates write a `formula`.
 
     Parameters
     ----------

@@ -33,16 +33,21 @@ _MULTIVECTOR = {
     **{name: f'A["{name}"]' for name in ("e1", "e2", "e3", "e12", "e13", "e23", "e31", "e123")},
 }
 
-# As in SciPy and other libraries of rotations.
+# As in SciPy, numpy-quaternion and other libraries of rotations.
 _ROTOR = {
     "align": "ph.align(a, b), or Rotor.from_vectors(a, b) for two directions",
     "align_vectors": "ph.align(a, b), which takes the target last",
     "approx_equal": "distance(S) or is_close(S, rtol, atol)",
     "as_davenport": "to_davenport(axes, order)",
+    "as_dcm": "to_matrix()",
     "as_euler": "to_euler(seq)",
+    "as_euler_angles": 'to_euler("zyz")',
+    "as_float_array": 'to_quaternion(order="wxyz")',
     "as_matrix": "to_matrix()",
     "as_mrp": "to_mrp()",
     "as_quat": 'to_quaternion(order="xyzw")',
+    "as_rotation_matrix": "to_matrix()",
+    "as_rotation_vector": "to_rotation_vector()",
     "as_rotvec": "to_rotation_vector()",
     "axis": "to_rotation_vector(), or plane_angle() for the plane and the angle",
     "between": "Rotor.from_vectors(a, b)",
@@ -50,7 +55,10 @@ _ROTOR = {
     "euler": "to_euler(seq)",
     "create_group": "group(name)",
     "from_dcm": "from_matrix(M)",
+    "from_euler_angles": 'from_euler("zyz", angles)',
+    "from_float_array": 'from_quaternion(q, order="wxyz")',
     "from_quat": 'from_quaternion(q, order="xyzw")',
+    "from_rotation_matrix": "from_matrix(M)",
     "from_rotvec": "from_rotation_vector(v)",
     "from_two_vectors": "from_vectors(a, b)",
     "inv": "~R or inverse()",
@@ -59,6 +67,7 @@ _ROTOR = {
     "quaternion": 'to_quaternion(order="wxyz")',
     "rotate": "R(a)",
     "slerp": "ph.slerp(R, S, t)",
+    "to_dcm": "to_matrix()",
     "to_quat": 'to_quaternion(order="xyzw")',
     "to_rotvec": "to_rotation_vector()",
     **dict.fromkeys("wxyz", 'to_quaternion(order="wxyz")'),

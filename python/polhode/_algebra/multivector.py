@@ -50,7 +50,7 @@ class Multivector(_native.Multivector):
     ``abs(r - s)``), ``A&B`` the regressive product `vee`, ``V>>A`` the action ``V(A)`` of a versor, ``~A``
     the reverse. Numbers and arrays act as scalars, an array as a batch.
 
-    Python binds ``^``, ``|``, ``&`` and ``>>`` *looser* than ``+`` and ``*``: ``1 ^ e1 + e2`` means
+    Python binds ``^``, ``|``, ``&`` and ``>>`` looser than ``+`` and ``*``: ``1 ^ e1 + e2`` means
     ``1 ^ (e1 + e2)``, and ``e1 | e2 * e1`` means ``e1 | (e2 * e1)``. On paper they bind tighter than
     the product. Put brackets around them, or use the named methods ``A.wedge(B)`` and ``A.dot(B)``.
 

@@ -1,10 +1,10 @@
-"""Names of other libraries for bodies and states, with ours."""
+"""Names of other libraries for bodies, states and motions, with ours."""
 
 BODY = {
     **dict.fromkeys(("cube", "cuboid", "brick"), "Body.box(lengths, mass=m)"),
     **dict.fromkeys(("disk", "circle"), "Body.disc(radius, mass=m)"),
     **dict.fromkeys(("from_stl", "from_obj", "from_file", "load", "read"), "Body.from_mesh(path, mass=m)"),
-    **dict.fromkeys(("com", "center", "centroid"), "center_of_mass"),
+    **dict.fromkeys(("com", "center", "centre", "centre_of_mass", "centroid"), "center_of_mass"),
     **dict.fromkeys(("moments", "principal_moments"), "inertia.principal_moments"),
     **dict.fromkeys(("inertia_matrix", "inertia_tensor"), "inertia.matrix"),
     **dict.fromkeys(("translate", "rotate", "transform"), "moved(rotor, position)"),
@@ -27,3 +27,38 @@ STATE = {
     **dict.fromkeys(("omega", "angular_velocity", "rates"), "omega_body or omega_space"),
     "t": "time",
 }
+
+TRAJECTORY = {
+    **STATE,
+    "times": "time",
+    "y": "rotor and omega_body",
+    "rotors": "rotor",
+    **dict.fromkeys(("angular_momentum", "momentum", "L"), "momentum_body or momentum_space"),
+    "kinetic_energy": "energy",
+    "states": "at(t)",
+    "state": "at(t)",
+    "interpolate": "at(t)",
+    "summary": "certificate",
+    "show": "view() and plot()",
+    "animate": "view() and film(path)",
+    "to_pandas": "to_dataframe()",
+    "to_csv": "save(path)",
+    "to_parquet": "save(path)",
+    "to_netcdf": "save(path)",
+    "euler": "rotor.to_euler(seq)",
+    **dict.fromkeys(("load", "open", "from_file"), "Trajectory.read(path)"),
+}
+
+STEPPER = {
+    **dict.fromkeys(("rotor", "attitude", "orientation"), "state.rotor"),
+    **dict.fromkeys(("omega", "omega_body", "angular_velocity"), "state.omega_body"),
+    "advance": "step(dt)",
+    "t": "time",
+}
+
+FIT = {
+    **dict.fromkeys(("params", "popt", "x"), "values"),
+    **dict.fromkeys(("cov", "pcov"), "covariance"),
+}
+
+CROSSINGS = dict.fromkeys(("t", "times"), "time")

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._mechanics.foreign_names import CROSSINGS
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, hands_out_copies
 
@@ -132,6 +134,7 @@ class Failure:
         return f"at index {self.index} after {self.time:.6g} s: {self.message}"
 
 
+@with_foreign_names(CROSSINGS)
 @hands_out_copies("time", "rising")
 @dataclass(frozen=True, eq=False)
 class Crossings:

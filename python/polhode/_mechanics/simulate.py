@@ -83,9 +83,9 @@ def simulate(
         energy in long runs: ``rkn6`` for symmetric bodies and ``kahan_li8`` for others; for torques that
         depend on the angular velocity, and for other forces, ``dop853``, an adaptive Runge–Kutta method of
         order 8 on the group of rotors. Or one of these by name, or ``strang`` (order 2), ``yoshida4``,
-        ``yoshida6``, ``kahan_li6``, ``rk4``. A batch without a `step` is ``exact`` where possible, else
-        ``dop853`` with steps of its own for each body. Where the laws are stiff, as under strong damping,
-        ``"auto"`` uses ``midpoint``.
+        ``yoshida6``, ``kahan_li6``, ``rk4``, ``midpoint``, ``dmv``. A batch without a `step` is ``exact``
+        where possible, else ``dop853`` with steps of its own for each body. Where the laws are stiff, as
+        under strong damping, ``"auto"`` uses ``midpoint``.
     rtol, atol
         Without a `step`, the steps are refined until the estimated error at output times and events is less
         than the larger of the two: in the rotor; in the angular velocity, relative to its maximum or, if

@@ -10,9 +10,11 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.constructors import as_bivectors, bivector, vector
+from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.ensemble import check_state
+from polhode._mechanics.foreign_names import STEPPER
 from polhode._mechanics.laws import Sum
 from polhode._mechanics.parameters import check_finite
 from polhode._mechanics.simulate import _ensemble, _settled
@@ -29,6 +31,7 @@ METHODS = tuple(_native.methods())
 _NO_TORQUE = np.zeros((0, 3))
 
 
+@with_foreign_names(STEPPER)
 @explains_calls_of
 class Stepper:
     """A body, or a batch of bodies side by side, stepped in a loop: for controllers and learning.

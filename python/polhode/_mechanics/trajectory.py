@@ -14,6 +14,7 @@ from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.foreign_names import TRAJECTORY
 from polhode._mechanics.result import Certificate, Crossings, Failure
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen, hands_out_copies
@@ -25,36 +26,12 @@ if TYPE_CHECKING:
     from polhode._mechanics.problem import Problem
     from polhode._scene.scene import Scene
 
-# What other libraries call the attributes.
-_HABITS = {
-    "t": "time",
-    "times": "time",
-    "y": "rotor and omega_body",
-    "attitude": "rotor",
-    "rotors": "rotor",
-    "quaternion": "rotor.to_quaternion(order)",
-    "angular_momentum": "momentum_body and momentum_space",
-    "omega": "omega_body and omega_space",
-    "momentum": "momentum_body and momentum_space",
-    "L": "momentum_body and momentum_space",
-    "kinetic_energy": "energy",
-    "states": "at(t)",
-    "state": "at(t)",
-    "interpolate": "at(t)",
-    "summary": "certificate",
-    "show": "view() and plot()",
-    "animate": "view() and film(path)",
-    "to_pandas": "to_dataframe()",
-    "to_csv": "save(path)",
-    "to_parquet": "save(path)",
-    "to_netcdf": "save(path)",
-}
 
 # Bytes of a point of a single motion: in the core, and its copies.
 BYTES_OF_POINT = 400
 
 
-@with_foreign_names(dict.fromkeys(("load", "open", "from_file"), "Trajectory.read(path)"))
+@with_foreign_names(TRAJECTORY)
 @made_by("ph.simulate, or ph.Trajectory.read(path) for a file")
 @hands_out_copies("time", "energy")
 @dataclass(frozen=True, eq=False)
@@ -136,7 +113,7 @@ class Trajectory:
         def __getattr__(self, name: str) -> Any:
             drift = self.__dict__.get("_drift")
             if drift is None or name not in ("position", "velocity"):
-                hint = f"; see {_HABITS[name]}" if name in _HABITS else ""
+                hint = f"; write {TRAJECTORY[name]}" if name in TRAJECTORY else ""
                 raise AttributeError(f"a Trajectory has no attribute {name!r}{hint}")
             return getattr(drift, name)(self.time)
 

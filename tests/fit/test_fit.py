@@ -147,6 +147,24 @@ def test_estimated_noise_is_that_of_the_data():
     assert (widths[0] > widths[1]).all()
 
 
+@pytest.mark.parametrize("noise", [1e-4, 1e-6, 1e-8])
+def test_intervals_of_a_flat_body_cover_the_truth_at_any_noise(noise):
+    """The second moment across the plane is 0, whose logarithm a prior pulls if the noise is not known."""
+    flat, rng = ph.Inertia.from_principal_moments(1, 2, 3), np.random.default_rng(41)
+    rates = ph.FreeMotion(flat, START, [0.1, 1, 0.1]).at(np.linspace(0, 20, 101)).omega_body.components
+    errors = []
+    for _ in range(6):
+        found = ph.fit(
+            rates=(np.linspace(0, 20, 101), rates + noise * rng.normal(size=rates.shape)), bias=False
+        )
+        assert found.noise["rates"] == pytest.approx(noise, rel=0.2)
+        ratios = np.array([found.values[found.names.index(name)] for name in ("i1/i3", "i2/i3")])
+        deviations = [found.stderr[found.names.index(name)] for name in ("i1/i3", "i2/i3")]
+        errors.append((ratios - [1 / 3, 2 / 3]) / deviations)
+    # Of 12 normal numbers, of which those of a fit depend on each other, in standard deviations.
+    assert np.sqrt(np.mean(np.square(errors))) < 2
+
+
 def test_exact_data_give_the_body_to_rounding():
     free, t = motion(), TIMES - 100
     fit = ph.fit(rates=(TIMES, free.at(t).omega_body), bias=False)

@@ -14,13 +14,16 @@ from polhode._fit.laws import Laws, laws_of
 from polhode._fit.model import Model
 from polhode._fit.parameters import Layout, Parameters, shape_of
 from polhode._fit.result import Fit
-from polhode._fit.samples import Samples, attitudes_of, rates_of
-from polhode._fit.solve import solve
+from polhode._fit.samples import attitudes_of, rates_of
+from polhode._fit.solve import refined, solve
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.state import angular_velocity
 from polhode._support.calls import explains_calls
 from polhode._support.extras import optional
 from polhode.torque import Torque
+
+# The noise of residuals is found to this factor, in at most so many fits.
+_CLOSE, _ROUNDS = 2.0, 10
 
 
 @explains_calls
@@ -148,9 +151,12 @@ def fit(
         )
     axes = _axes(sensor_axes)
     found, *others = solve(model, axes, None if start is None else _start(start, model, axes, laws))
-    sums = float((model.residuals(found) ** 2).sum())
     is_known = all(x.is_known for x in data.values())
-    variance = 1.0 if is_known else max(sums / dof, *(_least_variance(x) for x in data.values()))
+    if not is_known:
+        model, (found, *others) = _reweighted(model, [found, *others], dof)
+        data = dict(zip(data, (x for x in (model.attitudes, model.rates) if x is not None), strict=True))
+    sums = float((model.residuals(found) ** 2).sum())
+    variance = 1.0 if is_known else _variance(model, found, dof)
     facts = information(model, found, variance, others, scaling)
     differences = dict(zip(data, model.differences(found), strict=True))
     return Fit(
@@ -175,9 +181,26 @@ def fit(
     )
 
 
-def _least_variance(samples: Samples) -> float:
-    """Return the least variance of residuals in standard deviations; that of data without noise."""
-    return float((samples.least / samples.sigma.min()) ** 2)
+def _reweighted(model: Model, found: list[Parameters], dof: int) -> tuple[Model, list[Parameters]]:
+    """Return the model with the noise of the residuals, and the fits to it.
+
+    The noise that was assumed before may be much larger; the prior would then pull the parameters by more
+    than their standard deviations.
+    """
+    for _ in range(_ROUNDS):
+        noise = float(np.sqrt(_variance(model, found[0], dof)))
+        if 1 / _CLOSE <= noise <= _CLOSE:
+            break
+        model = model.with_noise(noise)
+        found = refined(model, found)
+    return model, found
+
+
+def _variance(model: Model, found: Parameters, dof: int) -> float:
+    """Return the variance of residuals in standard deviations, at least that of data without noise."""
+    samples = (x for x in (model.attitudes, model.rates) if x is not None)
+    least = max((x.least / float(x.sigma.min())) ** 2 for x in samples)
+    return max(float((model.residuals(found) ** 2).sum()) / dof, least)
 
 
 def _axes(given: Any) -> Rotor:

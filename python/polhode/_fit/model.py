@@ -34,6 +34,11 @@ class Model:
         attitudes, rates = (x and x.before(end, most) for x in (self.attitudes, self.rates))
         return replace(self, attitudes=attitudes, rates=rates)
 
+    def with_noise(self, factor: float) -> Model:
+        """Return the model of data whose standard deviations are larger by a factor."""
+        attitudes, rates = (x and replace(x, sigma=factor * x.sigma) for x in (self.attitudes, self.rates))
+        return replace(self, attitudes=attitudes, rates=rates)
+
     @property
     def size(self) -> int:
         """Number of parameters."""

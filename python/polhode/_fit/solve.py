@@ -47,6 +47,11 @@ def solve(model: Model, axes: Rotor, start: Parameters | None) -> list[Parameter
     return _best(model, [*_along_arcs(model, [start]), *found], 1.0, _CALLS)
 
 
+def refined(model: Model, found: list[Parameters]) -> list[Parameters]:
+    """Return the fits from solutions for other standard deviations, best first."""
+    return _best(model, found, 1.0, _CALLS)
+
+
 def _is_good(model: Model, at: Parameters) -> bool:
     """Return whether residuals are of the size of their standard deviations, as far as these are known."""
     return float(np.mean(model.residuals(at) ** 2)) < _GOOD

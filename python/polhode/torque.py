@@ -227,7 +227,8 @@ def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0
     With u the direction from planet to body, ``u = cos f e1 + sin f e2``, the axial vector of the torque is
     ``3n² (a/r)³ u x I(u)``, ``a/r = (1 + e cos f)/(1 − e²)``. The true anomaly f follows from the mean
     anomaly ``M = n t + M0`` by Kepler's equation ``M = E − e sin E``, solved to rounding; the product
-    ``n t`` is kept in double-double precision, so that no digits are lost after many orbits.
+    ``n t`` is kept in double-double precision, so that no digits are lost after many orbits. The orbit is
+    given: it does not follow a position that forces change.
 
     Parameters
     ----------

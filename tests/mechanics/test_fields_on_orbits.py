@@ -36,6 +36,27 @@ def test_positions_are_those_of_kepler():
     assert ORBIT.period == pytest.approx(2 * np.pi / ORBIT.rate, rel=4 * EPS)
 
 
+@pytest.mark.parametrize("eccentricity", [0.0, 0.15, 0.9, 1 - 1e-6])
+def test_velocities_have_the_energy_and_the_angular_momentum_of_the_orbit(eccentricity):
+    orbit = T.KeplerOrbit(7.2e6, eccentricity, 0.4)
+    a, mu = orbit.semi_major_axis, orbit.mu
+    times = np.linspace(-1, 2, 50).reshape(2, 25) * orbit.period
+    x, v = orbit.position(times).components, orbit.velocity(times).components
+    r = np.linalg.norm(x, axis=-1)
+    # Relative to the kinetic energy, which is much larger than the energy near the periapsis.
+    np.testing.assert_allclose((v**2).sum(axis=-1), mu * (2 / r - 1 / a), rtol=1e-9)
+    swept = np.cross(x, v)
+    assert not swept[..., :2].any()
+    np.testing.assert_allclose(swept[..., 2], np.sqrt(mu * a * (1 - eccentricity**2)), rtol=1e-9)
+    assert orbit.velocity(0.0).shape == ()
+
+
+def test_an_orbit_with_another_eccentricity_is_an_error():
+    for own in ({"eccentricity": 0.5}, {"mean_anomaly": [1.0, 2.0]}):
+        with pytest.raises(TypeError, match="leave these arguments out"):
+            T.gravity_gradient(ORBIT, **own)
+
+
 def test_the_field_of_a_dipole_is_a_gradient():
     # B = −∇φ with φ = μ0/4π M·x/r³, by central differences of step h: errors of (h/r)² and of rounding r/h.
     field = T.dipole_field(MOMENT)

@@ -216,6 +216,7 @@ CALLS = {
     "torque.KeplerOrbit.rate": Call(lambda a: torque.KeplerOrbit(a).rate, (np.array(7e6),)),
     "torque.KeplerOrbit.period": Call(lambda a: torque.KeplerOrbit(a).period, (np.array(7e6),)),
     "torque.KeplerOrbit.position": Call(lambda t: torque.KeplerOrbit(7e6, 0.2).position(t), (TIMES * 1000,)),
+    "torque.KeplerOrbit.velocity": Call(lambda t: torque.KeplerOrbit(7e6, 0.2).velocity(t), (TIMES * 1000,)),
     "torque.constant_body": _law(torque.constant_body, PLACE),
     "torque.constant_space": _law(torque.constant_space, PLACE),
     "torque.damping": _law(torque.damping, 0.1),

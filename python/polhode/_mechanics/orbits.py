@@ -80,6 +80,28 @@ class KeplerOrbit:
         _, rows = _native.orbit_positions(self._numbers, np.ascontiguousarray(times.ravel()))
         return vector(rows.reshape(*times.shape, 3))
 
+    def velocity(self, t: Any) -> Multivector:
+        """Return the velocity relative to the planet at times (...), vectors in m/s.
+
+        With the true anomaly ν it is ``√(μ/(a (1 − e²))) (−sin ν e1 + (e + cos ν) e2)``.
+
+        Examples
+        --------
+        A satellite that moves along the orbit, by `polhode.force.central`:
+
+        >>> orbit = ph.torque.KeplerOrbit(1e7, eccentricity=0.2)
+        >>> moving = {"position": orbit.position(0), "velocity": orbit.velocity(0)}
+        >>> start = ph.State(ph.Rotor.identity(), [0, 0, orbit.rate], **moving)
+        >>> satellite = ph.Body.box([1, 1, 2], mass=50)
+        >>> path = ph.simulate(satellite, start, [600.0], force=ph.force.central(orbit.mu))
+        >>> bool((path.position[-1] - orbit.position(600)).norm() < 1e-2)
+        True
+        """
+        place = self.position(t).components
+        direction = place / np.linalg.norm(place, axis=-1, keepdims=True)
+        across = direction @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 0]]) + [0, self.eccentricity, 0]
+        return vector(np.sqrt(self.mu / (self.semi_major_axis * (1 - self.eccentricity**2))) * across)
+
     @property
     def _numbers(self) -> tuple[float, float, float, float]:
         return self.semi_major_axis, self.eccentricity, self.mean_anomaly, self.mu

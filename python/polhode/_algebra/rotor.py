@@ -473,3 +473,12 @@ def _powers(R: Rotor, n: Array) -> Rotor:
     result = new((*batch, 4), data.dtype)
     _native.rotor_power(data, exponents, result)
     return Rotor._from_rows(result)
+
+
+def check_rotor(value: Any, what: str) -> None:
+    """Raise a TypeError for values that are not rotors."""
+    if not isinstance(value, Rotor):
+        raise TypeError(
+            f"{what} must be a Rotor, got {type(value).__name__}; see Rotor.from_quaternion, from_matrix, "
+            "from_scipy"
+        )

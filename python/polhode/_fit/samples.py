@@ -65,7 +65,7 @@ def attitudes_of(given: Any, sigma: Any) -> Samples | None:
     if not isinstance(rotors, Rotor):
         raise TypeError(
             f"attitude needs Rotors at the times, got {type(rotors).__name__}; "
-            "see Rotor.from_quaternion, from_matrix"
+            "see Rotor.from_quaternion, from_matrix, from_scipy"
         )
     if len(rotors.shape) != 1 or rotors.shape[0] < 3:
         raise ValueError(f"attitude needs rotors (n,), n >= 3, got shape {rotors.shape}")

@@ -63,10 +63,10 @@ class Inertia(LinearMap):
 
     __slots__ = ("_core",)
 
-    def __init__(self, *core: _native.Inertia) -> None:
-        if len(core) != 1 or not isinstance(core[0], _native.Inertia):
+    def __init__(self, *_core: _native.Inertia) -> None:
+        if len(_core) != 1 or not isinstance(_core[0], _native.Inertia):
             raise TypeError("use Inertia.from_principal_moments, from_matrix, from_function or from_points")
-        self._core = core[0]
+        self._core = _core[0]
 
     @staticmethod
     def from_principal_moments(i1: Any, i2: Any, i3: Any) -> Inertia:
@@ -527,8 +527,8 @@ class Body:
         turn = Rotor.identity() if rotor is None else rotor
         if not isinstance(turn, Rotor) or turn.shape:
             raise TypeError(
-                f"rotor must be a single Rotor, got {turn!r}; see Rotor.from_quaternion, from_matrix; a "
-                "displacement is position="
+                f"rotor must be a single Rotor, got {turn!r}; see Rotor.from_quaternion, from_matrix, "
+                "from_scipy; a displacement is position="
             )
         return Body._of(self._core.moved(turn._data, as_point(position, "the position")))
 

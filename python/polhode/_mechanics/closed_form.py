@@ -13,7 +13,7 @@ from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import bivector
 from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
-from polhode._algebra.rotor import Rotor
+from polhode._algebra.rotor import Rotor, check_rotor
 from polhode._mechanics.bodies import Inertia, objects_of
 from polhode._mechanics.state import State, angular_velocity
 from polhode._support.arrays import Array, Shape, as_floats, batch_index
@@ -185,10 +185,7 @@ def given(
     The numbers `law` (..., k) of the torque have a name for errors.
     """
     inertias = objects_of(inertia, (Inertia,), "inertia must be an Inertia", f"; see {remedy}")
-    if not isinstance(rotor, Rotor):
-        raise TypeError(
-            f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_quaternion, from_matrix"
-        )
+    check_rotor(rotor, "rotor")
     rows = [as_coefficients(rotor._data, "the rotor", float), angular_velocity(omega_body)._data]
     names = ["the inertia", "the rotor", "the angular velocity"]
     if law is not None:

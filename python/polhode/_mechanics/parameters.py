@@ -11,7 +11,7 @@ from polhode import _native
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import as_bivectors, as_vectors
 from polhode._algebra.multivector import Multivector
-from polhode._algebra.rotor import Rotor
+from polhode._algebra.rotor import Rotor, check_rotor
 from polhode._support.arrays import Array, Shape, as_floats, first_index, frozen
 from polhode._support.memory import require_array
 
@@ -83,10 +83,7 @@ def rotors(value: Rotor | None, name: str) -> tuple[float, ...] | Batch:
     """Return the components of a rotor, or a batch of them; for None those of the identity."""
     if value is None:
         return (1.0, 0.0, 0.0, 0.0)
-    if not isinstance(value, Rotor):
-        raise TypeError(
-            f"{name} must be a Rotor, got {type(value).__name__}; see Rotor.from_quaternion, from_matrix"
-        )
+    check_rotor(value, name)
     return rows(as_coefficients(value._data, name, float), name)
 
 

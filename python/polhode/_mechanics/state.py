@@ -11,7 +11,7 @@ import numpy as np
 from polhode._algebra.constructors import as_bivectors, as_vectors, bivector, vector
 from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
-from polhode._algebra.rotor import Rotor
+from polhode._algebra.rotor import Rotor, check_rotor
 from polhode._mechanics.foreign_names import STATE
 from polhode._mechanics.parameters import common
 from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen
@@ -86,10 +86,7 @@ class State:
         time: ArrayLike = 0.0,
         omega_space: Multivector | ArrayLike | None = None,
     ) -> None:
-        if not isinstance(rotor, Rotor):
-            raise TypeError(
-                f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_quaternion, from_matrix"
-            )
+        check_rotor(rotor, "rotor")
         if (omega_body is None) == (omega_space is None):
             raise TypeError("give either omega_body or omega_space, the angular velocity in rad/s")
         if omega_space is not None:

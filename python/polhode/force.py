@@ -1,6 +1,7 @@
 """Forces on the centre of mass for `polhode.simulate`: ``x' = v``, ``v' = F/m``, the x0 of handout eq. (4.1).
 
-Forces add up, and a vector is a constant force in N: ``ph.vector([0, 0, -9.81]) + ph.force.drag(0.1)``.
+Forces add up, and a vector or an array (..., 3) is a constant force in N:
+``ph.vector([0, 0, -9.81]) + ph.force.drag(0.1)``.
 
 Arguments may be batches of any shape, with a value for each of many bodies that `simulate` moves at once: an
 array of numbers, or batched vectors. Python functions are shared by all bodies.
@@ -12,6 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from polhode import _native
 from polhode._algebra.constructors import as_points, as_vectors
 from polhode._algebra.multivector import Multivector
@@ -19,6 +22,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.laws import Sum, function_of, law_of_formula, shown
 from polhode._mechanics.parameters import Batch, named_together, numbers, rows, together
 from polhode._mechanics.registry import FORCES
+from polhode._support.arrays import Array
 
 __all__ = [
     "Force",
@@ -51,16 +55,18 @@ class Force(Sum):
 
     laws: tuple[_native.Force, ...]
 
-    def __add__(self, other: Force | Multivector) -> Force:
-        return super().__add__(constant(other) if isinstance(other, Multivector) else other)
+    def __add__(self, other: Force | Multivector | Array) -> Force:
+        return super().__add__(constant(other) if isinstance(other, Multivector | np.ndarray) else other)
 
-    def __sub__(self, other: Multivector) -> Force:
-        if not isinstance(other, Multivector):
+    def __sub__(self, other: Multivector | Array) -> Force:
+        if not isinstance(other, Multivector | np.ndarray):
             return NotImplemented
         return self + constant(0.0 - as_vectors(other, "the force"))
 
     def __radd__(self, other: object) -> Force:
-        return constant(other) + self if isinstance(other, Multivector) else super().__radd__(other)
+        return (
+            constant(other) + self if isinstance(other, Multivector | np.ndarray) else super().__radd__(other)
+        )
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Force(())"

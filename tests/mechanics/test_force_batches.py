@@ -57,6 +57,9 @@ def test_each_body_has_its_own_force(name):
 
 
 def test_an_array_of_vectors_is_a_force_for_each_body():
+    assert VECTORS + F.drag(1) == F.constant(VECTORS) + F.drag(1)
+    assert F.drag(1) + VECTORS == F.drag(1) + F.constant(VECTORS)
+    assert F.drag(1) - VECTORS == F.drag(1) + F.constant(0.0 - VECTORS)
     many = ph.simulate(BODY, START, TIMES, force=VECTORS)
     assert_same(many, ph.simulate(BODY, START, TIMES, force=F.constant(VECTORS)))
 
@@ -157,8 +160,8 @@ def test_errors_name_the_body():
             ph.simulate(BODY, START, TIMES, force=force)
     with pytest.raises(TypeError, match=r"torque must be a law .* got Force; give a force as force="):
         ph.simulate(BODY, START, TIMES, F.drag(1))
-    with pytest.raises(TypeError, match=r"unsupported operand"):
-        VECTORS + F.drag(1)
+    with pytest.raises(TypeError, match=r"an array is not a Torque; add laws"):
+        VECTORS + ph.torque.damping(1)
     with pytest.raises(TypeError, match=r"a force needs a Body"):
         ph.simulate(BODY.inertia, START, TIMES, force=F.drag(NUMBERS))
 

@@ -178,7 +178,7 @@ def test_names_of_other_libraries_are_errors_that_name_ours():
         ("omega", "omega_body"),
         ("to_pandas", "to_dataframe"),
     ):
-        with pytest.raises(AttributeError, match=f"no attribute '{name}'; see {ours}"):
+        with pytest.raises(AttributeError, match=f"no attribute '{name}'; write {ours}"):
             getattr(motion, name)
     with pytest.raises(IndexError, match=r"of one motion is at\(t\)"):
         motion[0]

@@ -59,6 +59,7 @@ def test_the_reference_rejects_a_step_that_is_too_long():
         truth.rotors([FREE], [0.7])
 
 
+@pytest.mark.filterwarnings("ignore:with step = .* the body turns")
 @pytest.mark.parametrize("top", work_precision.TOPS, ids=lambda top: top.name)
 def test_all_integrators_move_the_same_top(top, monkeypatch):
     monkeypatch.setitem(sys.modules, "jax", None)

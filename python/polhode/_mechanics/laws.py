@@ -35,7 +35,9 @@ class Sum:
 
     def __radd__(self, other: object) -> Self:
         """``0 + law``, so that ``sum(laws)`` works."""
-        return self if other == 0 else NotImplemented
+        if isinstance(other, np.ndarray):
+            raise TypeError(f"an array is not a {type(self).__name__}; add laws")
+        return self if isinstance(other, int) and other == 0 else NotImplemented
 
     @property
     def shape(self) -> Shape:

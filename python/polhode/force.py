@@ -9,7 +9,7 @@ array of numbers, or batched vectors. Python functions are shared by all bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,6 +36,9 @@ __all__ = [
     "thrust",
 ]
 
+# What counts as a constant force in a sum.
+_VECTORS = (Multivector, np.ndarray)
+
 
 @dataclass(frozen=True, repr=False)
 class Force(Sum):
@@ -56,17 +59,15 @@ class Force(Sum):
     laws: tuple[_native.Force, ...]
 
     def __add__(self, other: Force | Multivector | Array) -> Force:
-        return super().__add__(constant(other) if isinstance(other, Multivector | np.ndarray) else other)
+        return super().__add__(constant(other) if isinstance(other, _VECTORS) else other)
 
     def __sub__(self, other: Multivector | Array) -> Force:
-        if not isinstance(other, Multivector | np.ndarray):
+        if not isinstance(other, _VECTORS):
             return NotImplemented
         return self + constant(0.0 - as_vectors(other, "the force"))
 
     def __radd__(self, other: object) -> Force:
-        return (
-            constant(other) + self if isinstance(other, Multivector | np.ndarray) else super().__radd__(other)
-        )
+        return constant(other) + self if isinstance(other, _VECTORS) else super().__radd__(other)
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Force(())"
@@ -249,11 +250,11 @@ def _force(name: str, *values: Any) -> Force:
     entries = FORCES[name].arguments
     convert: dict[str, Any] = {"scalar": numbers, "vector": _vectors}
     arguments = [convert[x.shape](value, x.name) for x, value in zip(entries, values, strict=False)]
-    return _native_force(name, *together(arguments, name, [x.name for x in entries]))
+    return _native_force(name, *arguments, names=[x.name for x in entries])
 
 
-def _native_force(name: str, *arguments: Any) -> Force:
-    return Force((_native.Force(name, *arguments),))
+def _native_force(name: str, *arguments: Any, names: Sequence[str] = ()) -> Force:
+    return Force((_native.Force(name, *together(arguments, name, names)),))
 
 
 def _vectors(value: Any, name: str) -> tuple[float, ...] | Batch:

@@ -11,7 +11,7 @@ bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -696,11 +696,11 @@ def _law(name: str, *values: Any) -> Torque:
     """Return the law of the registry with these values for its arguments."""
     entries = TORQUES[name].arguments
     arguments = [_CONVERSIONS[x.shape](value, x.name) for x, value in zip(entries, values, strict=True)]
-    return _native_law(name, *together(arguments, name, [x.name for x in entries]))
+    return _native_law(name, *arguments, names=[x.name for x in entries])
 
 
-def _native_law(name: str, *arguments: Any) -> Torque:
-    return Torque((_native.Law(name, *together(arguments, name)),))
+def _native_law(name: str, *arguments: Any, names: Sequence[str] = ()) -> Torque:
+    return Torque((_native.Law(name, *together(arguments, name, names)),))
 
 
 def _one_of(words: tuple[str, ...], value: str, name: str) -> str:

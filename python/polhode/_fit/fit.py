@@ -154,9 +154,9 @@ def fit(
     is_known = all(x.is_known for x in data.values())
     if not is_known:
         model, (found, *others) = _reweighted(model, [found, *others], dof)
-        data = dict(zip(data, (x for x in (model.attitudes, model.rates) if x is not None), strict=True))
-    sums = float((model.residuals(found) ** 2).sum())
-    variance = 1.0 if is_known else _variance(model, found, dof)
+        data = dict(zip(data, model.samples, strict=True))
+    reduced = _reduced(model, found, dof)
+    variance = 1.0 if is_known else max(reduced, _least_variance(model))
     facts = information(model, found, variance, others, scaling)
     differences = dict(zip(data, model.differences(found), strict=True))
     return Fit(
@@ -175,7 +175,7 @@ def fit(
         times={name: x.times for name, x in data.items()},
         residuals={name: differences[name] / x.sigma / np.sqrt(variance) for name, x in data.items()},
         noise={name: float(np.sqrt(np.mean(d**2))) for name, d in differences.items()},
-        chi2_reduced=sums / dof if is_known else None,
+        chi2_reduced=reduced if is_known else None,
         dof=dof,
         undetermined=facts.undetermined,
     )
@@ -188,7 +188,7 @@ def _reweighted(model: Model, found: list[Parameters], dof: int) -> tuple[Model,
     than their standard deviations.
     """
     for _ in range(_ROUNDS):
-        noise = float(np.sqrt(_variance(model, found[0], dof)))
+        noise = float(np.sqrt(max(_reduced(model, found[0], dof), _least_variance(model))))
         if 1 / _CLOSE <= noise <= _CLOSE:
             break
         model = model.with_noise(noise)
@@ -196,11 +196,14 @@ def _reweighted(model: Model, found: list[Parameters], dof: int) -> tuple[Model,
     return model, found
 
 
-def _variance(model: Model, found: Parameters, dof: int) -> float:
-    """Return the variance of residuals in standard deviations, at least that of data without noise."""
-    samples = (x for x in (model.attitudes, model.rates) if x is not None)
-    least = max((x.least / float(x.sigma.min())) ** 2 for x in samples)
-    return max(float((model.residuals(found) ** 2).sum()) / dof, least)
+def _reduced(model: Model, found: Parameters, dof: int) -> float:
+    """Return the sum of squares of the residuals, in standard deviations, per degree of freedom."""
+    return float((model.residuals(found) ** 2).sum()) / dof
+
+
+def _least_variance(model: Model) -> float:
+    """Return the least variance of residuals in standard deviations; that of data without noise."""
+    return max((x.least / float(x.sigma.min())) ** 2 for x in model.samples)
 
 
 def _axes(given: Any) -> Rotor:

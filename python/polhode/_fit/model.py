@@ -45,6 +45,11 @@ class Model:
         return self.layout.size
 
     @property
+    def samples(self) -> list[Samples]:
+        """The attitudes and the rates, of which one may be missing."""
+        return [x for x in (self.attitudes, self.rates) if x is not None]
+
+    @property
     def source(self) -> Samples:
         """The rates, or the attitudes without rates."""
         source = self.rates or self.attitudes
@@ -96,8 +101,8 @@ class Model:
 
     def residuals(self, at: Parameters) -> Array:
         """Return the differences in standard deviations, flat: attitudes, then rates."""
-        sigmas = [x.sigma for x in (self.attitudes, self.rates) if x is not None]
-        return np.concatenate([(d / s).ravel() for d, s in zip(self.differences(at), sigmas, strict=True)])
+        pairs = zip(self.differences(at), self.samples, strict=True)
+        return np.concatenate([(difference / x.sigma).ravel() for difference, x in pairs])
 
     def jacobian(self, at: Parameters, step: Array | None = None) -> Array:
         """Return derivatives of the residuals by the parameters, in the order of the layout.

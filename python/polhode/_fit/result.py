@@ -12,7 +12,6 @@ from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia
-from polhode._mechanics.foreign_names import FIT
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.state import State
 from polhode._report.summary import number
@@ -26,7 +25,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@with_foreign_names(FIT)
+@with_foreign_names(
+    {**dict.fromkeys(("params", "popt", "x"), "values"), **dict.fromkeys(("cov", "pcov"), "covariance")}
+)
 @made_by("ph.fit")
 @hands_out_copies("values", "covariance", "times", "residuals")
 @dataclass(frozen=True, eq=False)

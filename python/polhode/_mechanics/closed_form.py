@@ -206,9 +206,8 @@ def given(
     if not one:
         inertias = np.broadcast_to(inertias, shape)
     broadcast = (np.broadcast_to(x, (*shape, x.shape[-1])) for x in rows)
-    return (inertias.ravel().tolist(), *map(np.ascontiguousarray, broadcast)), inertias[
-        ()
-    ] if one else inertias
+    arguments = (inertias.ravel().tolist(), *map(np.ascontiguousarray, broadcast))
+    return arguments, inertias[()] if one else inertias
 
 
 def bivectors(numbers: Array, shape: Shape) -> Multivector:

@@ -56,9 +56,4 @@ STEPPER = {
     "t": "time",
 }
 
-FIT = {
-    **dict.fromkeys(("params", "popt", "x"), "values"),
-    **dict.fromkeys(("cov", "pcov"), "covariance"),
-}
-
 CROSSINGS = dict.fromkeys(("t", "times"), "time")

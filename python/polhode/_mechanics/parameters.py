@@ -59,6 +59,12 @@ class Batch:
 
 _native.register("Batch", Batch)
 
+
+def numbers_of(argument: Any) -> Array:
+    """Return the numbers (..., k) of an argument of a law; (1,) for a number."""
+    return argument.rows if isinstance(argument, Batch) else np.atleast_1d(np.array(argument, float))
+
+
 Numbers = float | tuple[float, ...] | Batch
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._mechanics.bodies import Body, Inertia, has, mapped_objects
-from polhode._mechanics.parameters import Batch, common, place
+from polhode._mechanics.parameters import Batch, common, numbers_of, place
 from polhode._support.arrays import Array, first_index
 
 Laws = tuple[_native.Law, ...]
@@ -27,7 +27,7 @@ def about_pivot(bodies: Any, laws: Laws) -> tuple[Any, Laws]:
     held = [law for law in laws if law.name in HOLDING]
     if not held:
         return bodies, laws
-    points = [_rows(law.arguments[3]) if law.name == "gravity" else np.zeros(3) for law in held]
+    points = [numbers_of(law.arguments[3]) if law.name == "gravity" else np.zeros(3) for law in held]
     for point in points[1:]:
         if (points[0] != point).any():
             raise ValueError(
@@ -38,10 +38,6 @@ def about_pivot(bodies: Any, laws: Laws) -> tuple[Any, Laws]:
         check = _check_body if law.name == "gravity" else _check_weight
         check(bodies, law)
     return _moved(bodies, points[0]), tuple(_as_heavy(law) if law.name == "gravity" else law for law in laws)
-
-
-def _rows(argument: Any) -> Array:
-    return argument.rows if isinstance(argument, Batch) else np.atleast_1d(np.array(argument, float))
 
 
 def _text(points: Array) -> str:
@@ -71,7 +67,7 @@ def _as_heavy(law: _native.Law) -> _native.Law:
 
 def _check_body(bodies: Any, law: _native.Law) -> None:
     """Raise if gravity was made for another body."""
-    mass, center = map(_rows, law.arguments[1:3])
+    mass, center = map(numbers_of, law.arguments[1:3])
     rows = np.concatenate(np.broadcast_arrays(mass, center[..., :1], center[..., 1:2], center[..., 2:]), -1)
     own = np.array([_numbers(body) for body in bodies.flat]).reshape(*bodies.shape, 4)
     common({"the body": bodies.shape, "gravity": rows.shape[:-1]}, "body and torque")
@@ -96,7 +92,7 @@ def _check_weight(bodies: Any, law: _native.Law) -> None:
     """Raise if c of `heavy` does not point along the centre of mass, where that is known."""
     if not has(Body, bodies):
         return
-    c = _rows(law.arguments[0])
+    c = numbers_of(law.arguments[0])
     shape = common({"the body": bodies.shape, "c": c.shape[:-1]}, "body and torque")
     if not any(isinstance(body, Body) for body in bodies.flat):
         return

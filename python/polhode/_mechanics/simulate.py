@@ -16,7 +16,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, has, inertia_of, mapped_objects
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, warn_of
 from polhode._mechanics.laws import Sum
-from polhode._mechanics.parameters import Batch, common
+from polhode._mechanics.parameters import common, numbers_of
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import BYTES_OF_POINT, Trajectory
@@ -382,12 +382,9 @@ def _forces(force: Any, bodies: Any) -> tuple[Force, Torque | None]:
         return law, None
     rows = [body._core.center_of_mass() for body in bodies.flat]
     centers = vector(np.array(rows).reshape(*bodies.shape, 3))
-    torques = [constant_body((_vectors(at) - centers) ^ _vectors(F)) for F, at in thrusts]
+    pairs = [(vector(numbers_of(F)), vector(numbers_of(at))) for F, at in thrusts]
+    torques = [constant_body((at - centers) ^ F) for F, at in pairs]
     return law, sum(torques[1:], torques[0])
-
-
-def _vectors(argument: Any) -> Multivector:
-    return vector(argument.rows if isinstance(argument, Batch) else argument)
 
 
 def as_force(force: Any) -> Force:

@@ -110,7 +110,7 @@ impl<const W: usize> LaneMonitor<W> {
         monitor
     }
 
-    /// The entry of a kind of quantity, a new one if there is none.
+    /// The entry of this kind of quantity, which is added if it is missing.
     fn tracked(&mut self, kind: Conserved) -> &mut Tracked<W> {
         let known = self.0.iter().position(|tracked| tracked.kind.number() == kind.number());
         let place = known.unwrap_or_else(|| {

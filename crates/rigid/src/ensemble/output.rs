@@ -49,7 +49,7 @@ impl Summary {
     /// The name of the method of a body.
     ///
     /// # Panics
-    /// If there is no such body.
+    /// If `body` is not less than the number of bodies.
     pub fn method(&self, body: usize) -> &'static str {
         self.method_names[self.methods[body] as usize]
     }

@@ -81,12 +81,9 @@ pub(crate) struct Arguments<'a, 'py> {
 }
 
 impl<'a, 'py> Arguments<'a, 'py> {
-    /// The arguments; `values` are those that may be batches.
-    pub fn new(
-        all: &'a Bound<'py, PyTuple>,
-        values: impl IntoIterator<Item = Bound<'py, PyAny>>,
-    ) -> PyResult<Arguments<'a, 'py>> {
-        for argument in values {
+    /// The arguments, and the values of the names of a formula.
+    pub fn new(all: &'a Bound<'py, PyTuple>, values: &Values<'py>) -> PyResult<Arguments<'a, 'py>> {
+        for argument in all.iter().chain(values.iter().map(|(_, value)| value.clone())) {
             if let Some(batch) = Batch::of(&argument)? {
                 return Ok(Arguments { all, shape: batch.shape().to_vec() });
             }

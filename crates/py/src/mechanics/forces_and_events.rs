@@ -41,8 +41,7 @@ impl Force {
 fn forces(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<Laws<force::Force>> {
     use force::Force as Law;
     let values: Values<'_> = if name == "formula" { arguments.get_item(1)?.extract()? } else { Vec::new() };
-    let batches = arguments.iter().chain(values.iter().map(|(_, value)| value.clone()));
-    let given = Arguments::new(arguments, batches)?;
+    let given = Arguments::new(arguments, &values)?;
     let rows = match name {
         "formula" => {
             let text: String = arguments.get_item(0)?.extract()?;

@@ -139,8 +139,7 @@ pub(crate) fn orbit_directions<'py>(
 /// The laws of this name and these arguments.
 fn laws(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<Laws<Torque>> {
     let values: Values<'_> = if name == "formula" { arguments.get_item(2)?.extract()? } else { Vec::new() };
-    let batches = arguments.iter().chain(values.iter().map(|(_, value)| value.clone()));
-    let given = Arguments::new(arguments, batches)?;
+    let given = Arguments::new(arguments, &values)?;
     let rows = match (name, torque(name)) {
         ("gravity", _) => gravity(&given)?,
         ("magnetic_on_orbit", _) => vec![magnetic_on_orbit(arguments, raised)?],

@@ -59,6 +59,14 @@ pub(crate) struct Given<'py> {
     pub parameters: Option<Rows<'py>>,
 }
 
+/// A body of a batch at its start, with the numbers of its law.
+pub(crate) struct Started<'a, const N: usize> {
+    pub inertia: &'a inertia::Inertia,
+    pub rotor: Rotor,
+    pub omega: Bivector,
+    pub law: [f64; N],
+}
+
 /// `count` states from a function that fills a range of rows; signals are checked after `piece` rows.
 pub(crate) fn filled<'py>(
     py: Python<'py>,
@@ -141,11 +149,14 @@ pub(crate) fn pieces<T: Send>(
 }
 
 impl ClosedForm {
-    /// The motions, and a single one. An error has the place of the body in the batch.
+    /// The motions, and a single one, from a function of one body and one of the bodies of a tile. An error has the place
+    /// of the body in the batch.
     pub fn new<M: ExactMotion + Copy + 'static, const N: usize>(
         py: Python<'_>,
         given: Given<'_>,
-        new: impl Fn(&inertia::Inertia, Rotor, Bivector, [f64; N]) -> Result<M, String> + Sync,
+        one: impl Fn(&Started<'_, N>) -> Result<M, String>,
+        tile: impl Fn(&mut dyn Iterator<Item = Result<Started<'_, N>, String>>) -> Result<Tile, (usize, String)>
+        + Sync,
     ) -> PyResult<(ClosedForm, Option<M>)> {
         let shape = given.rotors.shape().split_last().map_or(&[][..], |(_, batch)| batch).to_vec();
         let rotors = numbers(&given.rotors)?.as_chunks::<4>().0;
@@ -162,20 +173,23 @@ impl ClosedForm {
         if parameters.len() != N * starts.len() {
             return Err(bad(format!("{} numbers of the law for {} motions", parameters.len(), starts.len())));
         }
-        let motion = |row: usize| {
+        let started = |row: usize| {
             let (rotor, omega) = starts[row];
-            let rotor = Rotor::from_components(rotor).map_err(|error| error.to_string())?;
-            let own = from_fn(|k| parameters[N * row + k]);
-            new(&inertias[row.min(inertias.len() - 1)], rotor, Bivector(omega), own)
+            Ok(Started {
+                inertia: &inertias[row.min(inertias.len() - 1)],
+                rotor: Rotor::from_components(rotor).map_err(|error| error.to_string())?,
+                omega: Bivector(omega),
+                law: from_fn(|k| parameters[N * row + k]),
+            })
         };
         let at = |row: usize, error: String| bad(format!("{}{error}", place(row, &shape)));
         let (motions, one) = if shape.is_empty() {
-            let one = motion(0).map_err(bad)?;
+            let one = started(0).and_then(|body| one(&body)).map_err(bad)?;
             (Motions::One(Box::new(one)), Some(one))
         } else {
-            let tiles = pieces(py, starts.len().div_ceil(TILE), TILE, |tile| {
-                Tile::new((tile * TILE..starts.len()).map(motion))
-                    .map_err(|(place, e)| (tile * TILE + place, e))
+            let tiles = pieces(py, starts.len().div_ceil(TILE), TILE, |index| {
+                let first = index * TILE;
+                tile(&mut (first..starts.len()).map(started)).map_err(|(place, e)| (first + place, e))
             })?;
             let tiles = tiles.into_iter().map(|tile| tile.map_err(|(row, error)| at(row, error)));
             (Motions::Many(tiles.collect::<PyResult<_>>()?), None)

@@ -1,14 +1,16 @@
 //! Closed forms: Lagrange's top, the damped body, the sphere in a field, the free symmetric top.
 
 use super::bodies::{Inertia, Inertias, rotor};
-use super::closed_form::{ClosedForm, Given, States, check_times, filled, pieces};
+use super::closed_form::{ClosedForm, Given, Started, States, check_times, filled, pieces};
 use crate::support::arrays::{Rows, bad, numbers, one};
 use crate::support::facts::{columns, dict};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::inertia;
 use polhode_rigid::exact::damped::DampedTop;
+use polhode_rigid::exact::free::FreeBody;
 use polhode_rigid::exact::lagrange::{self, LagrangeDescription};
 use polhode_rigid::exact::larmor::LarmorSphere;
+use polhode_rigid::exact::many::Tile;
 use polhode_rigid::exact::symmetric::SymmetricTop;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -23,13 +25,16 @@ pub(crate) struct LagrangeTop {
     one: Option<Box<lagrange::LagrangeTop>>,
 }
 
-fn heavy(
-    inertia: &inertia::Inertia,
-    rotor: Rotor,
-    omega: Bivector,
-    c: [f64; 3],
-) -> Result<lagrange::LagrangeTop, String> {
-    lagrange::LagrangeTop::new(inertia, rotor, omega, Vector(c)).map_err(|error| error.to_string())
+fn heavy(&Started { inertia, rotor, omega, law }: &Started<'_, 3>) -> Result<lagrange::LagrangeTop, String> {
+    lagrange::LagrangeTop::new(inertia, rotor, omega, Vector(law)).map_err(|error| error.to_string())
+}
+
+fn damped(&Started { inertia, rotor, omega, law: [g] }: &Started<'_, 1>) -> Result<DampedTop, String> {
+    DampedTop::new(inertia, rotor, omega, g).map_err(|error| error.to_string())
+}
+
+fn larmor(&Started { inertia, rotor, omega, law }: &Started<'_, 3>) -> Result<LarmorSphere, String> {
+    LarmorSphere::new(inertia, rotor, omega, Vector(law)).map_err(|error| error.to_string())
 }
 
 #[pymethods]
@@ -43,7 +48,8 @@ impl LagrangeTop {
         c: Rows<'_>,
     ) -> PyResult<PyClassInitializer<LagrangeTop>> {
         let given = Given { inertias, rotors, omegas, parameters: Some(c) };
-        let (tops, one) = ClosedForm::new(py, given, heavy)?;
+        let (tops, one) =
+            ClosedForm::new(py, given, heavy, |bodies| Tile::new(bodies.map(|body| heavy(&body?))))?;
         Ok(PyClassInitializer::from(tops).add_subclass(LagrangeTop { one: one.map(Box::new) }))
     }
 
@@ -56,12 +62,13 @@ impl LagrangeTop {
         let rows = pieces(py, tops.count(), 1, |row| {
             let (inertia, (rotor, omega), c) = tops.given(row);
             let rotor = Rotor::from_components(*rotor).map_err(|error| error.to_string())?;
-            let c = c.try_into().unwrap_or([f64::NAN; 3]);
-            heavy(inertia, rotor, Bivector(*omega), c).map(|top| top.describe())
+            let law = c.try_into().unwrap_or([f64::NAN; 3]);
+            heavy(&Started { inertia, rotor, omega: Bivector(*omega), law }).map(|top| top.describe())
         })?;
         let rows: Vec<LagrangeDescription> = rows.into_iter().collect::<Result<_, _>>().map_err(bad)?;
         let sphere = inertia::Inertia::from_principal_moments([1.0; 3]).map_err(bad)?;
-        let at_rest = heavy(&sphere, Rotor::IDENTITY, Bivector::default(), [0.0; 3]).map_err(bad)?;
+        let (rotor, omega) = (Rotor::IDENTITY, Bivector::default());
+        let at_rest = heavy(&Started { inertia: &sphere, rotor, omega, law: [0.0; 3] }).map_err(bad)?;
         columns(py, at_rest.describe().facts(), rows.iter().map(LagrangeDescription::facts))
     }
 }
@@ -76,8 +83,11 @@ pub(crate) fn damped_tops(
     g: Rows<'_>,
 ) -> PyResult<ClosedForm> {
     let given = Given { inertias, rotors, omegas, parameters: Some(g) };
-    let (tops, _) = ClosedForm::new(py, given, |inertia, rotor, omega, [g]| {
-        DampedTop::new(inertia, rotor, omega, g).map_err(|error| error.to_string())
+    let (tops, _) = ClosedForm::new(py, given, damped, |bodies| {
+        Tile::damped(bodies.map(|body| {
+            let Started { inertia, rotor, omega, law: [g] } = body?;
+            FreeBody::new(inertia, rotor, omega).map(|body| (body, g)).map_err(|error| error.to_string())
+        }))
     })?;
     Ok(tops)
 }
@@ -92,9 +102,8 @@ pub(crate) fn larmor_spheres(
     b: Rows<'_>,
 ) -> PyResult<ClosedForm> {
     let given = Given { inertias, rotors, omegas, parameters: Some(b) };
-    let (spheres, _) = ClosedForm::new(py, given, |inertia, rotor, omega, b| {
-        LarmorSphere::new(inertia, rotor, omega, Vector(b)).map_err(|error| error.to_string())
-    })?;
+    let (spheres, _) =
+        ClosedForm::new(py, given, larmor, |bodies| Tile::new(bodies.map(|body| larmor(&body?))))?;
     Ok(spheres)
 }
 

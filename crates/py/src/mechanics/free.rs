@@ -1,7 +1,7 @@
 //! Free motion of one body or a batch, with solutions kept in Rust.
 
 use super::bodies::{Inertia, Inertias};
-use super::closed_form::{ClosedForm, Given, pieces};
+use super::closed_form::{ClosedForm, Given, Started, pieces};
 use crate::algebra::value::Multivector;
 use crate::support::arrays::{Array, Rows, bad, numbers, place, table};
 use crate::support::facts::{columns, dict};
@@ -9,8 +9,8 @@ use numpy::PyReadonlyArray1;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::body::inertia;
-use polhode_rigid::exact::free::{self, FlowDerivatives};
-use polhode_rigid::exact::many::TILE;
+use polhode_rigid::exact::free::{self, FlowDerivatives, FreeBody};
+use polhode_rigid::exact::many::{TILE, Tile};
 use polhode_rigid::exact::regime::FreeDescription;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,11 +22,15 @@ pub(crate) struct FreeMotion {
     one: Option<Box<free::FreeMotion>>,
 }
 
-fn motion(inertia: &inertia::Inertia, rotor: Rotor, omega: Bivector) -> Result<free::FreeMotion, String> {
+fn body(inertia: &inertia::Inertia, rotor: Rotor, omega: Bivector) -> Result<FreeBody, String> {
     if !omega.0.iter().all(|x| x.is_finite()) {
         return Err(format!("the angular velocity is {:?}; it must be finite", omega.0));
     }
-    free::FreeMotion::new(inertia, rotor, omega).map_err(|error| error.to_string())
+    FreeBody::new(inertia, rotor, omega).map_err(|error| error.to_string())
+}
+
+fn motion(inertia: &inertia::Inertia, rotor: Rotor, omega: Bivector) -> Result<free::FreeMotion, String> {
+    body(inertia, rotor, omega).map(|body| body.motion())
 }
 
 /// A motion of a batch, which was set up successfully before.
@@ -76,8 +80,10 @@ impl FreeMotion {
         omegas: Rows<'_>,
     ) -> PyResult<Py<FreeMotion>> {
         let given = Given { inertias, rotors, omegas, parameters: None };
+        let free = |started: &Started<'_, 0>| body(started.inertia, started.rotor, started.omega);
+        let one = |started: &Started<'_, 0>| free(started).map(|body| body.motion());
         let (motions, one) =
-            ClosedForm::new(py, given, |inertia, rotor, omega, []| motion(inertia, rotor, omega))?;
+            ClosedForm::new(py, given, one, |bodies| Tile::free(bodies.map(|started| free(&started?))))?;
         let one = one.map(Box::new);
         Py::new(py, PyClassInitializer::from(motions).add_subclass(FreeMotion { one }))
     }

@@ -12,7 +12,7 @@
 pub(super) mod flow;
 
 use super::flow::Flow;
-use super::free::FreeMotion;
+use super::free::FreeBody;
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::state::phase::Gyrostat;
@@ -44,35 +44,16 @@ impl DampedTop {
         omega: Bivector,
         damping: f64,
     ) -> Result<DampedTop, SimulateError> {
-        // Products in double-double precision overflow early.
-        if damping.is_nan() || damping.abs() > 1e150 {
-            return Err(SimulateError::BadValue { what: "the damping g", value: damping });
-        }
-        let free = FreeMotion::new(inertia, rotor, omega)?;
-        let (moments, frame) = (inertia.principal_moments(), inertia.principal_frame());
-        // |ω| stays below |L|/i_min.
-        let principal = frame.reverse().apply_bivector(omega);
-        let least = moments.iter().fold(f64::INFINITY, |m: f64, i| m.min(*i));
-        let fastest = Gyrostat::rigid(moments).momentum(principal).norm() / least;
-        for value in omega.0.into_iter().chain([fastest]) {
-            if !value.is_finite() {
-                return Err(SimulateError::BadValue { what: "the angular velocity", value });
-            }
-        }
+        let body = FreeBody::new(inertia, rotor, omega)?;
+        let free = body.motion();
+        let horizon = own_horizon(&body, free.horizon(), damping)?;
         let flow = free.flow.damped(damping).ok_or(SimulateError::Unresolved)?;
-        Ok(DampedTop { flow, damping, horizon: free.horizon().min(MOST_RADIANS / fastest) })
+        Ok(DampedTop { flow, damping, horizon })
     }
 
     /// How far in time, in s, the phase is accurate, backwards and forwards; infinite where the motion decays.
     pub fn horizons(&self) -> [f64; 2] {
-        let most = self.horizon;
-        let rate = self.damping.abs();
-        if rate == 0.0 {
-            return [most, most];
-        }
-        let growing = (rate * most).ln_1p().min(MOST_EXPONENT) / rate;
-        let dying = if rate * most > 1.0 { f64::INFINITY } else { -(-rate * most).ln_1p() / rate };
-        if self.damping > 0.0 { [growing, dying] } else { [dying, growing] }
+        horizons(self.horizon, self.damping)
     }
 
     /// Rotor and body angular velocity at time `t` in s, the same bits as [`DampedTop::at_many`].
@@ -87,6 +68,35 @@ impl DampedTop {
     pub fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
         self.flow.at_many(threads, times, rotors, omegas);
     }
+}
+
+/// How far in the time of the free body its phase and τ are accurate, from how far its phase is.
+pub(super) fn own_horizon(body: &FreeBody, horizon: f64, damping: f64) -> Result<f64, SimulateError> {
+    // Products in double-double precision overflow early.
+    if damping.is_nan() || damping.abs() > 1e150 {
+        return Err(SimulateError::BadValue { what: "the damping g", value: damping });
+    }
+    let (moments, omega) = (body.moments, body.omega);
+    // |ω| stays below |L|/i_min.
+    let least = moments.iter().fold(f64::INFINITY, |m: f64, i| m.min(*i));
+    let fastest = Gyrostat::rigid(moments).momentum(omega).norm() / least;
+    for value in omega.0.into_iter().chain([fastest]) {
+        if !value.is_finite() {
+            return Err(SimulateError::BadValue { what: "the angular velocity", value });
+        }
+    }
+    Ok(horizon.min(MOST_RADIANS / fastest))
+}
+
+/// [`DampedTop::horizons`].
+pub(super) fn horizons(most: f64, damping: f64) -> [f64; 2] {
+    let rate = damping.abs();
+    if rate == 0.0 {
+        return [most, most];
+    }
+    let growing = (rate * most).ln_1p().min(MOST_EXPONENT) / rate;
+    let dying = if rate * most > 1.0 { f64::INFINITY } else { -(-rate * most).ln_1p() / rate };
+    if damping > 0.0 { [growing, dying] } else { [dying, growing] }
 }
 
 #[cfg(test)]

@@ -60,8 +60,8 @@ impl Flow {
     /// The motion of the same body under the torque `−g L`, if it is that of a free body.
     pub(super) fn damped(self, g: f64) -> Option<Flow> {
         Some(Flow(match self.0 {
-            Form::FreeCircular(free) => Form::DampedCircular(DampedFlow::new(free, g)),
-            Form::FreeHyperbolic(free) => Form::DampedHyperbolic(DampedFlow::new(free, g)),
+            Form::FreeCircular(free) => Form::DampedCircular(DampedFlow::new(free, [g])),
+            Form::FreeHyperbolic(free) => Form::DampedHyperbolic(DampedFlow::new(free, [g])),
             _ => return None,
         }))
     }

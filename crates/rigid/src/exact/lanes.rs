@@ -22,6 +22,25 @@ pub(crate) trait Coefficients<const C: usize>: Copy + Sync {
         zip_through(self.each(), &mut numbers, |lanes, number| lanes[l] = *number);
     }
 
+    /// Puts motions from other lanes into lanes `first` and up.
+    fn put_from(&mut self, first: usize, from: &mut Self, lanes: &[usize]) {
+        // Coefficient by coefficient, which is one pass through the memory of both.
+        let mut sources = [const { None }; MOST];
+        let mut count = 0;
+        from.each().for_each(|lanes| {
+            sources[count] = Some(lanes);
+            count += 1;
+        });
+        let mut sources = sources.iter().flatten();
+        self.each().for_each(|to| {
+            if let Some(from) = sources.next() {
+                for (to, &l) in to[first..].iter_mut().zip(lanes) {
+                    *to = from[l];
+                }
+            }
+        });
+    }
+
     /// The motion in lane l.
     fn take(mut self, l: usize) -> Self::One {
         let mut motion = Self::One::empty();

@@ -5,10 +5,11 @@
 //! blocks, one motion per lane. A lane depends only on its own numbers, so a state has the same bits as
 //! [`ExactMotion::at`].
 
-use super::damped::flow::Flow as Damped;
+use super::damped::{self, flow::Flow as Damped};
 use super::flow::Form;
 use super::free::flow::Flow as Free;
 use super::free::series::{Circular, Hyperbolic};
+use super::free::{FreeBody, FreeMotions};
 use super::lagrange::flow::Flow as Lagrange;
 use super::lagrange::series::{Circular as LagrangeCircular, Hyperbolic as LagrangeHyperbolic};
 use super::lanes::Coefficients;
@@ -16,6 +17,7 @@ use super::larmor::flow::Flow as Larmor;
 use super::motion::ExactMotion;
 use polhode_ga::rows::curve::{Curve, TOGETHER, expect, sample, together};
 use polhode_ga::simd::threads::{Threads, for_each};
+use std::array;
 use std::ops::Range;
 
 /// Motions in a tile: enough to fill the blocks of the forms of a law, few enough for the caches.
@@ -80,19 +82,98 @@ impl Tile {
     pub fn new<M: ExactMotion, E>(motions: impl Iterator<Item = Result<M, E>>) -> Result<Tile, (usize, E)> {
         let mut tile = Tile::default();
         for (place, motion) in motions.take(TILE).enumerate() {
-            let motion = motion.map_err(|error| (place, error))?;
-            tile.horizons.push(motion.horizons());
-            match &motion.flow().0 {
-                Form::FreeCircular(one) => tile.free_circular.add(place, one),
-                Form::FreeHyperbolic(one) => tile.free_hyperbolic.add(place, one),
-                Form::LagrangeCircular(one) => tile.lagrange_circular.add(place, one),
-                Form::LagrangeHyperbolic(one) => tile.lagrange_hyperbolic.add(place, one),
-                Form::DampedCircular(one) => tile.damped_circular.add(place, one),
-                Form::DampedHyperbolic(one) => tile.damped_hyperbolic.add(place, one),
-                Form::Larmor(one) => tile.larmor.add(place, one),
-            }
+            tile.add(&motion.map_err(|error| (place, error))?);
         }
         Ok(tile)
+    }
+
+    /// The motions of the next bodies without a torque, set up in lanes.
+    ///
+    /// # Errors
+    /// The first error of the iterator, with its index.
+    pub fn free<E>(bodies: impl Iterator<Item = Result<FreeBody, E>>) -> Result<Tile, (usize, E)> {
+        Tile::in_groups(
+            bodies,
+            |body| *body,
+            |tile, bodies, motions| {
+                let first = tile.horizons.len();
+                tile.horizons
+                    .extend(bodies.iter().enumerate().map(|(l, body)| [motions.horizon(l, body); 2]));
+                let [circular, hyperbolic] = motions.lanes(bodies.len());
+                tile.free_circular.add_lanes(first, &mut motions.circular, &circular);
+                if let Some(motions) = &mut motions.hyperbolic {
+                    tile.free_hyperbolic.add_lanes(first, motions, &hyperbolic);
+                }
+                Ok(())
+            },
+        )
+    }
+
+    /// The same of bodies with the torque `−g L`, from each body and its g.
+    ///
+    /// # Errors
+    /// The first error of the iterator or of a motion, with its index.
+    pub fn damped<E: From<String>>(
+        bodies: impl Iterator<Item = Result<(FreeBody, f64), E>>,
+    ) -> Result<Tile, (usize, E)> {
+        Tile::in_groups(
+            bodies,
+            |(body, _)| *body,
+            |tile, bodies, motions| {
+                let (first, mut dampings) = (tile.horizons.len(), [0.0; TOGETHER]);
+                for (l, (body, g)) in bodies.iter().enumerate() {
+                    dampings[l] = *g;
+                    let own = damped::own_horizon(body, motions.horizon(l, body), *g)
+                        .map_err(|e| (l, e.to_string().into()))?;
+                    tile.horizons.push(damped::horizons(own, *g));
+                }
+                let [circular, hyperbolic] = motions.lanes(bodies.len());
+                tile.damped_circular.add_lanes(
+                    first,
+                    &mut Damped::new(motions.circular, dampings),
+                    &circular,
+                );
+                if let Some(motions) = motions.hyperbolic {
+                    tile.damped_hyperbolic.add_lanes(first, &mut Damped::new(motions, dampings), &hyperbolic);
+                }
+                Ok(())
+            },
+        )
+    }
+
+    /// Sets up motions as many at a time as there are lanes. An error has the index in its group.
+    fn in_groups<B, E>(
+        bodies: impl Iterator<Item = Result<B, E>>,
+        body: impl Fn(&B) -> FreeBody,
+        take: impl Fn(&mut Tile, &[B], &mut FreeMotions<TOGETHER>) -> Result<(), (usize, E)>,
+    ) -> Result<Tile, (usize, E)> {
+        let (mut tile, mut bodies) = (Tile::default(), bodies.take(TILE));
+        let (mut group, mut motions) = (Vec::with_capacity(TOGETHER), FreeMotions::default());
+        loop {
+            let first = tile.horizons.len();
+            group.clear();
+            for (place, body) in (first..).zip(bodies.by_ref().take(TOGETHER)) {
+                group.push(body.map_err(|error| (place, error))?);
+            }
+            let Some(last) = group.last() else { return Ok(tile) };
+            motions.set_up(&array::from_fn(|l| body(group.get(l).unwrap_or(last))));
+            take(&mut tile, &group, &mut motions).map_err(|(l, error)| (first + l, error))?;
+        }
+    }
+
+    /// Takes the next motion.
+    fn add(&mut self, motion: &impl ExactMotion) {
+        let place = self.horizons.len();
+        self.horizons.push(motion.horizons());
+        match &motion.flow().0 {
+            Form::FreeCircular(one) => self.free_circular.add(place, one),
+            Form::FreeHyperbolic(one) => self.free_hyperbolic.add(place, one),
+            Form::LagrangeCircular(one) => self.lagrange_circular.add(place, one),
+            Form::LagrangeHyperbolic(one) => self.lagrange_hyperbolic.add(place, one),
+            Form::DampedCircular(one) => self.damped_circular.add(place, one),
+            Form::DampedHyperbolic(one) => self.damped_hyperbolic.add(place, one),
+            Form::Larmor(one) => self.larmor.add(place, one),
+        }
     }
 
     /// [`ExactMotion::horizons`] of each motion.
@@ -118,18 +199,37 @@ impl<K> Default for Blocks<K> {
 }
 
 impl<K: Lanes<TOGETHER>> Blocks<K> {
-    /// Puts a motion into the next lane.
-    fn add(&mut self, place: usize, motion: &K::One) {
+    /// The block with the next lane.
+    fn open(&mut self) -> &mut Block<K> {
         let Blocks(blocks) = self;
         if blocks.last().is_none_or(|block| block.count == TOGETHER) {
             // Without room for more: blocks are large.
             blocks.reserve_exact(1);
             blocks.push(Block { coefficients: K::empty(), places: [0; TOGETHER], count: 0 });
         }
-        if let Some(block) = blocks.last_mut() {
-            block.coefficients.put(block.count, motion);
-            block.places[block.count] = place as u16;
-            block.count += 1;
+        let last = blocks.len() - 1;
+        &mut blocks[last]
+    }
+
+    /// Puts a motion into the next lane.
+    fn add(&mut self, place: usize, motion: &K::One) {
+        let block = self.open();
+        block.coefficients.put(block.count, motion);
+        block.places[block.count] = place as u16;
+        block.count += 1;
+    }
+
+    /// Puts the motions in some lanes, those of the places `first` and up, into the next lanes.
+    fn add_lanes(&mut self, first: usize, motions: &mut K, mut lanes: &[usize]) {
+        while !lanes.is_empty() {
+            let block = self.open();
+            let (some, more) = lanes.split_at(lanes.len().min(TOGETHER - block.count));
+            block.coefficients.put_from(block.count, motions, some);
+            for &l in some {
+                block.places[block.count] = (first + l) as u16;
+                block.count += 1;
+            }
+            lanes = more;
         }
     }
 

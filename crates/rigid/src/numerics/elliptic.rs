@@ -2,29 +2,49 @@
 //!
 //! B. C. Carlson, *Numerical computation of real or complex elliptic integrals*, Numer. Algorithms 10 (1995) 13–26:
 //! duplication, then a Taylor series about the mean of the arguments. Complete integrals by arithmetic-geometric means.
+//!
+//! Lanes go on together until all have converged. One that has converged does not change any more, so it has the bits that
+//! it has alone.
 
-use super::double_double::DoubleDouble;
-use super::wide::Wide;
+use super::double_double::{DoubleDouble, DoubleDoubles};
+use super::wide::Wides;
 
 /// The series' next term is below rounding once the arguments agree to this relative spread.
 const SPREAD: f64 = 1.2e-3;
 
 /// `R_F(x, y, z) = ½ ∫₀^∞ dt / √((t+x)(t+y)(t+z))`; arguments >= 0, at most one 0.
-pub fn r_f(mut x: f64, mut y: f64, mut z: f64) -> f64 {
-    loop {
-        let mean = (x + y + z) / 3.0;
-        let (dx, dy) = ((mean - x) / mean, (mean - y) / mean);
-        let dz = -dx - dy;
-        if dx.abs().max(dy.abs()).max(dz.abs()) < SPREAD || !mean.is_finite() || mean <= 0.0 {
-            let e2 = dx * dy - dz * dz;
-            let e3 = dx * dy * dz;
-            let series = 1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0;
-            return series / mean.sqrt();
+#[inline(always)]
+pub fn r_f<const W: usize>(mut x: [f64; W], mut y: [f64; W], mut z: [f64; W]) -> [f64; W] {
+    const THIRD: f64 = 1.0 / 3.0;
+    let mut open = [1.0; W];
+    while open != [0.0; W] {
+        for l in 0..W {
+            let mean = (x[l] + y[l] + z[l]) * THIRD;
+            let least = SPREAD * mean;
+            let apart = ((mean - x[l]).abs() >= least)
+                | ((mean - y[l]).abs() >= least)
+                | ((mean - z[l]).abs() >= least);
+            // Neither 0, infinite nor NaN.
+            let positive = (mean > 0.0) & (mean < f64::INFINITY);
+            open[l] = if apart & positive { open[l] } else { 0.0 };
+            let (sx, sy, sz) = (x[l].sqrt(), y[l].sqrt(), z[l].sqrt());
+            let lambda = sx * sy + sx * sz + sy * sz;
+            x[l] = if open[l] > 0.0 { 0.25 * (x[l] + lambda) } else { x[l] };
+            y[l] = if open[l] > 0.0 { 0.25 * (y[l] + lambda) } else { y[l] };
+            z[l] = if open[l] > 0.0 { 0.25 * (z[l] + lambda) } else { z[l] };
         }
-        let (sx, sy, sz) = (x.sqrt(), y.sqrt(), z.sqrt());
-        let lambda = sx * sy + sx * sz + sy * sz;
-        (x, y, z) = (0.25 * (x + lambda), 0.25 * (y + lambda), 0.25 * (z + lambda));
     }
+    let mut value = [0.0; W];
+    for l in 0..W {
+        let mean = (x[l] + y[l] + z[l]) / 3.0;
+        let (dx, dy) = ((mean - x[l]) / mean, (mean - y[l]) / mean);
+        let dz = -dx - dy;
+        let e2 = dx * dy - dz * dz;
+        let e3 = dx * dy * dz;
+        let series = 1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0;
+        value[l] = series / mean.sqrt();
+    }
+    value
 }
 
 /// `R_J(x, y, z, p) = (3/2) ∫₀^∞ dt / ((t+p) √((t+x)(t+y)(t+z)))`; x, y, z as for [`r_f`], p > 0.
@@ -74,84 +94,128 @@ fn r_c1(e: f64) -> f64 {
 
 /// `F(φ, k')`, the incomplete integral of the first kind to the complementary modulus, from `sin² φ`, `cos² φ` and
 /// k². Infinite for φ = π/2 and k = 0.
-pub(crate) fn first_kind([sin2, cos2]: [f64; 2], k2: f64) -> f64 {
-    let delta2 = cos2 + k2 * sin2;
-    if delta2 == 0.0 { f64::INFINITY } else { sin2.sqrt() * r_f(cos2, delta2, 1.0) }
+#[inline(always)]
+pub(crate) fn first_kind<const W: usize>([sin2, cos2]: [[f64; W]; 2], k2: &[f64; W]) -> [f64; W] {
+    let (mut delta2, mut infinite) = ([0.0; W], [false; W]);
+    for l in 0..W {
+        let square = cos2[l] + k2[l] * sin2[l];
+        infinite[l] = square == 0.0;
+        delta2[l] = if infinite[l] { 1.0 } else { square };
+    }
+    let mut value = r_f(cos2, delta2, [1.0; W]);
+    for l in 0..W {
+        value[l] = if infinite[l] { f64::INFINITY } else { sin2[l].sqrt() * value[l] };
+    }
+    value
 }
 
 /// The arithmetic-geometric mean of 1 and a number in [0, 1].
-pub(crate) fn mean(mut g: f64) -> f64 {
-    let mut a = 1.0;
-    if g <= 0.0 {
-        return 0.0;
+#[inline(always)]
+pub(crate) fn mean<const W: usize>(mut g: [f64; W]) -> [f64; W] {
+    let (mut a, mut open) = ([1.0; W], [1.0; W]);
+    for l in 0..W {
+        a[l] = if g[l] > 0.0 { 1.0 } else { 0.0 };
+        g[l] = if g[l] > 0.0 { g[l] } else { 0.0 };
     }
-    while a - g > 1e-8 * a {
-        (a, g) = (0.5 * (a + g), (a * g).sqrt());
+    while open != [0.0; W] {
+        for l in 0..W {
+            open[l] = if a[l] - g[l] > 1e-8 * a[l] { 1.0 } else { 0.0 };
+            let (next, root) = (0.5 * (a[l] + g[l]), (a[l] * g[l]).sqrt());
+            a[l] = if open[l] > 0.0 { next } else { a[l] };
+            g[l] = if open[l] > 0.0 { root } else { g[l] };
+        }
     }
-    0.5 * (a + g)
+    for l in 0..W {
+        a[l] = 0.5 * (a[l] + g[l]);
+    }
+    a
 }
 
 /// Most steps of a mean. Convergence is quadratic: 13 steps from k' = 1e-300.
 const STEPS: usize = 32;
 
-/// `M = AGM(1, k')` and `Σ Q_n`, of which `K = π/2M` and `Π(n) − K = (K/2) (n/(1 − n)) Σ Q_n`, for positive
-/// k', `p² = 1 − n >= 1`, in double-double precision.
-pub(crate) fn mean_and_sum(kc: Wide, p2: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
-    let means = Means::new(kc);
-    (means.mean(), means.sum(p2))
-}
-
-/// The steps of `AGM(1, k')`, for [`mean_and_sum`] with several p².
-pub(crate) struct Means {
-    mean: DoubleDouble,
-    /// `a_j g_j`.
-    products: [DoubleDouble; STEPS],
-    /// Number of steps until the two means are equal.
+/// The steps of `M = AGM(1, k')` for positive k', in double-double precision: `K = π/2M`, and with the sum over them
+/// `Π(n) − K = (K/2) (n/(1 − n)) Σ Q_n`.
+pub(crate) struct Means<const W: usize, const FMA: bool> {
+    mean: DoubleDoubles<W, FMA>,
+    /// `a_j g_j`; once the means are equal, their square.
+    products: [DoubleDoubles<W, FMA>; STEPS],
+    /// The steps of each lane until the two means are equal, and of all.
+    own: [f64; W],
     count: usize,
 }
 
-impl Means {
-    pub fn new(kc: Wide) -> Means {
+impl<const W: usize, const FMA: bool> Means<W, FMA> {
+    #[inline(always)]
+    pub fn new(kc: Wides<W, FMA>) -> Self {
         // The root of any k' is in the range of floats.
-        let (mut a, mut g, mut root) = (DoubleDouble::ONE, kc.narrow(), kc.sqrt().narrow());
-        let mut products = [DoubleDouble::ZERO; STEPS];
-        let mut count = 0;
+        let (mut a, mut g) = (DoubleDoubles::all(DoubleDouble::ONE), kc.narrowed());
+        let mut root = kc.sqrt().narrowed();
+        let half = DoubleDoubles::all(0.5.into());
+        let mut products = [DoubleDoubles::all(DoubleDouble::ZERO); STEPS];
+        let (mut open, mut own, mut count) = ([true; W], [0.0; W], 0);
         for product in &mut products {
-            (*product, count) = (root * root, count + 1);
-            let met = (a - g).abs().hi <= 1e-17 * a.hi;
-            a = (a + g) * 0.5.into();
-            if met {
+            *product = (root * root).or(&open, a * a);
+            a = ((a + g) * half).or(&open, a);
+            let between = (a - g).abs();
+            count += 1;
+            for l in 0..W {
+                own[l] += if open[l] { 1.0 } else { 0.0 };
+                // Half the difference of the last two means.
+                open[l] &= between.hi[l] > 0.5e-17 * a.hi[l];
+            }
+            if open == [false; W] {
                 break;
             }
             g = root;
             root = (a * g).sqrt();
         }
-        Means { mean: a, products, count }
+        Means { mean: a, products, own, count }
     }
 
     /// M.
-    pub fn mean(&self) -> DoubleDouble {
+    #[inline(always)]
+    pub fn mean(&self) -> DoubleDoubles<W, FMA> {
         self.mean
     }
 
-    /// `Σ Q_n`. With `p_0 = p`, `Q_0 = 1` and the means `a_j, g_j` (DLMF 19.8.6)
+    /// `Σ Q_n`, for `p² = 1 − n >= 1`. With `p_0 = p`, `Q_0 = 1` and the means `a_j, g_j` (DLMF 19.8.6)
     /// `p_{j+1} = (p_j² + a_j g_j) / 2p_j`, `Q_{j+1} = ½ Q_j (p_j² − a_j g_j) / (p_j² + a_j g_j)`.
-    pub fn sum(&self, p2: DoubleDouble) -> DoubleDouble {
+    #[inline(always)]
+    pub fn sum(&self, p2: DoubleDoubles<W, FMA>) -> DoubleDoubles<W, FMA> {
+        let zero = DoubleDoubles::all(DoubleDouble::ZERO);
+        let two = DoubleDoubles::all(2.0.into());
         let (mut p2, mut p) = (p2, p2.sqrt());
-        let (mut term, mut sum) = (DoubleDouble::ONE, DoubleDouble::ZERO);
+        let (mut term, mut sum) = (DoubleDoubles::all(DoubleDouble::ONE), zero);
         for step in 0..STEPS {
             sum = sum + term;
-            // Once the means are equal, so are all further ones.
             let product = if step < self.count { self.products[step] } else { self.mean * self.mean };
             let whole = p2 + product;
-            term = term * (p2 - product) / (whole * 2.0.into());
-            if step + 1 >= self.count && term.hi.abs() <= 1e-33 {
+            term = term * (p2 - product) / (whole * two);
+            let mut open = [false; W];
+            for l in 0..W {
+                open[l] = (((step + 1) as f64) < self.own[l]) | (term.hi[l].abs() > 1e-33);
+            }
+            if open == [false; W] {
                 break;
             }
-            p = whole / (p * 2.0.into());
+            term = term.or(&open, zero);
+            p = whole / (p * two);
             p2 = p * p;
         }
         sum
+    }
+}
+
+impl Means<1, false> {
+    /// M of a single k'.
+    pub fn single_mean(&self) -> DoubleDouble {
+        self.mean.lane(0)
+    }
+
+    /// `Σ Q_n` for a single p².
+    pub fn single_sum(&self, p2: DoubleDouble) -> DoubleDouble {
+        self.sum(DoubleDoubles::all(p2)).lane(0)
     }
 }
 

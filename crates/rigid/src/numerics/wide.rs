@@ -1,124 +1,265 @@
-//! Double-double numbers with an unbounded exponent, for fourth powers of a tilt of 1e-300.
+//! Double-double numbers with an unbounded exponent, for fourth powers of a tilt of 1e-300, in lanes.
+//!
+//! There are no branches, so loops over lanes are vectorised; one number is one lane.
 
-use super::double_double::DoubleDouble;
+use super::double_double::{DoubleDouble, DoubleDoubles};
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Beyond this many bits the smaller of two terms is below the last digit of the larger one.
 const DIGITS: i64 = 128;
 
-/// `x · 2^exponent`, with `1 <= |x| < 2`, or 0.
+/// `x · 2^exponent` in each lane, with `1 <= |x| < 2`, or 0 with the exponent 0.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Wide {
-    x: DoubleDouble,
-    exponent: i64,
+pub(crate) struct Wides<const W: usize, const FMA: bool> {
+    x: DoubleDoubles<W, FMA>,
+    exponent: [i64; W],
 }
 
+/// A single number.
+pub(crate) type Wide = Wides<1, false>;
+
 /// 2^n, if it is a normal number.
-#[inline]
+#[inline(always)]
 pub(crate) fn exp2(n: i64) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 
-/// Times a power of two, without rounding unless the result is subnormal.
-#[inline]
-fn scaled(x: DoubleDouble, power: f64) -> DoubleDouble {
-    DoubleDouble { hi: x.hi * power, lo: x.lo * power }
+/// The exponent of a normal number; −1023 for 0, 1024 for what is not finite.
+#[inline(always)]
+fn exponent(x: f64) -> i64 {
+    ((x.to_bits() >> 52) & 0x7ff) as i64 - 1023
+}
+
+impl<const W: usize, const FMA: bool> Wides<W, FMA> {
+    /// `x · 2^exponent` of numbers that are 0 or far from the ends of the range of floats.
+    #[inline(always)]
+    fn normal(mut x: DoubleDoubles<W, FMA>, mut exponents: [i64; W]) -> Self {
+        for l in 0..W {
+            let own = exponent(x.hi[l]);
+            let kept = x.hi[l] == 0.0 || own == 1024;
+            let power = exp2(if kept { 0 } else { -own });
+            x.hi[l] *= power;
+            x.lo[l] *= power;
+            exponents[l] = if kept { 0 } else { exponents[l] + own };
+        }
+        Wides { x, exponent: exponents }
+    }
+
+    /// The same number in each lane.
+    #[inline(always)]
+    pub fn all(x: f64) -> Self {
+        Wides::from([x; W])
+    }
+
+    /// That of lane l.
+    #[inline(always)]
+    pub fn lane(&self, l: usize) -> Wide {
+        Wides { x: DoubleDoubles { hi: [self.x.hi[l]], lo: [self.x.lo[l]] }, exponent: [self.exponent[l]] }
+    }
+
+    /// Replaces that of lane l.
+    pub fn put(&mut self, l: usize, one: Wide) {
+        (self.x.hi[l], self.x.lo[l], self.exponent[l]) = (one.x.hi[0], one.x.lo[0], one.exponent[0]);
+    }
+
+    /// Numbers of the same signs, 0 for 0.
+    #[inline(always)]
+    pub fn signs(&self) -> &[f64; W] {
+        &self.x.hi
+    }
+
+    /// Whether each is 0.
+    #[inline(always)]
+    pub fn zeros(&self) -> [bool; W] {
+        let mut zeros = [false; W];
+        for l in 0..W {
+            zeros[l] = self.x.hi[l] == 0.0;
+        }
+        zeros
+    }
+
+    /// Whether each is at most the other.
+    #[inline(always)]
+    pub fn at_most(self, o: Self) -> [bool; W] {
+        let (difference, mut result) = (self - o, [false; W]);
+        for l in 0..W {
+            result[l] = difference.x.hi[l] <= 0.0;
+        }
+        result
+    }
+
+    /// `self` where the mask says so, else `other`.
+    #[inline(always)]
+    pub fn or(mut self, mask: &[bool; W], other: Self) -> Self {
+        self.x = self.x.or(mask, other.x);
+        for l in 0..W {
+            self.exponent[l] = if mask[l] { self.exponent[l] } else { other.exponent[l] };
+        }
+        self
+    }
+
+    /// Each multiplied by 1 or −1.
+    #[inline(always)]
+    pub fn signed(self, signs: &[f64; W]) -> Self {
+        Wides { x: self.x.scaled(signs), ..self }
+    }
+
+    /// Each divided by a power of two, a normal number.
+    #[inline(always)]
+    pub fn in_units(mut self, powers: &[f64; W]) -> Self {
+        for l in 0..W {
+            let shift = if self.x.hi[l] == 0.0 { 0 } else { exponent(powers[l]) };
+            self.exponent[l] -= shift;
+        }
+        self
+    }
+
+    /// Magnitudes.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        let mut signs = [1.0; W];
+        for l in 0..W {
+            signs[l] = if self.x.hi[l] < 0.0 { -1.0 } else { 1.0 };
+        }
+        self.signed(&signs)
+    }
+
+    /// Halves.
+    #[inline(always)]
+    pub fn half(self) -> Self {
+        self * Wides::all(0.5)
+    }
+
+    /// 0 for a negative number.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        let (mut powers, mut exponents) = ([0.0; W], [0; W]);
+        for l in 0..W {
+            let odd = self.exponent[l] & 1;
+            powers[l] = exp2(odd);
+            exponents[l] = (self.exponent[l] - odd) >> 1;
+        }
+        Wides::normal(self.x.scaled(&powers).sqrt(), exponents)
+    }
+
+    /// In the range of floating point: 0 below it, infinite above.
+    #[inline(always)]
+    pub fn narrowed(self) -> DoubleDoubles<W, FMA> {
+        let mut x = self.x;
+        for l in 0..W {
+            // In two steps, of which at most the second leaves the normal numbers.
+            let whole = self.exponent[l].clamp(-1500, 1500);
+            let half = whole >> 1;
+            let (first, second) = (exp2(half), exp2(whole - half));
+            x.hi[l] = x.hi[l] * first * second;
+            x.lo[l] = x.lo[l] * first * second;
+            x.lo[l] = if x.hi[l].abs() < f64::INFINITY { x.lo[l] } else { 0.0 };
+        }
+        x
+    }
+
+    /// Rounded to the range of floating point.
+    #[inline(always)]
+    pub fn values(self) -> [f64; W] {
+        let (x, mut values) = (self.narrowed(), [0.0; W]);
+        for l in 0..W {
+            values[l] = x.hi[l] + x.lo[l];
+        }
+        values
+    }
 }
 
 impl Wide {
-    pub const ZERO: Wide = Wide { x: DoubleDouble::ZERO, exponent: 0 };
-    pub const ONE: Wide = Wide { x: DoubleDouble::ONE, exponent: 0 };
+    pub const ZERO: Wide = Wides { x: DoubleDoubles { hi: [0.0], lo: [0.0] }, exponent: [0] };
+    pub const ONE: Wide = Wides { x: DoubleDoubles { hi: [1.0], lo: [0.0] }, exponent: [0] };
 
-    /// `x · 2^exponent` of a normal number x, or 0.
-    #[inline]
-    pub fn normal(x: DoubleDouble, exponent: i64) -> Wide {
-        if x.hi == 0.0 {
-            return Wide::ZERO;
+    /// `x · 2^exponent`.
+    pub fn of(x: DoubleDouble, exponent: i64) -> Wide {
+        let mut number = Wide::from(x);
+        if !number.is_zero() {
+            number.exponent[0] += exponent;
         }
-        let own = ((x.hi.to_bits() >> 52) & 0x7ff) as i64 - 1023;
-        if own == 1024 {
-            return Wide { x, exponent: 0 };
-        }
-        // 2^−1023, by which the largest floats are scaled, is not a normal number.
-        let (x, left) = if own == 1023 { (scaled(x, 0.5), own - 1) } else { (x, own) };
-        Wide { x: scaled(x, exp2(-left)), exponent: exponent + own }
+        number
     }
 
     /// x and the exponent.
-    #[inline]
     pub fn parts(self) -> (DoubleDouble, i64) {
-        (self.x, self.exponent)
+        (self.x.lane(0), self.exponent[0])
     }
 
     #[inline]
     pub fn is_zero(self) -> bool {
-        self.x.hi == 0.0
+        self.x.hi[0] == 0.0
     }
 
     #[inline]
     pub fn is_negative(self) -> bool {
-        self.x.hi < 0.0
+        self.x.hi[0] < 0.0
     }
 
     #[inline]
     pub fn is_positive(self) -> bool {
-        self.x.hi > 0.0
+        self.x.hi[0] > 0.0
     }
 
     pub fn is_finite(self) -> bool {
-        self.x.hi.is_finite()
-    }
-
-    #[inline]
-    pub fn abs(self) -> Wide {
-        if self.is_negative() { -self } else { self }
-    }
-
-    /// 0 for a negative number.
-    #[inline]
-    pub fn sqrt(self) -> Wide {
-        if !self.is_positive() {
-            return Wide::ZERO;
-        }
-        let odd = self.exponent.rem_euclid(2);
-        let root = scaled(self.x, exp2(odd)).sqrt();
-        Wide::normal(root, (self.exponent - odd) / 2)
+        self.x.hi[0].is_finite()
     }
 
     /// In the range of floating point: 0 below it, infinite above.
     #[inline]
     pub fn narrow(self) -> DoubleDouble {
-        if self.exponent.abs() < 900 {
-            // Also of the low part, a normal number.
-            return scaled(self.x, exp2(self.exponent));
-        }
-        // In two steps, of which at most the second leaves the normal numbers.
-        let exponent = self.exponent.clamp(-1500, 1500);
-        let half = exponent / 2;
-        let x = scaled(scaled(self.x, exp2(half)), exp2(exponent - half));
-        if x.hi.is_finite() { x } else { x.hi.into() }
+        self.narrowed().lane(0)
     }
 
     /// Rounded to the range of floating point.
     #[inline]
     pub fn value(self) -> f64 {
-        self.narrow().value()
+        self.values()[0]
+    }
+}
+
+impl<const W: usize, const FMA: bool> From<DoubleDoubles<W, FMA>> for Wides<W, FMA> {
+    #[inline(always)]
+    fn from(mut x: DoubleDoubles<W, FMA>) -> Self {
+        // Subnormal numbers become normal, and the inverses of the largest powers of two would not be.
+        let mut exponents = [0; W];
+        for l in 0..W {
+            let size = x.hi[l].abs();
+            let shift = if size < exp2(-900) {
+                900
+            } else if size >= exp2(900) {
+                -900
+            } else {
+                0
+            };
+            x.hi[l] *= exp2(shift);
+            x.lo[l] *= exp2(shift);
+            exponents[l] = -shift;
+        }
+        Wides::normal(x, exponents)
+    }
+}
+
+impl<const W: usize, const FMA: bool> From<[f64; W]> for Wides<W, FMA> {
+    #[inline(always)]
+    fn from(hi: [f64; W]) -> Self {
+        DoubleDoubles { hi, lo: [0.0; W] }.into()
     }
 }
 
 impl From<DoubleDouble> for Wide {
     #[inline]
     fn from(x: DoubleDouble) -> Wide {
-        // Subnormal numbers become normal.
-        if x.hi.abs() < exp2(-900) { Wide::normal(scaled(x, exp2(900)), -900) } else { Wide::normal(x, 0) }
+        DoubleDoubles::all(x).into()
     }
 }
 
 impl From<f64> for Wide {
     #[inline]
     fn from(x: f64) -> Wide {
-        DoubleDouble::from(x).into()
+        [x].into()
     }
 }
 
@@ -132,53 +273,71 @@ impl PartialEq for Wide {
 impl PartialOrd for Wide {
     #[inline]
     fn partial_cmp(&self, o: &Wide) -> Option<Ordering> {
-        (*self - *o).x.hi.partial_cmp(&0.0)
+        (*self - *o).x.hi[0].partial_cmp(&0.0)
     }
 }
 
-impl Add for Wide {
-    type Output = Wide;
-    #[inline]
-    fn add(self, o: Wide) -> Wide {
-        let (large, small) =
-            if self.is_zero() || !o.is_zero() && o.exponent > self.exponent { (o, self) } else { (self, o) };
-        let apart = large.exponent - small.exponent;
-        if small.is_zero() || apart > DIGITS {
-            return large;
+impl<const W: usize, const FMA: bool> Add for Wides<W, FMA> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        let (mut large, mut small, mut exponents) = (self.x, o.x, [0; W]);
+        for l in 0..W {
+            let (a, b) = (self.exponent[l], o.exponent[l]);
+            // The exponent of 0 says nothing.
+            let swap = large.hi[l] == 0.0 || small.hi[l] != 0.0 && b > a;
+            let apart = if swap { b - a } else { a - b };
+            exponents[l] = if swap { b } else { a };
+            let (hi, lo) = (large.hi[l], large.lo[l]);
+            large.hi[l] = if swap { small.hi[l] } else { hi };
+            large.lo[l] = if swap { small.lo[l] } else { lo };
+            // A 0 may be apart by a negative number.
+            let power = if (0..=DIGITS).contains(&apart) { exp2(-apart) } else { 0.0 };
+            small.hi[l] = power * if swap { hi } else { small.hi[l] };
+            small.lo[l] = power * if swap { lo } else { small.lo[l] };
         }
-        Wide::normal(large.x + scaled(small.x, exp2(-apart)), large.exponent)
+        Wides::normal(large + small, exponents)
     }
 }
 
-impl Neg for Wide {
-    type Output = Wide;
-    #[inline]
-    fn neg(self) -> Wide {
-        Wide { x: -self.x, ..self }
+impl<const W: usize, const FMA: bool> Neg for Wides<W, FMA> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Wides { x: -self.x, ..self }
     }
 }
 
-impl Sub for Wide {
-    type Output = Wide;
-    #[inline]
-    fn sub(self, o: Wide) -> Wide {
+impl<const W: usize, const FMA: bool> Sub for Wides<W, FMA> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
         self + -o
     }
 }
 
-impl Mul for Wide {
-    type Output = Wide;
-    #[inline]
-    fn mul(self, o: Wide) -> Wide {
-        Wide::normal(self.x * o.x, self.exponent + o.exponent)
+/// Sums of two lists of exponents.
+#[inline(always)]
+fn together<const W: usize>(mut a: [i64; W], b: &[i64; W], sign: i64) -> [i64; W] {
+    for l in 0..W {
+        a[l] += sign * b[l];
+    }
+    a
+}
+
+impl<const W: usize, const FMA: bool> Mul for Wides<W, FMA> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Wides::normal(self.x * o.x, together(self.exponent, &o.exponent, 1))
     }
 }
 
-impl Div for Wide {
-    type Output = Wide;
-    #[inline]
-    fn div(self, o: Wide) -> Wide {
-        Wide::normal(self.x / o.x, self.exponent - o.exponent)
+impl<const W: usize, const FMA: bool> Div for Wides<W, FMA> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        Wides::normal(self.x / o.x, together(self.exponent, &o.exponent, -1))
     }
 }
 

@@ -26,11 +26,12 @@ pub(crate) struct Flow<S, const C: usize = 1> {
     pub per_damping: [f64; C],
 }
 
-impl<S> Flow<S> {
-    /// From the motion of the free body.
-    pub fn new(free: FreeFlow<S>, g: f64) -> Flow<S> {
-        let g = if g.abs() < NONE { 0.0 } else { g };
-        Flow { free, damping: [g], per_damping: [if g == 0.0 { 0.0 } else { 1.0 / g }] }
+impl<S, const C: usize> Flow<S, C> {
+    /// From the motions of the free bodies.
+    pub fn new(free: FreeFlow<S, C>, g: [f64; C]) -> Flow<S, C> {
+        let damping = g.map(|g| if g.abs() < NONE { 0.0 } else { g });
+        let per_damping = damping.map(|g| if g == 0.0 { 0.0 } else { 1.0 / g });
+        Flow { free, damping, per_damping }
     }
 }
 

@@ -20,7 +20,7 @@ use crate::body::inertia::equal;
 use crate::error::SimulateError;
 use crate::exact::regime::{FreeDescription, Regime};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::mean_and_sum;
+use crate::numerics::elliptic::Means;
 use crate::numerics::wide::Wide;
 use crate::state::checks::check_horizons;
 use crate::state::phase::Gyrostat;
@@ -94,18 +94,19 @@ impl FreeMotion {
         let orbit = self.orbit.as_ref()?;
         let mean = orbit.mean?;
         let size = super::power_of_two(self.moments);
-        let in_units = |x: f64, unit: f64| Wide::from(x) / unit.into();
+        let in_units = |x: f64, unit: f64| Wide::from(x).in_units(&[unit]);
         let moments = orbit.axes.map(|k| in_units(self.moments[k], size));
         let rates = orbit.axes.map(|k| in_units(self.omega.0[k], self.scale));
         let Invariants { a, b, c, ab, ac, bc, p, q, g2 } = Invariants::new(moments, rates);
         let (g, turn, half) = (g2.sqrt(), Wide::from(orbit.lambda * mean), DoubleDouble::from(0.5));
+        let means = Means::new(orbit.kc);
         // 1 − k²/n.
         let p2 = ac * g2 / (c * q);
         let part = if p2 < FAR.into() {
-            let (_, sum) = mean_and_sum(orbit.kc, p2.narrow());
+            let sum = means.single_sum(p2.narrow());
             (p / (c * g * turn)).narrow() * (DoubleDouble::ONE - sum * half)
         } else {
-            let (_, sum) = mean_and_sum(orbit.kc, (b * ac / (a * bc)).narrow());
+            let sum = means.single_sum((b * ac / (a * bc)).narrow());
             let first = (g * ab / (a * b * turn)).narrow() * sum * half;
             DoubleDouble::ONE + first - (q / (a * g * turn)).narrow()
         };

@@ -6,7 +6,6 @@
 use super::series::{Series, State};
 use crate::exact::lanes::{Coefficients, Phases, mapped, unit_rotor};
 use crate::numerics::lanes::{Phase, in_lane, sin_cos_turns};
-use polhode_ga::Rotor;
 use polhode_ga::rows::curve::Curve;
 
 /// Rotor and angular velocity as functions of time.
@@ -76,7 +75,10 @@ impl<const W: usize> Times<W> for Pairs<W> {
 impl<S: Series<C>, const C: usize> Flow<S, C> {
     /// `exp(½νt) Z`, up to its norm, as quaternion components; and the state.
     #[inline(always)]
-    fn turned<const W: usize, const FMA: bool>(&self, times: &impl Times<W>) -> ([[f64; W]; 4], State<W>) {
+    pub fn turned<const W: usize, const FMA: bool>(
+        &self,
+        times: &impl Times<W>,
+    ) -> ([[f64; W]; 4], State<W>) {
         let (mut v, mut v_rest, mut angle, mut angle_rest) = ([0.0; W], [0.0; W], [0.0; W], [0.0; W]);
         for l in 0..W {
             let scale = in_lane(&self.scale, l);
@@ -111,19 +113,6 @@ impl<S: Series<C>, const C: usize> Flow<S, C> {
             }
         }
         (unit_rotor(&self.rotor, &z), mapped(&self.omega, &functions))
-    }
-}
-
-impl<S: Series<1>> Flow<S> {
-    /// Sets the frames: `units` are the rotors that stand for the quaternion units of (e1, e2, d).
-    pub fn with_frames(mut self, start: Rotor, units: [Rotor; 4], to_body: Rotor) -> Flow<S> {
-        let (z, _) = self.turned::<1, false>(&[0.0]);
-        let sum = |i: usize| (0..4).map(|k| z[k][0] * units[k].components()[i]).sum();
-        let first = Rotor::from_components(std::array::from_fn(sum)).unwrap_or(Rotor::IDENTITY);
-        let to_space = start * first.reverse();
-        let columns = units.map(|unit| (to_space * unit * to_body).components());
-        self.rotor = std::array::from_fn(|i| columns.map(|c| [c[i]]));
-        self
     }
 }
 

@@ -80,23 +80,18 @@ mod describe;
 pub(super) mod flow;
 pub(crate) mod orbit;
 pub(crate) mod series;
+mod set_up;
 mod variation;
 
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
-use crate::exact::flow::{Flow, Form};
-use crate::exact::lanes::Phases;
-use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::mean;
-use crate::numerics::lanes::Phase;
-use crate::numerics::wide::Wide;
-use crate::state::checks::check_moments;
+use crate::exact::flow::Flow;
 pub use derivatives::{Differentiated, FlowDerivatives};
-use flow::Flow as FreeFlow;
 use orbit::Orbit;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
+pub use set_up::FreeBody;
+pub(crate) use set_up::{FreeMotions, phases_and_nomes};
 use std::f64::consts::PI;
 
 /// Number of turns up to which double-double precision gives a phase to 1e-14 turns.
@@ -122,9 +117,7 @@ impl FreeMotion {
     /// The motion that starts at `rotor` (body axes to space) with angular velocity `omega` in body axes. An
     /// error if a principal moment is zero.
     pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector) -> Result<FreeMotion, SimulateError> {
-        let (frame, moments) = (inertia.principal_frame(), inertia.principal_moments());
-        check_moments(moments)?;
-        Ok(FreeMotion::in_frame(frame, moments, rotor * frame, frame.reverse().apply_bivector(omega)))
+        Ok(FreeBody::new(inertia, rotor, omega)?.motion())
     }
 
     /// The motion of a body whose axes are its principal axes, with positive moments.
@@ -134,23 +127,12 @@ impl FreeMotion {
 
     /// From principal axes to space, and with the frame from principal axes to those of the body.
     pub(crate) fn in_frame(frame: Rotor, moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
-        let (size, scale) = (power_of_two(moments), power_of_two(omega.0));
-        let in_units = |x: f64, unit: f64| Wide::from(x) / unit.into();
-        let orbit = Orbit::new(moments.map(|i| in_units(i, size)), omega.0.map(|w| in_units(w, scale)));
-        let flow = match &orbit {
-            Some(orbit) => tumbling(orbit, scale, rotor, frame),
-            None => steady(omega, scale, rotor, frame),
-        };
-        FreeMotion { moments, frame, omega, scale, orbit, flow }
+        FreeBody { moments, frame, rotor, omega }.motion()
     }
 
     /// How far in time, in s, the phase is accurate: 1e17 turns.
     pub fn horizon(&self) -> f64 {
-        let fastest = match &self.orbit {
-            Some(orbit) => orbit.lambda.hi.max(orbit.precession.hi.abs()) * self.scale,
-            None => self.omega.norm(),
-        };
-        MOST_TURNS * 4.0 * PI / fastest
+        horizon(self.orbit.as_ref(), self.scale, self.omega)
     }
 
     /// Rotor and body angular velocity at time `t` in s, the same bits as [`FreeMotion::at_many`].
@@ -167,99 +149,19 @@ impl FreeMotion {
     }
 }
 
-/// The power of two next below the largest magnitude; 1 for zeros.
-pub(crate) fn power_of_two(components: [f64; 3]) -> f64 {
-    let largest = components.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
+fn horizon(orbit: Option<&Orbit>, scale: f64, omega: Bivector) -> f64 {
+    let fastest = match orbit {
+        Some(orbit) => orbit.lambda.hi.max(orbit.precession.hi.abs()) * scale,
+        None => omega.norm(),
+    };
+    MOST_TURNS * 4.0 * PI / fastest
 }
 
-/// `exp(−½ Ω t)`, a uniform turn about d along Ω.
-fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> Flow {
-    let square = |x: f64| DoubleDouble::from(x) * x.into();
-    let unit = omega / scale;
-    let [x, y, z] = unit.0;
-    let size = (square(x) + square(y) + square(z)).sqrt();
-    let plane = if size.hi > 0.0 { unit / size.value() } else { Bivector::default() };
-    let d = Rotor::from_unit_components([0.0, -plane.0[0], -plane.0[1], -plane.0[2]]);
-    let flow = FreeFlow {
-        scale: [scale],
-        orbit: Phases::STILL,
-        precession: Phase { rate: size * DoubleDouble::OVER_TWO_PI * 0.5.into(), start: [0.0; 2] }.into(),
-        series: Circular::steady(),
-        rotor: [[[0.0]; 4]; 4],
-        omega: frame.apply_bivector(omega).0.map(|w| [[0.0], [0.0], [w]]),
-    };
-    Flow(Form::FreeCircular(flow.with_frames(rotor, [Rotor::IDENTITY, d, d, d], frame.reverse())))
-}
-
-/// The phase v/2π, and the nome if the trigonometric series converge rapidly: from λ, AGM(1, k') if not on the separatrix,
-/// u at time 0, and AGM(1, k). On the separatrix `u = NEVER · turns`.
-pub(crate) fn phase_and_nome(
-    lambda: DoubleDouble,
-    mean: Option<DoubleDouble>,
-    (whole, rest): (f64, f64),
-    other: f64,
-) -> (Phase, Option<f64>) {
-    let Some(mean) = mean else {
-        return (Phase { rate: lambda / NEVER.into(), start: [rest / NEVER, 0.0] }, None);
-    };
-    // 1/4K.
-    let per_u = mean * DoubleDouble::OVER_TWO_PI;
-    let phase = Phase { rate: lambda * per_u, start: [0.25 * whole, rest * per_u.hi] };
-    let nome = if other > 0.0 { (-PI * mean.hi / other).exp() } else { 0.0 };
-    (phase, Some(nome).filter(|&nome| nome <= LARGEST_NOME))
-}
-
-/// A motion that is not steady.
-fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> Flow {
-    // AGM(1, k) = π/2K'.
-    let other = mean(orbit.k2.sqrt());
-    let (phase, nome) = phase_and_nome(orbit.lambda, orbit.mean, orbit.start, other);
-    match (orbit.mean, nome) {
-        (Some(mean), Some(nome)) => {
-            let rho = (-orbit.rest_of_eta() * mean.hi).exp();
-            let series = Circular::new(nome, rho, orbit.s);
-            Flow(Form::FreeCircular(flow(orbit, scale, phase, series, rotor, frame)))
-        }
-        (mean, _) => {
-            // πK/4K' and πη/4K'.
-            let gamma = 0.5 * orbit.eta() * other;
-            let series = match mean {
-                Some(mean) => Hyperbolic::new(0.25 * PI * other / mean.hi, gamma, orbit.s),
-                None => Hyperbolic::separatrix(gamma, orbit.s),
-            };
-            Flow(Form::FreeHyperbolic(flow(orbit, scale, phase, series, rotor, frame)))
-        }
-    }
-}
-
-/// Phases, series and frames together.
-fn flow<S: Series<1>>(
-    top: &Orbit,
-    scale: f64,
-    phase: Phase,
-    series: S,
-    rotor: Rotor,
-    frame: Rotor,
-) -> FreeFlow<S> {
-    let rate = top.precession * DoubleDouble::OVER_TWO_PI * 0.5.into();
-    let precession = Phase { rate, start: [0.0; 2] };
-    let axis = |k: usize| {
-        let mut axis = [0.0; 3];
-        axis[top.axes[k]] = 1.0;
-        axis
-    };
-    let factors = series.normalizers();
-    // Quaternion units are the negatives of the planes.
-    let unit = |k: usize| {
-        let [x, y, z] = axis(k).map(|x| -top.signs[k] * x);
-        Rotor::from_unit_components([0.0, x, y, z])
-    };
-    let columns: [[f64; 3]; 3] = std::array::from_fn(|k| {
-        frame.apply_bivector(Bivector(axis(k)) * (top.amplitudes[k] * factors[k] * scale)).0
-    });
-    let omega = std::array::from_fn(|i| columns.map(|c| [c[i]]));
-    let (scale, orbit, precession) = ([scale], phase.into(), precession.into());
-    let flow = FreeFlow { scale, orbit, precession, series, rotor: [[[0.0]; 4]; 4], omega };
-    flow.with_frames(rotor, [Rotor::IDENTITY, unit(0), unit(1), unit(2)], frame.reverse())
+/// The power of two next below the largest magnitude, within 2^±1000; 1 for zeros.
+#[inline]
+pub(crate) fn power_of_two([x, y, z]: [f64; 3]) -> f64 {
+    let largest = x.abs().max(y.abs()).max(z.abs());
+    // The bits of the exponent.
+    let power = f64::from_bits(largest.to_bits() & (0x7ff << 52));
+    if largest > 0.0 { power.clamp(1000f64.exp2().recip(), 1000f64.exp2()) } else { 1.0 }
 }

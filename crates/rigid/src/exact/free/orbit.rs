@@ -1,10 +1,9 @@
-//! Orbit of a free motion: invariants, periods and phases.
+//! Orbits of free motions, one in each lane: invariants, periods and phases.
 
-use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::{first_kind, mean_and_sum, r_f};
+use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
+use crate::numerics::elliptic::{Means, first_kind, r_f};
 use crate::numerics::exact_sum::Exact;
-use crate::numerics::wide::{Wide, exp2};
-use std::cmp::Ordering;
+use crate::numerics::wide::{Wide, Wides, exp2};
 
 /// A motion that is not steady, in principal axes.
 #[derive(Clone, Copy, Debug)]
@@ -13,8 +12,6 @@ pub(super) struct Orbit {
     pub axes: [usize; 3],
     /// sign(c − a).
     pub s: f64,
-    /// e1, e2 and d along the axes a, b and c: their signs.
-    pub signs: [f64; 3],
     /// A_a, τ A_b and σ A_c; A_a is negative on half of the separatrix.
     pub amplitudes: [f64; 3],
     pub lambda: DoubleDouble,
@@ -27,171 +24,307 @@ pub(super) struct Orbit {
     pub mean: Option<DoubleDouble>,
     /// u at time 0: a multiple of K, and the rest.
     pub start: (f64, f64),
-    /// Squared sine and cosine of the amplitudes of η and of K' − η.
-    amplitudes_of_eta: [[f64; 2]; 2],
 }
 
-impl Orbit {
-    /// η, finite unless k = 0.
-    pub fn eta(&self) -> f64 {
-        first_kind(self.amplitudes_of_eta[0], self.k2)
-    }
-
-    /// K' − η.
-    pub fn rest_of_eta(&self) -> f64 {
-        first_kind(self.amplitudes_of_eta[1], self.k2)
-    }
+/// Motions that are not steady: the numbers of [`Orbit`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Orbits<const W: usize, const FMA: bool> {
+    pub axes: [[usize; 3]; W],
+    pub s: [f64; W],
+    /// e1, e2 and d along the axes a, b and c: their signs.
+    pub signs: [[f64; W]; 3],
+    pub amplitudes: [[f64; W]; 3],
+    pub lambda: DoubleDoubles<W, FMA>,
+    pub k2: [f64; W],
+    pub kc: Wides<W, FMA>,
+    pub precession: DoubleDoubles<W, FMA>,
+    /// Arbitrary on the separatrix.
+    pub mean: DoubleDoubles<W, FMA>,
+    pub on_separatrix: [bool; W],
+    pub start: [[f64; W]; 2],
+    /// Squared sine and cosine of the amplitudes of η and of K' − η.
+    amplitudes_of_eta: [[[f64; W]; 2]; 2],
 }
 
 /// Positive moments and invariants in double-double precision. Those of a needle or a nearly steady rotation are beyond
 /// the range of floats.
-pub(super) struct Invariants {
-    pub a: Wide,
-    pub b: Wide,
-    pub c: Wide,
+pub(super) struct Invariants<const W: usize, const FMA: bool> {
+    pub a: Wides<W, FMA>,
+    pub b: Wides<W, FMA>,
+    pub c: Wides<W, FMA>,
     /// |b − a|, |c − a| and |c − b|.
-    pub ab: Wide,
-    pub ac: Wide,
-    pub bc: Wide,
-    pub p: Wide,
-    pub q: Wide,
+    pub ab: Wides<W, FMA>,
+    pub ac: Wides<W, FMA>,
+    pub bc: Wides<W, FMA>,
+    pub p: Wides<W, FMA>,
+    pub q: Wides<W, FMA>,
     /// G².
-    pub g2: Wide,
+    pub g2: Wides<W, FMA>,
 }
 
-impl Orbit {
-    /// From principal moments and the angular velocity. None if the rotation is steady, `I(Ω)` parallel to Ω.
-    pub fn new(i: [Wide; 3], w: [Wide; 3]) -> Option<Orbit> {
-        let steady = |k: usize| {
-            let (x, y) = ((k + 1) % 3, (k + 2) % 3);
-            i[x] == i[y] || w[x].is_zero() || w[y].is_zero()
-        };
-        if (0..3).all(steady) {
-            return None;
-        }
-        let mut order = [0, 1, 2];
-        order.sort_by(|&x, &y| i[x].partial_cmp(&i[y]).unwrap_or(Ordering::Equal));
-        let [small, b, large] = order;
-        let d = difference(i, w, order);
-        let (a, c) = if d.is_negative() { (large, small) } else { (small, large) };
-        let s = if c == large { 1.0 } else { -1.0 };
-        let inv = Invariants::new([a, b, c].map(|k| i[k]), [a, b, c].map(|k| w[k]));
-        let bcq = inv.bc * inv.q;
-        let lambda = (bcq / (inv.a * inv.b * inv.c)).sqrt().narrow();
-        let kc = (inv.ac * d.abs() / bcq).sqrt();
-        let k2 = (inv.ab * inv.p / bcq).value().min(1.0);
+/// Whether a body with these principal moments and rates about its axes turns steadily, `I(Ω)` parallel to Ω.
+pub(super) fn is_steady(i: [f64; 3], w: [f64; 3]) -> bool {
+    (0..3).all(|k| {
+        let (x, y) = ((k + 1) % 3, (k + 2) % 3);
+        i[x] == i[y] || w[x] == 0.0 || w[y] == 0.0
+    })
+}
 
-        // The order (a, b, c) is even if it is a cyclic one.
-        let parity = if (b + 3 - a) % 3 == 1 { 1.0 } else { -1.0 };
-        let sign = |k: usize| if w[k].is_negative() { -1.0 } else { 1.0 };
-        let sigma = sign(c);
-        let on_separatrix = d.is_zero();
-        // cn keeps its sign on the separatrix: ω_a < 0 is the half turn about c of a motion with ω_a > 0.
-        let half_turn = if on_separatrix { sign(a) } else { 1.0 };
-        let signs = [half_turn, half_turn * sigma * parity, sigma];
+/// Axes by ascending moments; those of equal moments in their order.
+fn ascending(i: [f64; 3]) -> [usize; 3] {
+    let mut order = [0, 1, 2];
+    order.sort_by(|&x, &y| i[x].total_cmp(&i[y]));
+    order
+}
+
+impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
+    /// From principal moments and rates about their axes, in units of two powers of two, of bodies that do not turn
+    /// steadily.
+    #[inline(always)]
+    pub fn new(moments: &[[f64; 3]; W], rates: &[[f64; 3]; W], [size, scale]: [&[f64; W]; 2]) -> Self {
+        let (mut orders, mut i, mut w) = ([[0; 3]; W], [[0.0; W]; 3], [[0.0; W]; 3]);
+        for l in 0..W {
+            orders[l] = ascending(moments[l]);
+            for k in 0..3 {
+                (i[k][l], w[k][l]) = (moments[l][orders[l][k]], rates[l][orders[l][k]]);
+            }
+        }
+        let (mut i, mut w) = (i.map(Wides::from), w.map(Wides::from));
+        for k in 0..3 {
+            (i[k], w[k]) = (i[k].in_units(size), w[k].in_units(scale));
+        }
+        let d = differences(i, w);
+        // Whether c is the axis of the largest moment.
+        let (mut short, mut s, on_separatrix) = ([false; W], [0.0; W], d.zeros());
+        let mut axes = [[0; 3]; W];
+        for l in 0..W {
+            short[l] = d.signs()[l] >= 0.0;
+            s[l] = if short[l] { 1.0 } else { -1.0 };
+            let [small, middle, large] = orders[l];
+            axes[l] = if short[l] { [small, middle, large] } else { [large, middle, small] };
+        }
+        let [wa, wb, wc] = [w[0].or(&short, w[2]), w[1], w[2].or(&short, w[0])];
+        let inv = Invariants::new([i[0].or(&short, i[2]), i[1], i[2].or(&short, i[0])], [wa, wb, wc]);
+        let bcq = inv.bc * inv.q;
+        let lambda = (bcq / (inv.a * inv.b * inv.c)).sqrt().narrowed();
+        let kc = (inv.ac * d.abs() / bcq).sqrt();
+        let mut k2 = (inv.ab * inv.p / bcq).values();
+
+        let (mut signs, mut signed) = ([[1.0; W]; 3], [[1.0; W]; 3]);
+        for l in 0..W {
+            k2[l] = if k2[l] < 1.0 { k2[l] } else { 1.0 };
+            let [a, b, _] = axes[l];
+            // The order (a, b, c) is even if it is a cyclic one.
+            let parity = if (b + 3 - a) % 3 == 1 { 1.0 } else { -1.0 };
+            let sigma = if wc.signs()[l] < 0.0 { -1.0 } else { 1.0 };
+            // cn keeps its sign on the separatrix: ω_a < 0 is the half turn about c of a motion with ω_a > 0.
+            let half_turn = if on_separatrix[l] && wa.signs()[l] < 0.0 { -1.0 } else { 1.0 };
+            (signs[0][l], signs[1][l], signs[2][l]) = (half_turn, half_turn * sigma * parity, sigma);
+            (signed[0][l], signed[1][l], signed[2][l]) = (signs[0][l], signs[1][l] * s[l], sigma);
+        }
         let sizes = inv.amplitudes();
-        let signed = [signs[0], signs[1] * s, signs[2]];
-        let (precession, mean) = if on_separatrix {
-            ((inv.g2.sqrt() / inv.b).narrow(), None)
-        } else {
-            let (precession, mean) = inv.precession(s, k2, kc, lambda);
-            (precession, Some(mean))
-        };
-        let [cn, sn] = [(a, 0), (b, 1)].map(|(axis, k)| w[axis] / sizes[k] * signed[k].into());
-        Some(Orbit {
-            axes: [a, b, c],
+        let (mut precession, mean) =
+            inv.precession(&s, &k2, kc.or(&not(&on_separatrix), Wides::all(1.0)), lambda);
+        precession = (inv.g2.sqrt() / inv.b).narrowed().or(&on_separatrix, precession);
+        let [cn, sn] = [(wa / sizes[0]).signed(&signed[0]), (wb / sizes[1]).signed(&signed[1])];
+        let mut amplitudes = sizes.map(Wides::values);
+        for k in 0..3 {
+            for l in 0..W {
+                amplitudes[k][l] *= signed[k][l];
+            }
+        }
+        let start = arguments(cn, sn, kc);
+        let amplitudes_of_eta = inv.amplitudes_of_eta();
+        Orbits {
+            axes,
             s,
             signs,
-            amplitudes: [0, 1, 2].map(|k| signed[k] * sizes[k].value()),
+            amplitudes,
             lambda,
             k2,
             kc,
             precession,
             mean,
-            start: argument(cn, sn, kc),
-            amplitudes_of_eta: inv.amplitudes_of_eta(),
-        })
+            on_separatrix,
+            start,
+            amplitudes_of_eta,
+        }
+    }
+
+    /// η in each lane, finite unless k = 0.
+    #[inline(always)]
+    pub fn eta(&self) -> [f64; W] {
+        first_kind(self.amplitudes_of_eta[0], &self.k2)
+    }
+
+    /// K' − η.
+    #[inline(always)]
+    pub fn rest_of_eta(&self) -> [f64; W] {
+        first_kind(self.amplitudes_of_eta[1], &self.k2)
+    }
+
+    /// That of lane l.
+    pub fn lane(&self, l: usize) -> Orbit {
+        Orbit {
+            axes: self.axes[l],
+            s: self.s[l],
+            amplitudes: self.amplitudes.map(|each| each[l]),
+            lambda: self.lambda.lane(l),
+            k2: self.k2[l],
+            kc: self.kc.lane(l),
+            precession: self.precession.lane(l),
+            mean: (!self.on_separatrix[l]).then(|| self.mean.lane(l)),
+            start: (self.start[0][l], self.start[1][l]),
+        }
     }
 }
 
-impl Invariants {
+#[inline(always)]
+fn not<const W: usize>(mask: &[bool; W]) -> [bool; W] {
+    let mut result = [false; W];
+    for l in 0..W {
+        result[l] = !mask[l];
+    }
+    result
+}
+
+impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
     /// From the moments a, b, c and the rates about their axes.
-    pub fn new([a, b, c]: [Wide; 3], w: [Wide; 3]) -> Invariants {
-        let [wa, wb, wc] = w.map(|w| w * w);
+    #[inline(always)]
+    pub fn new([a, b, c]: [Wides<W, FMA>; 3], [wa, wb, wc]: [Wides<W, FMA>; 3]) -> Self {
+        let (wa, wb, wc) = (wa * wa, wb * wb, wc * wc);
         let (ab, ac, bc) = ((b - a).abs(), (c - a).abs(), (c - b).abs());
         let (p, q) = (a * ac * wa + b * bc * wb, b * ab * wb + c * ac * wc);
         Invariants { a, b, c, ab, ac, bc, p, q, g2: a * a * wa + b * b * wb + c * c * wc }
     }
 
     /// Sizes of A_a, A_b and A_c.
-    fn amplitudes(&self) -> [Wide; 3] {
+    #[inline(always)]
+    fn amplitudes(&self) -> [Wides<W, FMA>; 3] {
         let Invariants { a, b, c, ac, bc, p, q, .. } = *self;
-        [p / (a * ac), p / (b * bc), q / (c * ac)].map(Wide::sqrt)
+        [(p / (a * ac)).sqrt(), (p / (b * bc)).sqrt(), (q / (c * ac)).sqrt()]
     }
 
     /// ν and AGM(1, k'), by whichever of n and k²/n is smaller.
-    fn precession(&self, s: f64, k2: f64, kc: Wide, lambda: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
+    #[inline(always)]
+    fn precession(
+        &self,
+        s: &[f64; W],
+        k2: &[f64; W],
+        kc: Wides<W, FMA>,
+        lambda: DoubleDoubles<W, FMA>,
+    ) -> (DoubleDoubles<W, FMA>, DoubleDoubles<W, FMA>) {
         let Invariants { a, b, c, ab, ac, bc, p, q, g2 } = *self;
-        let (g, s, half) = (g2.sqrt(), DoubleDouble::from(s), Wide::from(0.5));
+        let g = g2.sqrt();
         let minus_n = c * ab / (a * bc);
-        if minus_n * minus_n <= k2.into() {
-            // 1 − n = b(c−a)/(a(c−b)).
-            let (mean, sum) = mean_and_sum(kc, (b * ac / (a * bc)).narrow());
-            ((g / a).narrow() - s * ((g * ab / (a * b) * half).narrow() * sum + lambda * mean), mean)
-        } else {
-            // 1 − k²/n = |c−a| G²/(cQ).
-            let (mean, sum) = mean_and_sum(kc, (ac * g2 / (c * q)).narrow());
-            ((g / c).narrow() + s * (p / (c * g) * half).narrow() * sum, mean)
+        let by_n = (minus_n * minus_n).at_most(Wides::from(*k2));
+        // 1 − n = b(c−a)/(a(c−b)), and 1 − k²/n = |c−a| G²/(cQ).
+        let p2 = (b * ac).or(&by_n, ac * g2) / (a * bc).or(&by_n, c * q);
+        let means = Means::new(kc);
+        let (mean, sum) = (means.mean(), means.sum(p2.narrowed()));
+        // ν = G/a − s (½ G|b−a|/ab S + λ M), and G/c + s P/2cG S.
+        let whole = (g / a.or(&by_n, c)).narrowed();
+        let factor = ((g * ab).or(&by_n, p) / (a * b).or(&by_n, c * g)).half().narrowed();
+        let mut signs = *s;
+        for l in 0..W {
+            signs[l] = if by_n[l] { -s[l] } else { s[l] };
         }
+        let turns = (lambda * mean).or(&by_n, DoubleDoubles::all(DoubleDouble::ZERO));
+        (whole + (factor * sum + turns).scaled(&signs), mean)
     }
 
     /// Squared sine and cosine for η and for K' − η.
-    fn amplitudes_of_eta(&self) -> [[f64; 2]; 2] {
+    #[inline(always)]
+    fn amplitudes_of_eta(&self) -> [[[f64; W]; 2]; 2] {
         let Invariants { a, b, c, ab, ac, bc, p, q, g2 } = *self;
         let (whole, other) = (b * ac, ac * g2);
-        [[a * bc / whole, c * ab / whole], [c * q / other, a * p / other]].map(|pair| pair.map(Wide::value))
+        [
+            [(a * bc / whole).values(), (c * ab / whole).values()],
+            [(c * q / other).values(), (a * p / other).values()],
+        ]
     }
 }
 
-/// D, rounded once if its two terms nearly cancel.
-fn difference(i: [Wide; 3], w: [Wide; 3], [small, b, large]: [usize; 3]) -> Wide {
+/// D, rounded once if its two terms nearly cancel, from moments in ascending order.
+#[inline(always)]
+fn differences<const W: usize, const FMA: bool>(
+    [small, b, large]: [Wides<W, FMA>; 3],
+    [w_small, _, w_large]: [Wides<W, FMA>; 3],
+) -> Wides<W, FMA> {
     /// The terms cancel if their difference is at most this times them.
     const CANCELLED: f64 = 1e-2;
     // i_x (i_x − i_b) ω_x²
-    let term = |x: usize| i[x] * (i[x] - i[b]) * w[x] * w[x];
-    let (high, low) = (term(large), term(small));
-    let d = high + low;
-    if d.abs() > (high - low) * CANCELLED.into() {
-        return d;
+    let high = large * (large - b) * w_large * w_large;
+    let low = small * (small - b) * w_small * w_small;
+    let mut d = high + low;
+    let cancelled = d.abs().at_most((high - low) * Wides::all(CANCELLED));
+    for l in 0..W {
+        if cancelled[l] {
+            let [i_large, i_b, i_small] = [large, b, small].map(|each| each.lane(l));
+            d.put(l, difference([i_large, i_b, i_small], [w_large.lane(l), w_small.lane(l)]));
+        }
     }
-    let term = |x: usize| {
-        let [(ix, m), (ib, n), (wx, e)] = [i[x], i[b], w[x]].map(Wide::parts);
+    d
+}
+
+/// D, rounded once, of terms that are nearly equal.
+#[cold]
+fn difference([large, b, small]: [Wide; 3], [w_large, w_small]: [Wide; 2]) -> Wide {
+    let term = |i: Wide, w: Wide| {
+        let [(i, m), (ib, n), (w, e)] = [i, b, w].map(Wide::parts);
         let most = m.max(n);
         // Shifts beyond 1000 bits are below the last digit of a nonzero difference.
         let shifted = |x: f64, n: i64| if most - n > 1000 { 0.0 } else { x * exp2(n - most) };
-        let difference = Exact::ZERO.plus(shifted(ix.hi, m)).plus(-shifted(ib.hi, n));
-        (difference.times(ix.hi).times(wx.hi).times(wx.hi), most + m + 2 * e)
+        let difference = Exact::ZERO.plus(shifted(i.hi, m)).plus(-shifted(ib.hi, n));
+        (difference.times(i.hi).times(w.hi).times(w.hi), most + m + 2 * e)
     };
-    let ((high, m), (low, n)) = (term(large), term(small));
+    let ((high, m), (low, n)) = (term(large, w_large), term(small, w_small));
     // The terms are nearly equal, so that their exponents are not far apart.
-    Wide::normal(high.add(low.times(exp2(n - m))).value(), m)
+    Wide::of(high.add(low.times(exp2(n - m))).value(), m)
 }
 
 /// The u in [−2K, 2K] with given cn u and sn u, up to a factor, as a multiple of K and a rest of at most K/2. On the
 /// separatrix, `k' = 0`, only the rest is nonzero.
-pub(crate) fn argument(cn: Wide, sn: Wide, kc: Wide) -> (f64, f64) {
-    let side = |x: Wide| if x.is_negative() { -1.0 } else { 1.0 };
+#[inline(always)]
+pub(crate) fn arguments<const W: usize, const FMA: bool>(
+    cn: Wides<W, FMA>,
+    sn: Wides<W, FMA>,
+    kc: Wides<W, FMA>,
+) -> [[f64; W]; 2] {
     // Beyond K/2 tan am(u − K) = −cn u / (k' sn u).
-    let (whole, sin, cos) = if cn * cn >= kc * (sn * sn) {
-        (if cn.is_negative() { 2.0 } else { 0.0 }, sn.abs() * (side(sn) * side(cn)).into(), cn.abs())
-    } else {
-        (side(sn), cn.abs() * (-side(cn) * side(sn)).into(), kc * sn.abs())
-    };
-    let size = (cos * cos + sin * sin).sqrt();
-    if kc.is_zero() {
-        return (whole, (sin / cos).value().asinh());
+    let near = (kc * (sn * sn)).at_most(cn * cn);
+    let (mut whole, mut signs) = ([0.0; W], [0.0; W]);
+    for l in 0..W {
+        let (below, left) = (sn.signs()[l] < 0.0, cn.signs()[l] < 0.0);
+        let side = if below { -1.0 } else { 1.0 };
+        let opposite = if below == left { 1.0 } else { -1.0 };
+        whole[l] = if !near[l] {
+            side
+        } else if left {
+            2.0
+        } else {
+            0.0
+        };
+        signs[l] = if near[l] { opposite } else { -opposite };
     }
-    // Δ² = 1 − k² sin² = cos² + k'² sin², and cos² >= k'/2.
-    let [cos, sin, part] = [cos / size, sin / size, kc * sin / size].map(Wide::value);
-    (whole, sin * r_f(cos * cos, cos * cos + part * part, 1.0))
+    let (sin, cos) = (sn.abs().or(&near, cn.abs()).signed(&signs), cn.abs().or(&near, kc * sn.abs()));
+    let size = (cos * cos + sin * sin).sqrt();
+    let [part, cosines, sines] = [kc * sin, cos, sin].map(|x| (x / size).values());
+    let (mut cos2, mut delta2) = ([0.0; W], [0.0; W]);
+    for l in 0..W {
+        // Δ² = 1 − k² sin² = cos² + k'² sin², and cos² >= k'/2.
+        cos2[l] = cosines[l] * cosines[l];
+        delta2[l] = cos2[l] + part[l] * part[l];
+    }
+    let mut rest = r_f(cos2, delta2, [1.0; W]);
+    let on_separatrix = kc.zeros();
+    for l in 0..W {
+        rest[l] *= sines[l];
+    }
+    for l in 0..W {
+        if on_separatrix[l] {
+            rest[l] = (sin.lane(l) / cos.lane(l)).value().asinh();
+        }
+    }
+    [whole, rest]
 }

@@ -34,11 +34,12 @@ pub(crate) trait Series<const C: usize>: Coefficients<C, One = <Self as Series<C
     /// From `v/2π = u/4K`, reduced to [−½, ½], and its rounding error.
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W>;
 
-    /// Factors that make cn 0, sn K and dn 0 equal to 1, in lane 0.
-    fn normalizers(&self) -> [f64; 3];
+    /// Factors that make cn 0, sn K and dn 0 equal to 1.
+    fn normalizers(&self) -> [[f64; C]; 3];
 }
 
 /// `Σ h_n p_n(x)` in powers of x, with `p_0 = 1` and the given `p_{−1}`.
+#[inline(always)]
 pub(crate) fn chebyshev<const N: usize>(h: [f64; N], before: [f64; 2]) -> [f64; N] {
     let (mut previous, mut p, mut sum) = ([0.0; N], [0.0; N], [0.0; N]);
     previous[..2].copy_from_slice(&before);
@@ -60,12 +61,23 @@ pub(crate) const THIRD: [f64; 2] = [1.0, 0.0];
 pub(crate) const FOURTH: [f64; 2] = [-1.0, 0.0];
 
 /// −1 for odd n.
+#[inline(always)]
 pub(crate) fn sign(n: usize) -> f64 {
     if n % 2 == 1 { -1.0 } else { 1.0 }
 }
 
+/// `xⁿ` by squares.
+#[inline(always)]
 fn power(x: f64, n: usize) -> f64 {
-    x.powi(n as i32)
+    let (mut result, mut square) = (1.0, x);
+    // Exponents are constants below 32, for which the loop is unrolled.
+    for bit in 0..5 {
+        if n >> bit & 1 == 1 {
+            result *= square;
+        }
+        square *= square;
+    }
+    result
 }
 
 /// Series in the nome q.
@@ -79,7 +91,8 @@ pub(crate) struct Circular<const C: usize = 1> {
 impl Circular {
     /// From the nome, `ρ = exp(−π(K' − η)/2K)` and s. With `q^{1/2} e^{±y} = ρ, q/ρ` the coefficients of
     /// `θ4(v − i s y | q²)` and `s θ1(v − i s y | q²)` are sums and differences of two positive numbers.
-    pub fn new(q: f64, rho: f64, s: f64) -> Circular {
+    #[inline(always)]
+    fn one(q: f64, rho: f64, s: f64) -> Circular {
         let other = if rho > 0.0 { q / rho } else { 0.0 };
         let even = |n: usize, o: f64| {
             let weight = sign(n) * power(q, 2 * n * n - n);
@@ -115,7 +128,30 @@ impl Circular {
 
     /// Steady rotation: nothing but precession.
     pub fn steady() -> Circular {
-        Circular::new(0.0, 0.0, 1.0)
+        Circular::one(0.0, 0.0, 1.0)
+    }
+}
+
+impl<const C: usize> Circular<C> {
+    /// From the nomes, `ρ = exp(−π(K' − η)/2K)` and s.
+    #[inline(always)]
+    pub fn new(q: &[f64; C], rho: &[f64; C], s: &[f64; C]) -> Circular<C> {
+        let mut all = Circular::empty();
+        for l in 0..C {
+            let one = Circular::one(q[l], rho[l], s[l]);
+            for i in 0..4 {
+                for k in 0..4 {
+                    all.z[i][k][l] = one.z[i][k][0];
+                }
+            }
+            for k in 0..5 {
+                for i in 0..3 {
+                    all.functions[i][k][l] = one.functions[i][k][0];
+                }
+                all.denominator[k][l] = one.denominator[k][0];
+            }
+        }
+        all
     }
 }
 
@@ -148,11 +184,16 @@ impl<const C: usize> Series<C> for Circular<C> {
         State { z, functions, denominator, ahead: [0.0; W] }
     }
 
-    fn normalizers(&self) -> [f64; 3] {
-        let ratio = |k: usize, x: f64| {
-            horner_in_lane(&self.denominator, 0, x) / horner_in_lane(&self.functions[k], 0, x)
-        };
-        [ratio(0, 1.0), ratio(1, -1.0), ratio(2, 1.0)]
+    #[inline(always)]
+    fn normalizers(&self) -> [[f64; C]; 3] {
+        let mut factors = [[0.0; C]; 3];
+        for (k, x) in [1.0, -1.0, 1.0].into_iter().enumerate() {
+            for l in 0..C {
+                factors[k][l] =
+                    horner_in_lane(&self.denominator, l, x) / horner_in_lane(&self.functions[k], l, x);
+            }
+        }
+        factors
     }
 }
 
@@ -279,15 +320,19 @@ impl<const C: usize> Series<C> for Hyperbolic<C> {
     }
 
     /// From cn and dn at x = 0, and sn at X, where `k² sn² + dn² = 1` with dn = k'.
-    fn normalizers(&self) -> [f64; 3] {
-        let denominator = |y: f64| horner_in_lane(&self.denominator, 0, y);
-        let function = |k: usize, y: f64| horner_in_lane(&self.functions[k], 0, y);
-        let at_0 = |k: usize| denominator(1.0) / function(k, 1.0);
-        let double = 2.0 * in_lane(&self.border, 0).min(176.0);
-        let (g, y) = ((-double).exp(), (2.0 * double).cosh());
-        let sinh = (1.0 - g * g) / (1.0 + g * g) * function(1, y);
-        let less = (1.0 - self.nome[0]) * (1.0 - self.nome[0]);
-        [at_0(0) / less, denominator(y) / sinh, at_0(2)]
+    fn normalizers(&self) -> [[f64; C]; 3] {
+        let mut factors = [[0.0; C]; 3];
+        for l in 0..C {
+            let denominator = |y: f64| horner_in_lane(&self.denominator, l, y);
+            let function = |k: usize, y: f64| horner_in_lane(&self.functions[k], l, y);
+            let at_0 = |k: usize| denominator(1.0) / function(k, 1.0);
+            let double = 2.0 * self.border[l].min(176.0);
+            let (g, y) = ((-double).exp(), (2.0 * double).cosh());
+            let sinh = (1.0 - g * g) / (1.0 + g * g) * function(1, y);
+            let less = (1.0 - self.nome[l]) * (1.0 - self.nome[l]);
+            (factors[0][l], factors[1][l], factors[2][l]) = (at_0(0) / less, denominator(y) / sinh, at_0(2));
+        }
+        factors
     }
 }
 

@@ -64,12 +64,13 @@ mod orbit;
 pub(super) mod series;
 mod start;
 
-use super::free::{FreeMotion, MOST_TURNS, phase_and_nome};
+use super::free::series::LARGEST_NOME;
+use super::free::{FreeMotion, MOST_TURNS, phases_and_nomes};
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::exact::flow::{Flow, Form};
 use crate::exact::lanes::Phases;
-use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
 use crate::numerics::lanes::Phase;
 use crate::numerics::wide::Wide;
@@ -212,15 +213,17 @@ impl LagrangeTop {
 /// The states by the rapidly converging series, and how far in time, in s, their phases are accurate.
 fn flow_and_horizon(axes: &Axes, start: &Start, orbit: &Orbit) -> (Flow, f64) {
     // AGM(1, k) = π/2K'.
-    let other = mean(orbit.k2.sqrt());
-    let (phase, nome) = phase_and_nome(orbit.lambda, orbit.mean, orbit.start, other);
-    match (orbit.mean, nome) {
-        (Some(mean), Some(nome)) => {
+    let [other] = mean([orbit.k2.sqrt()]);
+    let [lambda, mean] = [orbit.lambda, orbit.mean.unwrap_or(DoubleDouble::ONE)].map(Alone::all);
+    let start_of_u = [[orbit.start.0], [orbit.start.1]];
+    let (phase, [nome]) = phases_and_nomes(&lambda, &mean, &[orbit.mean.is_none()], &start_of_u, &[other]);
+    match orbit.mean {
+        Some(mean) if nome <= LARGEST_NOME => {
             let series = Circular::new(nome, mean.hi, orbit.zeros);
             let flow = flow(axes, start, orbit, phase, series);
             (Flow(Form::LagrangeCircular(flow)), horizon(start, orbit, &flow))
         }
-        (mean, _) => {
+        mean => {
             let gammas = orbit.zeros.map(|zero| (zero.side, zero.eta * other));
             let series = match mean {
                 Some(mean) => Hyperbolic::new(0.5 * PI * other / mean.hi, gammas),
@@ -232,6 +235,9 @@ fn flow_and_horizon(axes: &Axes, start: &Start, orbit: &Orbit) -> (Flow, f64) {
     }
 }
 
+/// A number in a lane of its own.
+type Alone = DoubleDoubles<1, false>;
+
 /// The time of 1e17 turns of the fastest phase.
 fn horizon<S>(start: &Start, orbit: &Orbit, flow: &LagrangeFlow<S>) -> f64 {
     let rates = flow.phases.iter().map(|phase| phase.of(0).rate.hi.abs());
@@ -239,7 +245,13 @@ fn horizon<S>(start: &Start, orbit: &Orbit, flow: &LagrangeFlow<S>) -> f64 {
 }
 
 /// Phases, series and frames together.
-fn flow<S: Series<1>>(axes: &Axes, start: &Start, orbit: &Orbit, phase: Phase, series: S) -> LagrangeFlow<S> {
+fn flow<S: Series<1>>(
+    axes: &Axes,
+    start: &Start,
+    orbit: &Orbit,
+    phase: Phases<1>,
+    series: S,
+) -> LagrangeFlow<S> {
     // The uniform turn about the axis adds to ψ.
     let excess = start.excess.narrow();
     let half = excess * 0.5.into();
@@ -258,7 +270,7 @@ fn flow<S: Series<1>>(axes: &Axes, start: &Start, orbit: &Orbit, phase: Phase, s
     let rates = [axis(0, start.scale), axis(1, start.scale), axis(2, start.omega3)];
     let mut flow = LagrangeFlow {
         scale: [start.scale],
-        orbit: phase.into(),
+        orbit: phase,
         phases: phases.map(Phases::from),
         series,
         factors: [[[1.0], [0.0]]; 3],

@@ -5,7 +5,7 @@
 
 use super::series::Zero;
 use super::start::{Start, square, times_conjugate};
-use crate::exact::free::orbit::argument;
+use crate::exact::free::orbit::arguments;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::{Means, first_kind};
 use crate::numerics::wide::Wide;
@@ -257,12 +257,13 @@ impl Orbit {
             let means = Means::new(modulus.kc);
             let alpha = modulus.rate_below(&means, [z1, z2, z3], gap, gravity, sigma);
             let [beta, across] = [&up, &across].map(|p| modulus.rate_above(&means, p));
-            ([alpha, beta, -(axial + across)], Some(means.mean()))
+            ([alpha, beta, -(axial + across)], Some(means.single_mean()))
         };
+        let integral = |squares: [f64; 2]| first_kind(squares.map(|x| [x]), &[modulus.k2])[0];
         let zero = |k: usize, [eta, rest]: [[f64; 2]; 2]| Zero {
             side: sides[k],
-            eta: first_kind(eta, modulus.k2),
-            rest: first_kind(rest, modulus.k2),
+            eta: integral(eta),
+            rest: integral(rest),
         };
         let zeros = [
             zero(0, modulus.amplitudes_below([z1, z2, z3], gap, gravity)),
@@ -274,12 +275,13 @@ impl Orbit {
         let sn = if rise.is_negative() { -part(x1) } else { part(x1) };
         let cn = if gap.is_positive() { part(x2) } else { Wide::ONE };
         let half: Wide = 0.5.into();
+        let [[whole], [rest]] = arguments(cn, sn, modulus.kc);
         Some(Orbit {
             lambda: modulus.lambda,
             k2: modulus.k2,
             kc: modulus.kc,
             mean,
-            start: argument(cn, sn, modulus.kc),
+            start: (whole, rest),
             rates,
             zeros,
             sizes: [z2 * half, w1 * half, across.to[0]].map(|x| x.sqrt().value()),
@@ -297,7 +299,7 @@ impl Modulus {
     /// μ(−1), from 1 + r1, 1 + r2, 2ĉ(1 + r3), r2 − r1 and b + ℓ.
     fn rate_below(
         &self,
-        means: &Means,
+        means: &Means<1, false>,
         [z1, z2, z3]: [Wide; 3],
         gap: Wide,
         gravity: Wide,
@@ -307,28 +309,28 @@ impl Modulus {
         const FAR: f64 = 1e12;
         let p2 = z3 / self.gaps[1];
         if p2 <= FAR.into() {
-            let sum = means.sum(p2.narrow());
+            let sum = means.single_sum(p2.narrow());
             return (gravity * n * sum.into() / (z3 * 4.0.into())).narrow();
         }
-        let sum = means.sum((z2 / z1).narrow());
+        let sum = means.single_sum((z2 / z1).narrow());
         let less = (gap / z2).narrow() * sum * 0.5.into();
         let whole = (n / (z1 * 2.0.into())).narrow() * (DoubleDouble::ONE - less);
-        whole - self.lambda * means.mean() * sign(n).into()
+        whole - self.lambda * means.single_mean() * sign(n).into()
     }
 
     /// μ(p) for p between r2 and r3, by whichever of the two parameters is smaller.
-    fn rate_above(&self, means: &Means, p: &Point) -> DoubleDouble {
+    fn rate_above(&self, means: &Means<1, false>, p: &Point) -> DoubleDouble {
         let half: DoubleDouble = 0.5.into();
         let [_, to2, to3] = p.to;
         if to2 * to2 <= to3 * to3 * self.k2.into() {
-            let sum = means.sum(((to2 + to3) / to3).narrow());
+            let sum = means.single_sum(((to2 + to3) / to3).narrow());
             (p.n / to3).narrow() * half * (half * sum - DoubleDouble::ONE)
         } else {
             let [_, whole, long] = self.gaps;
-            let sum = means.sum((long / whole / p.ratio).narrow());
+            let sum = means.single_sum((long / whole / p.ratio).narrow());
             let less = p.rest.narrow() * sum * half;
             let whole = (p.n / to2).narrow() * half * (DoubleDouble::ONE - less);
-            whole - self.lambda * means.mean() * sign(p.n).into()
+            whole - self.lambda * means.single_mean() * sign(p.n).into()
         }
     }
 

@@ -1,14 +1,19 @@
 use super::*;
+use crate::numerics::wide::Wide;
 use std::f64::consts::FRAC_PI_2;
 
 fn complete_k(kc: f64) -> f64 {
-    FRAC_PI_2 / mean_and_sum(kc.into(), DoubleDouble::ONE).0.value()
+    FRAC_PI_2 / Means::new(Wide::from(kc)).single_mean().value()
 }
 
 /// Π(n) − K, for n <= 0.
 fn excess(n: f64, kc: f64) -> f64 {
-    let sum = mean_and_sum(kc.into(), DoubleDouble::ONE - n.into()).1.value();
+    let sum = Means::new(Wide::from(kc)).single_sum(DoubleDouble::ONE - n.into()).value();
     0.5 * complete_k(kc) * (n / (1.0 - n)) * sum
+}
+
+fn single_r_f(x: f64, y: f64, z: f64) -> f64 {
+    r_f([x], [y], [z])[0]
 }
 
 fn close(a: f64, b: f64) {
@@ -18,8 +23,8 @@ fn close(a: f64, b: f64) {
 /// Carlson's published check values (1995, section 4).
 #[test]
 fn published_values() {
-    close(r_f(1.0, 2.0, 0.0), 1.311_028_777_146_06);
-    close(r_f(2.0, 3.0, 4.0), 0.584_082_841_677_153_5);
+    close(single_r_f(1.0, 2.0, 0.0), 1.311_028_777_146_06);
+    close(single_r_f(2.0, 3.0, 4.0), 0.584_082_841_677_153_5);
     close(r_j(0.0, 1.0, 2.0, 3.0), 0.776_886_237_785_823_3);
     close(r_j(2.0, 3.0, 4.0, 5.0), 0.142_975_796_671_567_5);
     close(r_d(0.0, 2.0, 1.0), 1.797_210_352_103_388);
@@ -41,7 +46,7 @@ fn circular_limits() {
 fn near_the_separatrix() {
     for kc in [1e-9, 1e-100, 1e-150] {
         close(complete_k(kc), (4.0f64 / kc).ln());
-        close(mean(kc), FRAC_PI_2 / (4.0f64 / kc).ln());
+        close(mean([kc])[0], FRAC_PI_2 / (4.0f64 / kc).ln());
     }
 }
 
@@ -49,13 +54,13 @@ fn near_the_separatrix() {
 #[test]
 fn means_agree_with_symmetric_forms() {
     for kc in [1.0, 0.9, 0.5, 1e-2, 1e-6] {
-        close(complete_k(kc), r_f(0.0, kc * kc, 1.0));
-        close(complete_k(kc), FRAC_PI_2 / mean(kc));
+        close(complete_k(kc), single_r_f(0.0, kc * kc, 1.0));
+        close(complete_k(kc), FRAC_PI_2 / mean([kc])[0]);
         for n in [-1e-9, -0.3, -1.0, -7.0] {
             close(excess(n, kc), n / 3.0 * r_j(0.0, kc * kc, 1.0, 1.0 - n));
         }
     }
-    assert_eq!(mean(0.0), 0.0);
+    assert_eq!(mean([0.0]), [0.0]);
 }
 
 /// The duplication theorem (Carlson 1995, eq. 2.2), for arguments so near to each other that the left side is the series at its
@@ -83,5 +88,24 @@ fn elementary_values_below_the_mean() {
     for p in [0.01, 0.25, 0.75f64] {
         let root = (1.0 - p).sqrt();
         close(r_j(1.0, 1.0, 1.0, p), 3.0 / (1.0 - p) * (root.atanh() / root - 1.0));
+    }
+}
+
+/// Lanes that converge after different numbers of steps have the bits that they have alone.
+#[test]
+fn lanes_are_independent() {
+    let kc = [1.0, 0.9, 1e-3, 1e-20, 1e-300, 0.5, 0.999_999, 1e-8];
+    let p2 = [1.0, 2.0, 1e6, 1.5, 1e100, 3.0, 1.0 + 1e-12, 7.0];
+    let means = Means::<8, true>::new(Wides::from(kc));
+    let sum = means.sum(DoubleDoubles { hi: p2, lo: [0.0; 8] });
+    let (all, forms) = (mean(kc), r_f(kc.map(|x| x * x), p2, [1.0; 8]));
+    let first = first_kind([kc, p2], &kc);
+    for l in 0..8 {
+        let alone = Means::new(Wide::from(kc[l]));
+        assert_eq!(means.mean().lane(l), alone.single_mean());
+        assert_eq!(sum.lane(l), alone.single_sum(p2[l].into()));
+        assert_eq!(all[l], mean([kc[l]])[0]);
+        assert_eq!(forms[l], single_r_f(kc[l] * kc[l], p2[l], 1.0));
+        assert_eq!(first[l], first_kind([[kc[l]], [p2[l]]], &[kc[l]])[0]);
     }
 }

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 fn number() -> impl Strategy<Value = Wide> {
     (1.0..2.0f64, -1.0..1.0f64, -5000..5000i64, prop::bool::ANY).prop_map(|(hi, lo, exponent, minus)| {
         let x = DoubleDouble::two_sum(hi, lo * 0.5 * f64::EPSILON);
-        let x = Wide::normal(x, exponent);
+        let x = Wide::of(x, exponent);
         if minus { -x } else { x }
     })
 }
@@ -23,6 +23,26 @@ proptest! {
         prop_assert!(small((a * a).sqrt() - a.abs(), 16.0, a));
         prop_assert_eq!(a < b, b > a);
         prop_assert!(a - a == Wide::ZERO && a + Wide::ZERO == a && a * Wide::ZERO == Wide::ZERO);
+    }
+
+    /// Lanes with fused multiply-add have the bits of single numbers without.
+    #[test]
+    fn lanes(a in prop::array::uniform4(number()), b in prop::array::uniform4(number())) {
+        let zero = Wide::ZERO;
+        let (mut x, mut y) = (Wides::<6, true>::all(0.0), Wides::all(0.0));
+        let (a, b) = ([a[0], a[1], a[2], a[3], zero, a[0]], [b[0], b[1], b[2], b[3], b[0], zero]);
+        for l in 0..6 {
+            x.put(l, a[l]);
+            y.put(l, b[l]);
+        }
+        for l in 0..6 {
+            let same = |lanes: Wides<6, true>, one: Wide| lanes.lane(l).parts() == one.parts();
+            prop_assert!(same(x + y, a[l] + b[l]) && same(x - y, a[l] - b[l]) && same(x * y, a[l] * b[l]));
+            prop_assert!(b[l].is_zero() || same(x / y, a[l] / b[l]));
+            prop_assert!(same(x.sqrt(), a[l].sqrt()) && same(x.abs(), a[l].abs()));
+            prop_assert_eq!(x.values()[l], a[l].value());
+            prop_assert_eq!(x.at_most(y)[l], a[l] <= b[l]);
+        }
     }
 
     /// All floats go there and back.

@@ -1,0 +1,351 @@
+//! From bodies to their motions: orbits, series and frames, one body in each lane.
+
+use super::flow::Flow;
+use super::orbit::{Orbit, Orbits, is_steady};
+use super::series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
+use super::{FreeMotion, horizon, power_of_two};
+use crate::body::inertia::Inertia;
+use crate::error::SimulateError;
+use crate::exact::flow::{self, Form};
+use crate::exact::lanes::{Coefficients, Phases};
+use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
+use crate::numerics::elliptic::mean;
+use crate::numerics::lanes::Phase;
+use crate::state::checks::check_moments;
+use polhode_ga::simd::lanes::{Work, fastest};
+use polhode_ga::{Bivector, Rotor};
+use std::f64::consts::PI;
+
+/// A free body at time 0, in principal axes.
+#[derive(Clone, Copy, Debug)]
+pub struct FreeBody {
+    pub(in crate::exact) moments: [f64; 3],
+    /// From principal axes to those of the body.
+    pub(super) frame: Rotor,
+    /// From principal axes to space.
+    pub(super) rotor: Rotor,
+    pub(in crate::exact) omega: Bivector,
+}
+
+impl FreeBody {
+    /// At `rotor` (body axes to space) with angular velocity `omega` in body axes. An error if a principal moment is
+    /// zero.
+    pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector) -> Result<FreeBody, SimulateError> {
+        let (frame, moments) = (inertia.principal_frame(), inertia.principal_moments());
+        check_moments(moments)?;
+        Ok(FreeBody { moments, frame, rotor: rotor * frame, omega: frame.reverse().apply_bivector(omega) })
+    }
+
+    /// Its motion.
+    pub fn motion(&self) -> FreeMotion {
+        let FreeBody { moments, frame, omega, .. } = *self;
+        let mut alone = FreeMotions::<1>::default();
+        alone.set_up(&[*self]);
+        let flow = match alone.hyperbolic {
+            Some(flow) => Form::FreeHyperbolic(flow),
+            None => Form::FreeCircular(alone.circular),
+        };
+        let ([orbit], [scale]) = (alone.orbits, alone.scales);
+        FreeMotion { moments, frame, omega, scale, orbit, flow: flow::Flow(flow) }
+    }
+}
+
+/// The motions of `W` free bodies, one in each lane.
+#[derive(Clone, Debug)]
+pub(crate) struct FreeMotions<const W: usize> {
+    /// Valid where [`FreeMotions::is_circular`].
+    pub circular: Flow<Circular<W>, W>,
+    /// The others.
+    pub hyperbolic: Option<Flow<Hyperbolic<W>, W>>,
+    pub is_circular: [bool; W],
+    /// None for steady rotation.
+    pub(super) orbits: [Option<Orbit>; W],
+    /// As in [`FreeMotion`].
+    pub(super) scales: [f64; W],
+}
+
+impl<const W: usize> Default for FreeMotions<W> {
+    fn default() -> FreeMotions<W> {
+        FreeMotions {
+            circular: Flow::empty(),
+            hyperbolic: None,
+            is_circular: [true; W],
+            orbits: [None; W],
+            scales: [1.0; W],
+        }
+    }
+}
+
+impl<const W: usize> FreeMotions<W> {
+    /// [`FreeMotion::horizon`] of each.
+    pub fn horizon(&self, l: usize, body: &FreeBody) -> f64 {
+        horizon(self.orbits[l].as_ref(), self.scales[l], body.omega)
+    }
+
+    /// The lanes of the first `count` motions: the circular and the hyperbolic ones.
+    pub fn lanes(&self, count: usize) -> [Vec<usize>; 2] {
+        let (circular, hyperbolic) = (0..count).partition(|&l| self.is_circular[l]);
+        [circular, hyperbolic]
+    }
+
+    /// Replaces the motions by those of other bodies. Each has the bits that it has alone.
+    pub fn set_up(&mut self, bodies: &[FreeBody; W]) {
+        fastest(SetUp { bodies, motions: self });
+    }
+}
+
+struct SetUp<'a, const W: usize> {
+    bodies: &'a [FreeBody; W],
+    motions: &'a mut FreeMotions<W>,
+}
+
+/// Bodies that do not turn steadily, in lanes.
+struct Tumbling<'a, const W: usize, const FMA: bool> {
+    bodies: &'a [FreeBody; W],
+    orbits: Orbits<W, FMA>,
+    scale: [f64; W],
+    phases: Phases<W>,
+}
+
+impl<const W: usize> Work for SetUp<'_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let SetUp { bodies, motions } = self;
+        let (mut moments, mut rates) = ([[0.0; 3]; W], [[0.0; 3]; W]);
+        let (mut size, mut scale, mut steady) = ([0.0; W], [0.0; W], [false; W]);
+        for l in 0..W {
+            let FreeBody { moments: i, omega: Bivector(w), .. } = bodies[l];
+            steady[l] = is_steady(i, w);
+            // The orbit of any motion, which is not used.
+            (moments[l], rates[l]) = if steady[l] { ([1.0, 2.0, 3.0], [1.0; 3]) } else { (i, w) };
+            (size[l], scale[l]) = (power_of_two(moments[l]), power_of_two(rates[l]));
+        }
+        let orbits = Orbits::<W, FMA>::new(&moments, &rates, [&size, &scale]);
+        let mut root = [0.0; W];
+        for l in 0..W {
+            root[l] = orbits.k2[l].sqrt();
+        }
+        // AGM(1, k) = π/2K'.
+        let other = mean(root);
+        let Orbits { lambda, mean, on_separatrix, start, .. } = &orbits;
+        let (phases, nome) = phases_and_nomes(lambda, mean, on_separatrix, start, &other);
+        for l in 0..W {
+            motions.is_circular[l] = nome[l] <= LARGEST_NOME;
+        }
+        let tumbling = Tumbling { bodies, orbits, scale, phases };
+        motions.circular = tumbling.flows(tumbling.circular(&nome));
+        motions.hyperbolic = if motions.is_circular == [true; W] {
+            None
+        } else {
+            Some(tumbling.flows(tumbling.hyperbolic(&motions.is_circular, &other)))
+        };
+        for l in 0..W {
+            motions.orbits[l] = (!steady[l]).then(|| tumbling.orbits.lane(l));
+            motions.scales[l] = tumbling.scale[l];
+            if steady[l] {
+                let flow = bodies[l].steady();
+                motions.scales[l] = flow.scale[0];
+                motions.circular.put(l, &flow);
+            }
+        }
+    }
+}
+
+/// The phases v/2π, and the nomes of the trigonometric series, infinite on the separatrix: from λ, AGM(1, k'), u at time 0, and
+/// AGM(1, k). On the separatrix `u = NEVER · turns`.
+#[inline(always)]
+pub(crate) fn phases_and_nomes<const W: usize, const FMA: bool>(
+    lambda: &DoubleDoubles<W, FMA>,
+    mean: &DoubleDoubles<W, FMA>,
+    on_separatrix: &[bool; W],
+    [whole, rest]: &[[f64; W]; 2],
+    other: &[f64; W],
+) -> (Phases<W>, [f64; W]) {
+    // 1/4K.
+    let per_u = (*mean * DoubleDoubles::all(DoubleDouble::OVER_TWO_PI))
+        .or(&on_separatrix.map(|is_on| !is_on), DoubleDoubles::all((1.0 / NEVER).into()));
+    let rate = *lambda * per_u;
+    let (mut start, mut nome) = ([[0.0; W]; 2], [0.0; W]);
+    for l in 0..W {
+        (start[0][l], start[1][l]) = (0.25 * whole[l], rest[l] * per_u.hi[l]);
+        if on_separatrix[l] {
+            (start[0][l], start[1][l]) = (start[1][l], 0.0);
+        }
+    }
+    for l in 0..W {
+        let exponent = if other[l] > 0.0 { -PI * mean.hi[l] / other[l] } else { f64::NEG_INFINITY };
+        nome[l] = if on_separatrix[l] { f64::INFINITY } else { exponent.exp() };
+    }
+    (Phases([rate.hi, rate.lo, start[0], start[1]]), nome)
+}
+
+impl<const W: usize, const FMA: bool> Tumbling<'_, W, FMA> {
+    #[inline(always)]
+    fn circular(&self, nome: &[f64; W]) -> Circular<W> {
+        let (rest, mut rho) = (self.orbits.rest_of_eta(), [0.0; W]);
+        for l in 0..W {
+            rho[l] = (-rest[l] * self.orbits.mean.hi[l]).exp();
+        }
+        Circular::new(nome, &rho, &self.orbits.s)
+    }
+
+    /// Zeros for the circular motions.
+    #[inline(always)]
+    fn hyperbolic(&self, circular: &[bool; W], other: &[f64; W]) -> Hyperbolic<W> {
+        let (eta, mut series) = (self.orbits.eta(), Hyperbolic::<W>::empty());
+        for l in 0..W {
+            if circular[l] {
+                continue;
+            }
+            // πK/4K' and πη/4K'.
+            let (gamma, s) = (0.5 * eta[l] * other[l], self.orbits.s[l]);
+            let one = if self.orbits.on_separatrix[l] {
+                Hyperbolic::separatrix(gamma, s)
+            } else {
+                Hyperbolic::new(0.25 * PI * other[l] / self.orbits.mean.hi[l], gamma, s)
+            };
+            series.put(l, &one);
+        }
+        series
+    }
+
+    /// Phases, series and frames together.
+    #[inline(always)]
+    fn flows<S: Series<W>>(&self, series: S) -> Flow<S, W> {
+        let Tumbling { bodies, orbits, scale, phases } = self;
+        let half_a_turn = DoubleDoubles::all(DoubleDouble::OVER_TWO_PI * 0.5.into());
+        let (rate, still) = (orbits.precession * half_a_turn, [0.0; W]);
+        let (mut frames, mut rotors) = ([[0.0; W]; 4], [[0.0; W]; 4]);
+        for l in 0..W {
+            let (frame, rotor) = (bodies[l].frame.components(), bodies[l].rotor.components());
+            for k in 0..4 {
+                (frames[k][l], rotors[k][l]) = (frame[k], rotor[k]);
+            }
+        }
+        let (factors, mut units, mut omega) = (series.normalizers(), [[[0.0; W]; 4]; 4], [[[0.0; W]; 3]; 3]);
+        units[0][0] = [1.0; W];
+        for k in 0..3 {
+            let mut column = [[0.0; W]; 3];
+            for l in 0..W {
+                let axis = orbits.axes[l][k];
+                // Quaternion units are the negatives of the planes.
+                units[k + 1][axis + 1][l] = -orbits.signs[k][l];
+                column[axis][l] = orbits.amplitudes[k][l] * factors[k][l] * scale[l];
+            }
+            column = turned(&frames, &column);
+            for i in 0..3 {
+                omega[i][k] = column[i];
+            }
+        }
+        let (scale, orbit) = (*scale, *phases);
+        let precession = Phases([rate.hi, rate.lo, still, still]);
+        let mut flow = Flow { scale, orbit, precession, series, rotor: [[[0.0; W]; 4]; 4], omega };
+        flow.set_frames::<FMA>(&rotors, &units, &frames);
+        flow
+    }
+}
+
+impl<S: Series<W>, const W: usize> Flow<S, W> {
+    /// Sets the frames from the rotors at the start and those that stand for the quaternion units of (e1, e2, d).
+    #[inline(always)]
+    fn set_frames<const FMA: bool>(
+        &mut self,
+        start: &[[f64; W]; 4],
+        units: &[[[f64; W]; 4]; 4],
+        frames: &[[f64; W]; 4],
+    ) {
+        let (z, _) = self.turned::<W, FMA>(&[0.0; W]);
+        let mut first = [[0.0; W]; 4];
+        for i in 0..4 {
+            for l in 0..W {
+                for k in 0..4 {
+                    first[i][l] += z[k][l] * units[k][i][l];
+                }
+            }
+        }
+        for l in 0..W {
+            let [a, b, c, d] = [first[0][l], first[1][l], first[2][l], first[3][l]];
+            let size = (a * a + b * b + c * c + d * d).sqrt();
+            for i in 0..4 {
+                first[i][l] /= size;
+            }
+        }
+        let (to_space, to_body) = (product(start, &reverse(&first)), reverse(frames));
+        for k in 0..4 {
+            let column = product(&product(&to_space, &units[k]), &to_body);
+            for i in 0..4 {
+                self.rotor[i][k] = column[i];
+            }
+        }
+    }
+}
+
+/// Products of rotors.
+#[inline(always)]
+fn product<const W: usize>(a: &[[f64; W]; 4], b: &[[f64; W]; 4]) -> [[f64; W]; 4] {
+    let mut result = [[0.0; W]; 4];
+    for l in 0..W {
+        let ([s, x, y, z], [t, u, v, w]) =
+            ([a[0][l], a[1][l], a[2][l], a[3][l]], [b[0][l], b[1][l], b[2][l], b[3][l]]);
+        // Basis planes B1 B2 = −B3.
+        result[0][l] = s * t - x * u - y * v - z * w;
+        result[1][l] = s * u + x * t - (y * w - z * v);
+        result[2][l] = s * v + y * t - (z * u - x * w);
+        result[3][l] = s * w + z * t - (x * v - y * u);
+    }
+    result
+}
+
+#[inline(always)]
+fn reverse<const W: usize>(a: &[[f64; W]; 4]) -> [[f64; W]; 4] {
+    let mut result = *a;
+    for k in 1..4 {
+        for l in 0..W {
+            result[k][l] = -a[k][l];
+        }
+    }
+    result
+}
+
+/// The planes `R B ~R`: [`Rotor::apply_bivector`].
+#[inline(always)]
+fn turned<const W: usize>(rotor: &[[f64; W]; 4], plane: &[[f64; W]; 3]) -> [[f64; W]; 3] {
+    let mut result = [[0.0; W]; 3];
+    for l in 0..W {
+        let (s, [x, y, z]) = (rotor[0][l], [-rotor[1][l], -rotor[2][l], -rotor[3][l]]);
+        let [a, b, c] = [plane[0][l], plane[1][l], plane[2][l]];
+        let [t, u, v] = [2.0 * (y * c - z * b), 2.0 * (z * a - x * c), 2.0 * (x * b - y * a)];
+        result[0][l] = a + s * t + (y * v - z * u);
+        result[1][l] = b + s * u + (z * t - x * v);
+        result[2][l] = c + s * v + (x * u - y * t);
+    }
+    result
+}
+
+impl FreeBody {
+    /// Steady rotation: `exp(−½ Ω t)`, a uniform turn about d along Ω.
+    fn steady(&self) -> Flow<Circular> {
+        let FreeBody { frame, rotor, omega, .. } = *self;
+        let scale = power_of_two(omega.0);
+        let square = |x: f64| DoubleDouble::from(x) * x.into();
+        let unit = omega / scale;
+        let [x, y, z] = unit.0;
+        let size = (square(x) + square(y) + square(z)).sqrt();
+        let plane = if size.hi > 0.0 { unit / size.value() } else { Bivector::default() };
+        let d = [0.0, -plane.0[0], -plane.0[1], -plane.0[2]];
+        let mut flow = Flow {
+            scale: [scale],
+            orbit: Phases::STILL,
+            precession: Phase { rate: size * DoubleDouble::OVER_TWO_PI * 0.5.into(), start: [0.0; 2] }.into(),
+            series: Circular::steady(),
+            rotor: [[[0.0]; 4]; 4],
+            omega: frame.apply_bivector(omega).0.map(|w| [[0.0], [0.0], [w]]),
+        };
+        let in_lane = |c: [f64; 4]| c.map(|x| [x]);
+        let units = [Rotor::IDENTITY.components(), d, d, d].map(in_lane);
+        flow.set_frames::<false>(&in_lane(rotor.components()), &units, &in_lane(frame.components()));
+        flow
+    }
+}

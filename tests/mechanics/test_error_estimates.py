@@ -339,3 +339,26 @@ def test_the_turns_of_a_symmetric_body_are_exact():
     assert motion.certificate.warnings == ()
     with pytest.warns(RuntimeWarning, match="turns by more than 2 rad"):
         ph.simulate(body, state, [1.0], law, method="rk4", step=0.025)
+
+
+# A regular motion of a top with a wheel.
+WHEEL = Case((1, 2, 3), (0.125, 0.25, 0.375), heavy=(0.125, 0, 0.25), wheel=(0.25, 0.5, 2))
+WHEEL_START = moments(1, 2, 3), ph.State(ONE, WHEEL.omega)
+
+
+@pytest.mark.parametrize("method", ["kahan_li8", "yoshida6"])
+def test_many_steps_with_a_wheel_round_without_a_bias(method):
+    """The turn about the axis of the wheel is the same number in every step: its rounding must not add up."""
+    step = 100 / 32000
+    motion = ph.simulate(*WHEEL_START, [100.0], law_of(WHEEL), method=method, step=step)
+    # The random rounding of some 300 thousand turns and kicks.
+    assert motion.certificate.drift["vertical_angular_momentum"] <= 1000 * np.finfo(float).eps
+
+
+@pytest.mark.parametrize(("method", "duration"), [("auto", 1000), ("yoshida6", 200)])
+def test_the_estimate_counts_the_rounding_with_a_wheel(method, duration):
+    [rotor], [omega] = final_states([WHEEL], [duration])
+    found = ph.simulate(*WHEEL_START, [float(duration)], law_of(WHEEL), method=method)
+    turned = np.abs(found.rotor.components[-1] - rotor).max()
+    spun = np.abs(found.omega_body.components[-1] - omega).max() / rate_scale(WHEEL, omega)
+    assert max(turned, spun) <= 3 * found.certificate.error_estimate

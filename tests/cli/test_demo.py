@@ -67,11 +67,34 @@ def test_the_demo_without_the_viewer(tmp_path, monkeypatch, capsys):
     assert names(tmp_path) == set()
 
 
-def test_the_demo_in_a_folder_that_is_missing(tmp_path, capsys):
-    assert main.main(["demo", "-o", str(tmp_path / "absent")]) == 1
+def test_the_demo_creates_its_folder_and_overwrites_its_own_files(bundle, tmp_path):
+    folder = tmp_path / "new" / "demo"
+    assert main.main(["demo", "-o", str(folder)]) == 0
+    written = names(folder)
+    assert "t-handle.html" in written
+    assert main.main(["demo", "-o", str(folder)]) == 0
+    assert names(folder) == written
+
+
+@pytest.mark.parametrize("name", ["t-handle.html", *sorted(FIGURES)])
+def test_the_demo_keeps_files_of_others(name, bundle, tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    (tmp_path / name).write_text("mine")
+    assert main.main(["demo", "-o", str(tmp_path)]) == 1
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert f"no such directory: {tmp_path / 'absent'}; create it first" in captured.err
+    assert f"{tmp_path / name} exists and was not written by polhode" in captured.err
+    assert "overwrite it with --force" in captured.err
+    assert names(tmp_path) == {name}
+    assert (tmp_path / name).read_text() == "mine"
+    assert main.main(["demo", "-o", str(tmp_path), "--force"]) == 0
+    assert (tmp_path / name).read_bytes() != b"mine"
+
+
+def test_the_demo_in_a_folder_that_is_a_file(tmp_path, capsys):
+    (tmp_path / "taken").touch()
+    assert main.main(["demo", "-o", str(tmp_path / "taken")]) == 1
+    assert f"{tmp_path / 'taken'}: file exists" in capsys.readouterr().err
 
 
 # --- examples

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode._cli.common import DRIFTED, OK, add_command, add_folder
+from polhode._cli.common import DRIFTED, OK, add_command, add_folder, add_force, check_written
 from polhode._support.arrays import Array
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from polhode._scene.scene import Scene
 
 NAME = "t-handle"
+_PAGE, _FIGURES = f"{NAME}.html", (f"{NAME}-motion.png", f"{NAME}-polhode.png")
 _WIDTH, _HEIGHT = 72, 9
 FOLDER = Path(__file__).parents[1] / "_examples"
 
@@ -32,7 +33,8 @@ def add(commands: Any) -> None:
         description="Run a T-handle in free flight: print its summary and a sketch, and write "
         "t-handle.html, a page that shows it in a browser. With matplotlib it also writes figures.",
     )
-    add_folder(demo, "files")
+    add_folder(demo, "files, created if missing")
+    add_force(demo)
 
     words = "List the example scenes and lessons, or copy the named ones. Existing files are not replaced."
     parser = add_command(
@@ -116,10 +118,11 @@ def _copy(files: list[Path], folder: Path) -> list[Path]:
 def _demo(options: argparse.Namespace) -> int:
     from polhode._report.summary import as_text, summary
     from polhode._scene.scene import Scene
-    from polhode._support.files import check_target, write_atomically
+    from polhode._support.files import write_atomically
 
     folder = Path(options.output)
-    check_target(folder / f"{NAME}.html")
+    folder.mkdir(parents=True, exist_ok=True)
+    check_written([folder / name for name in (_PAGE, *_FIGURES)], options.force)
     scene = Scene.read(examples()[NAME])
     trajectory = scene.run()
     result = summary(scene, trajectory)
@@ -137,14 +140,14 @@ def _contents(scene: Scene, trajectory: Trajectory, folder: Path) -> tuple[dict[
     contents: dict[Path, bytes] = {}
     missing = []
     try:
-        contents[folder / f"{NAME}.html"] = motion_page(trajectory)
+        contents[folder / _PAGE] = motion_page(trajectory)
     except FileNotFoundError as error:
         missing.append(f"No page: {error}.")
     try:
         from polhode._figures.registry import pictures
 
-        names = (f"{NAME}-motion.png", f"{NAME}-polhode.png")
-        contents |= {folder / name: x for name, x in zip(names, pictures(scene, trajectory), strict=True)}
+        drawn = pictures(scene, trajectory)
+        contents |= {folder / name: x for name, x in zip(_FIGURES, drawn, strict=True)}
     except ImportError as error:
         missing.append(f"No figures: {error}.")
     return contents, missing

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -228,12 +229,59 @@ def test_a_fit_is_shown_and_written():
     assert text.startswith("i1/i3                 0.38")
     assert "clock_offset" in text
     assert "overall scale of the moments" in text
+    assert fit.misfit is None
+    lines = {line[:21].strip(): line[22:] for line in text.splitlines()}
+    assert re.fullmatch(r"± 0\.0\d+ rad", lines["attitude_1"])
+    shown = lines["attitude"].removeprefix("quaternion wxyz ").removesuffix(" from body to space axes")
+    assert ph.Rotor.from_quaternion([float(x) for x in shown.split(",")], order="wxyz").distance(START) < 0.1
     assert fit._repr_html_().startswith("<table>")
     assert repr(fit).startswith("Fit(")
     assert json.loads(json.dumps(fit.to_dict()))["names"] == list(fit.names)
     fit.covariance[:] = 0
     assert (fit.stderr > 0).all()
     assert {name: x.shape for name, x in fit.residuals.items()} == {"attitude": (120, 3), "rates": (120, 3)}
+
+
+INVERSE, CONFUSED, TILTED = "inverse attitudes", "other order", "tilted sensor"
+
+
+@pytest.mark.parametrize("is_known", [True, False])
+@pytest.mark.parametrize("mistake", [INVERSE, CONFUSED, TILTED])
+def test_a_body_that_does_not_fit_is_reported(mistake, is_known):
+    kind = "rates" if mistake == TILTED else "attitude"
+    data = measured(kind, np.random.default_rng(5), np.linspace(0, 3, 300), sigma=0.002)
+    times, values = data[kind]
+    match mistake:
+        case "inverse attitudes":
+            values = ~values
+        case "other order":
+            values = ph.Rotor.from_quaternion(values.to_quaternion(order="wxyz"), order="xyzw")
+        case _:
+            values = values @ ph.Rotor.from_rotation_vector([0.9, -0.6, 0.5]).to_matrix()
+    sigma = data[f"sigma_{kind}"] if is_known else None
+    with pytest.warns(RuntimeWarning, match="^the body does not fit these data .*: check the unit") as caught:
+        fit = ph.fit(**{kind: (times, values), f"sigma_{kind}": sigma})
+    assert caught[0].filename == __file__
+    assert fit.misfit == fit.to_dict()["misfit"] == str(caught[0].message)
+    assert fit.misfit in fit.summary()
+    assert ("reduced chi-square" in fit.misfit) == is_known
+    assert ("axes of the rates" in fit.misfit) == (kind == "rates")
+
+
+@pytest.mark.parametrize("noise", [1e-9, 0.002, 0.3])
+@pytest.mark.parametrize("kind", ["rates", "attitude"])
+def test_noise_of_unknown_size_is_no_misfit(kind, noise):
+    for seed in range(3):
+        data = measured(kind, np.random.default_rng(seed), np.linspace(0, 3, 300), sigma=noise)
+        assert ph.fit(**{kind: data[kind]}, start=(BODY, OMEGA)).misfit is None
+
+
+def test_a_sigma_that_is_too_large_is_reported():
+    data = measured("rates", np.random.default_rng(3))
+    good = ph.fit(**data, start=(BODY, OMEGA))
+    loose = ph.fit(**data | {"sigma_rates": 10 * SIGMA}, start=(BODY, OMEGA))
+    assert "sigma is much larger" in loose.summary()
+    assert "sigma is" not in good.summary()
 
 
 def test_residuals_are_drawn():

@@ -82,6 +82,17 @@ def test_periods_keep_files_of_others(tmp_path, capsys):
     assert json.loads(path.read_text())["source"].startswith("polhode ")
 
 
+def test_a_body_that_does_not_fit_is_reported(tmp_path, capsys):
+    """Quaternions from space axes to body axes, as of another convention."""
+    q = (~FREE.at(TIMES * 0.01).rotor).to_quaternion(order="wxyz")
+    path = table(tmp_path / "q.csv", "t,qw,qx,qy,qz", TIMES * 0.01, q)
+    assert main.main(["fit", path, "--time-unit", "s"]) == 0
+    captured = capsys.readouterr()
+    assert "\nmisfit                the body does not fit these data (rms of attitude" in captured.out
+    assert captured.err.startswith("polhode: warning: the body does not fit these data (rms of attitude")
+    assert "their direction (from body to space axes)" in captured.err
+
+
 @pytest.mark.parametrize("order", ["wxyz", "xyzw"])
 def test_quaternions(order, tmp_path, capsys):
     q = FREE.at(TIMES * 0.01).rotor.to_quaternion(order=order)
@@ -235,7 +246,15 @@ LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
         ("\n\n", ": error: the file is empty"),
         ("t,wx,wy,wz\n", ":1:1: error: the file ends after 0 rows of rates; a fit needs at least 3"),
         (LINES, ":3:1: error: the file ends after 2 rows of rates; a fit needs at least 3"),
-        ("t,qw,qx,qy,qz\n0,1,0,0,0\n1, 0,0,0,0\n", ":3:4: error: all components of the quaternion are zero"),
+        ("t,qw,qx,qy,qz\n0,1,0,0,0\n1, 0,0,0,0\n", ":3:4: error: the quaternion must have norm 1, got 0;"),
+        ("t,qw,qx,qy,qz\n0,1,0,0,0\n1,0.6,0.8,0.1,0\n", ":3:3: error: the quaternion must have norm 1"),
+        ("t wx wy wz\n0 1 2 3\n", ":1:1: error: the columns are separated by spaces; separate names"),
+        (
+            LINES + "2026-01-01T00:00:02,1,2,3\n",
+            ":4:1: error: '2026-01-01T00:00:02' is not a finite number; write times as numbers",
+        ),
+        ("t,wx,wy,wz\n0,1,2,3\n", ":2:1: error: the file ends after 1 row of rates"),
+        (LINES + "5\n", ":4:1: error: 1 field, but 4 columns are named"),
     ],
 )
 def test_errors_have_places(text, message, tmp_path, capsys):
@@ -284,7 +303,8 @@ def test_options_that_do_not_apply_are_refused(rates, tmp_path, capsys):
         (["--time-unit", "s"], "rates need their unit: --rate-unit rad/s"),
         (["--rate-unit", "rpm"], "required: --time-unit"),
         ([*UNITS, "--columns", "t,wx"], "expected 4 names (time and rates), 5"),
-        ([*UNITS[:2], "--columns", "t,wx,wy,wz,wx"], "needs its order: --order wxyz"),
+        ([*UNITS[:2], "--columns", "t,wx,wy,wz,w"], "needs its order: --order wxyz"),
+        ([*UNITS, "--columns", "t,wx,wy,wx"], "each column has one meaning, but 'wx' is named twice"),
         ([*UNITS, "--sigma", "0"], "expected a positive number, got '0'"),
         ([*UNITS, "-o", "fit.csv"], "a fit is saved as FILE.json, not 'fit.csv'"),
     ],

@@ -175,7 +175,7 @@ def _as_json(facts: dict[str, Any]) -> str:
 
 def _fitted(options: argparse.Namespace) -> Fit:
     from polhode import Rotor, Scene, fit
-    from polhode._fit.table import read_tables
+    from polhode._fit.table import RATES, read_tables
 
     error = options.parser.error
     if options.data is None:
@@ -184,6 +184,8 @@ def _fitted(options: argparse.Namespace) -> Fit:
         error("the following arguments are required: --time-unit")
     if options.free and options.torque is None:
         error("--free names parameters of torques; give them with --torque SCENE.toml")
+    if options.columns is not None and len(options.columns) > len(RATES) and options.order is None:
+        error("a quaternion of --columns needs its order: --order wxyz or --order xyzw")
     torque = None if options.torque is None else Scene.read(options.torque).torque
     if options.torque is not None and torque is None:
         error(f"--torque needs a scene with torques, and {options.torque} has none")
@@ -191,11 +193,8 @@ def _fitted(options: argparse.Namespace) -> Fit:
     _refuse_unused(options, tables)
     given: dict[str, Any] = {}
     if "attitude" in tables:
-        order: Any = "wxyz" if options.columns is None else options.order
-        if order is None:
-            error("a quaternion of --columns needs its order: --order wxyz or --order xyzw")
         table = tables["attitude"]
-        rotors = Rotor.from_quaternion(table.values, order=order)
+        rotors = Rotor.from_quaternion(table.values, order=options.order or "wxyz")
         given["attitude"] = table.times * _TIMES[options.time_unit], rotors
         given["sigma_attitude"] = options.sigma if options.sigma_attitude is None else options.sigma_attitude
     if "rates" in tables:
@@ -245,6 +244,8 @@ def _columns(text: str) -> tuple[str, ...]:
             "expected 4 names (time and rates), 5 (time and quaternion) or 8 (time, rates and quaternion), "
             f"such as t,wx,wy,wz, got {text!r}"
         )
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise argparse.ArgumentTypeError(f"each column has one meaning, but {twice[0]!r} is named twice")
     return names
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Any, Literal
 
@@ -11,6 +12,7 @@ from polhode._algebra.constructors import bivector
 from polhode._algebra.rotor import Rotor
 from polhode._fit.information import information
 from polhode._fit.laws import Laws, laws_of
+from polhode._fit.misfit import misfit
 from polhode._fit.model import Model
 from polhode._fit.parameters import Layout, Parameters, shape_of
 from polhode._fit.result import Fit
@@ -90,8 +92,14 @@ def fit(
     -------
     Fit
         Moments relative to the largest (in kg m² where a torque determines them), state, bias, covariance,
-        residuals, and what the data do not determine. Of rates of a body whose torque does not depend on the
-        attitude, the attitude is not determined, and `rotor` is None.
+        residuals, and what the data do not determine. If there are only rates and the torque does not depend
+        on the attitude, the attitude is undetermined, and `rotor` is None.
+
+    Warns
+    -----
+    RuntimeWarning
+        If the body does not fit: a reduced chi-square above 10, or without standard deviations residuals that
+        are as large as the motion, or large and correlated from sample to sample; `Fit.misfit` has the text.
 
     Raises
     ------
@@ -159,6 +167,10 @@ def fit(
     variance = 1.0 if is_known else max(reduced, _least_variance(model))
     facts = information(model, found, variance, others, scaling)
     differences = dict(zip(data, model.differences(found), strict=True))
+    noise = {name: float(np.sqrt(np.mean(d**2))) for name, d in differences.items()}
+    problem = misfit(data, differences, noise, reduced if is_known else None)
+    if problem is not None:
+        warnings.warn(problem, RuntimeWarning, stacklevel=3)
     return Fit(
         inertia=found.inertia,
         omega_body=bivector(found.omega),
@@ -174,10 +186,11 @@ def fit(
         covariance=facts.covariance,
         times={name: x.times for name, x in data.items()},
         residuals={name: differences[name] / x.sigma / np.sqrt(variance) for name, x in data.items()},
-        noise={name: float(np.sqrt(np.mean(d**2))) for name, d in differences.items()},
+        noise=noise,
         chi2_reduced=reduced if is_known else None,
         dof=dof,
         undetermined=facts.undetermined,
+        misfit=problem,
     )
 
 

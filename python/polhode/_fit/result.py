@@ -24,6 +24,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+# Parameters that are small rotations from the best fit, and so 0.
+_TURNS = ("attitude_", "axes_")
+# Reduced chi-square that noise of the given size does not leave with so many degrees of freedom.
+_TOO_SMALL, _MANY = 0.1, 10
+
 
 @with_foreign_names(
     {**dict.fromkeys(("params", "popt", "x"), "values"), **dict.fromkeys(("cov", "pcov"), "covariance")}
@@ -84,6 +89,8 @@ class Fit:
         motion the overall scale of the moments, and each direction among the parameters whose standard
         deviation exceeds half of their size (1 for ratios, 1 rad, the rms rate for rates; for a parameter of
         a law its value, or if larger what changes the motion by about 1 rad).
+    misfit
+        That the body does not fit the data, and what to check, if `fit` warned of it; else None.
 
     Examples
     --------
@@ -119,6 +126,7 @@ class Fit:
     chi2_reduced: float | None
     dof: int
     undetermined: tuple[str, ...]
+    misfit: str | None
 
     @property
     def state(self) -> State:
@@ -161,6 +169,9 @@ class Fit:
     def summary(self) -> str:
         """Return the parameters with their standard deviations and the other findings, as text.
 
+        Small rotations, which are 0 at the best fit, have their standard deviations only: those of
+        ``attitude_1``, … turn the attitude, those of ``axes_1``, … the sensor axes.
+
         Examples
         --------
         >>> rng = np.random.default_rng(1)
@@ -178,7 +189,11 @@ class Fit:
     def _rows(self) -> list[tuple[str, str]]:
         rows = []
         for name, unit, value, error in zip(self.names, self.units, self.values, self.stderr, strict=True):
-            rows.append((name, f"{_with_error(value, error)} {unit}".rstrip()))
+            text = f"± {error:.2g}" if name.startswith(_TURNS) else _with_error(value, error)
+            rows.append((name, f"{text} {unit}".rstrip()))
+        if self.rotor is not None:
+            quaternion = ", ".join(f"{x:.6g}" for x in _wxyz(self.rotor))
+            rows.append(("attitude", f"quaternion wxyz {quaternion} from body to space axes"))
         if self.sensor_axes is not None:
             turn = ", ".join(f"{x:.6g}" for x in self.sensor_axes.to_rotation_vector())
             rows.append(("sensor axes", f"rotation vector {turn} rad to principal axes"))
@@ -189,9 +204,12 @@ class Fit:
         if self.chi2_reduced is None:
             rows.append(("sigma", f"estimated from the residuals, {self.dof} degrees of freedom"))
         else:
-            rows.append(
-                ("reduced chi-square", f"{self.chi2_reduced:.3f}, {self.dof} degrees of freedom"),
-            )
+            text = f"{self.chi2_reduced:.3f}, {self.dof} degrees of freedom"
+            if self.chi2_reduced < _TOO_SMALL and self.dof >= _MANY:
+                text += "; sigma is much larger than the residuals, and so are the standard deviations above"
+            rows.append(("reduced chi-square", text))
+        if self.misfit is not None:
+            rows.append(("misfit", self.misfit))
         return rows
 
     def _repr_html_(self) -> str:
@@ -240,6 +258,7 @@ class Fit:
             "chi2_reduced": self.chi2_reduced,
             "dof": self.dof,
             "undetermined": list(self.undetermined),
+            "misfit": self.misfit,
         }
 
     def plot(self, *, ax: Axes | None = None) -> Figure:

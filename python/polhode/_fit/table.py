@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,14 +12,19 @@ import numpy as np
 
 from polhode._support.arrays import Array
 from polhode._support.files import UnreadableError, contents
+from polhode._support.words import counted
 
 RATES, QUATERNION = ("t", "wx", "wy", "wz"), ("t", "qw", "qx", "qy", "qz")
 BOTH = RATES + QUATERNION[1:]
 # Number of names, of a time and its values, for each kind of data.
 KINDS = {len(RATES): ("rates",), len(QUATERNION): ("attitude",), len(BOTH): ("rates", "attitude")}
 SEPARATORS = (",", ";", "\t")
+# Start of a time stamp, as 2026-01-31T12:00:00.
+_DATE = re.compile(r"\d{4}-\d\d-\d\d|\d\d?:\d\d")
 # Least number of rows of each kind.
 FEWEST = 3
+# Greatest difference from 1 of the norm of a quaternion, for rounding in a file.
+_OFF = 1e-3
 
 
 @dataclass(frozen=True)
@@ -41,8 +47,8 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     ------
     UnreadableError
         With file, line and column, for a name that is missing, a field that is not a finite number, a
-        quaternion of zeros, a line with another number of fields, times that do not increase, and too few
-        rows; with the file if it cannot be read.
+        quaternion whose norm is not 1, a line with another number of fields, times that do not increase, and
+        too few rows; with the file if it cannot be read.
     """
     try:
         lines = contents(path, copies=4).decode("utf-8-sig").replace("\r\n", "\n").split("\n")
@@ -63,6 +69,11 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
             f"{path}:{rows[0][0]}:1: error: not names of columns: {error}; write them as t,wx,wy,wz"
         ) from None
     header = [x.strip() for x in fields]
+    if len(header) == 1 and len(header[0].split()) > 1:
+        raise UnreadableError(
+            f"{path}:{rows[0][0]}:1: error: the columns are separated by spaces; separate names and numbers "
+            "by commas, semicolons or tabs"
+        )
     if all(_is_number(x) for x in header):
         raise UnreadableError(
             f"{path}:{rows[0][0]}:1: error: the first line has numbers; it must have the names of the columns"
@@ -83,7 +94,8 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
         fields = text.split(separator)
         if len(fields) != len(header):
             raise UnreadableError(
-                f"{path}:{line}:1: error: {len(fields)} fields, but {len(header)} columns are named"
+                f"{path}:{line}:1: error: {counted(len(fields), 'field')}, "
+                f"but {len(header)} columns are named"
             )
         for kind, own in columns.items():
             if len(kinds) == 1 or any(fields[place].strip() for place in own):
@@ -91,8 +103,8 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     for kind, numbers in found.items():
         if len(numbers) < FEWEST:
             raise UnreadableError(
-                f"{path}:{rows[-1][0]}:1: error: the file ends after {len(numbers)} rows of {kind}; "
-                f"a fit needs at least {FEWEST}"
+                f"{path}:{rows[-1][0]}:1: error: the file ends after {counted(len(numbers), 'row')} of "
+                f"{kind}; a fit needs at least {FEWEST}"
             )
     return {kind: _table(path, own, len(columns[kind]) + 1) for kind, own in found.items()}
 
@@ -116,13 +128,18 @@ def _numbers(path: Path, line: int, fields: list[str], places: list[int]) -> lis
         value = _number(field)
         if not math.isfinite(value):
             problem = f"{field!r} is not a finite number" if field else "the field is empty"
-            remedy = "write a decimal point" if _is_number(field.replace(",", ".")) else "remove the row"
+            if _is_number(field.replace(",", ".")):
+                remedy = "write a decimal point"
+            elif place == places[0] and _DATE.match(field):
+                remedy = "write times as numbers, such as seconds since the first row"
+            else:
+                remedy = "remove the row"
             raise UnreadableError(f"{path}:{line}:{_column(fields, place)}: error: {problem}; {remedy}")
         numbers.append(value)
-    if len(places) == len(QUATERNION) and not any(numbers[1:]):
+    if len(places) == len(QUATERNION) and not abs((norm := math.hypot(*numbers[1:])) - 1) < _OFF:
         raise UnreadableError(
-            f"{path}:{line}:{_column(fields, places[1])}: error: all components of the quaternion are zero, "
-            "which is not a rotation; remove the row"
+            f"{path}:{line}:{_column(fields, places[1])}: error: the quaternion must have norm 1, got "
+            f"{norm:.6g}; check the columns, or remove the row"
         )
     return numbers
 

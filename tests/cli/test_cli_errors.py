@@ -137,6 +137,36 @@ def test_all_errors_are_reported_at_once(tmp_path):
     assert lines == sorted(lines)
 
 
+OTHERS = {
+    "a.nc": (b"\x89HDF\r\n", "a motion in netCDF: `polhode view a.nc` shows it"),
+    "motion": (b"\x89HDF\r\n", "a motion in netCDF: `polhode view motion` shows it"),
+    "a.csv": (b"t,wx\n", "a table of a motion: `polhode convert a.csv FILE` converts it"),
+    "a.obj": (b"v 1 2 3\n", "a mesh: `polhode check a.obj` checks it"),
+    "a.png": (b"\x89PNG\r\n", "a picture, which is written, not read"),
+    "a.md": (b"---\n", "a lesson: `polhode view a.md` shows it"),
+    "a.tab": (b" 1 2.5 -3e1\n4 5 6\n", "a table of numbers: meshes are STL, OBJ or PLY files"),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_a_file_that_is_not_a_scene_is_named(name, tmp_path, command):
+    content, kind = OTHERS[name]
+    (tmp_path / name).write_bytes(content)
+    commands = [("run", name), ("figure", "motion", name, "-o", "z.png"), ("film", name, "-o", "z.gif")]
+    if name != "a.obj":
+        commands.append(("check", name))
+    for asked in commands:
+        done = command(*asked)
+        assert done.returncode == 3
+        assert done.stderr.startswith(f"{name}: error: not a scene but {kind}")
+        assert done.stdout == ""
+
+
+def test_a_scene_may_have_any_name(tmp_path, command):
+    (tmp_path / "small").write_text(SCENE)
+    assert command("check", "small").returncode == 0
+
+
 # --- runs that fail
 
 

@@ -2,10 +2,12 @@
 
 import http.client
 import json
+import re
 import shutil
 import signal
 import socket
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -219,8 +221,10 @@ def test_files_that_cannot_be_shown_are_bad_input(tmp_path, capsys):
     (tmp_path / "bad.toml").write_text(SCENE.replace("duration", "durration"))
     (tmp_path / "bad.nc").write_bytes(b"noise")
     (tmp_path / "a.csv").write_text("time")
+    (tmp_path / "a.stl").write_text("solid")
     for name, part in (
-        ("a.csv", f"convert it first: polhode convert {tmp_path / 'a.csv'} FILE.nc"),
+        ("a.csv", f"ph.io.read({str(tmp_path / 'a.csv')!r}).trajectory(body).save('FILE.nc')"),
+        ("a.stl", f"a.stl: error: not a scene but a mesh: `polhode check {tmp_path / 'a.stl'}` checks it"),
         ("bad.toml", "bad.toml:7:1: error: unknown field `durration`"),
         ("absent.toml", "absent.toml: error: no such file"),
         ("bad.nc", "bad.nc cannot be read as a netCDF file"),
@@ -230,6 +234,26 @@ def test_files_that_cannot_be_shown_are_bad_input(tmp_path, capsys):
         captured = capsys.readouterr()
         assert part in captured.err
         assert captured.out == ""
+
+
+@pytest.mark.parametrize("form", ["csv", "aem", "nc"])
+@pytest.mark.usefixtures("bundle")
+def test_the_remedy_for_a_table_of_attitudes_is_shown(form, tmp_path, monkeypatch, capsys):
+    """A file without an inertia; the command that the error names writes one that is shown."""
+    pytest.importorskip("h5netcdf")
+    monkeypatch.chdir(tmp_path)
+    body = ph.Inertia.from_principal_moments(1, 2, 3)
+    start = ph.State(ph.Rotor.identity(), [0.1, 1, 0.1])
+    history = ph.io.AttitudeHistory.of(ph.simulate(body, start, np.linspace(0, 1, 5)))
+    facts = {"reference_frame": "EME2000", "body_frame": "SC_BODY_1", "object_name": "A", "object_id": "1"}
+    facts["epoch"] = "2026-01-01T00:00:00"
+    ph.io.write(replace(history, inertia=None, attributes=facts), f"a.{form}")
+    assert main.main(["view", f"a.{form}", "--no-browser"]) == 3
+    message = capsys.readouterr().err
+    assert "no inertia" in message
+    remedy = re.search(r"ph\.io\.read.*'FILE\.nc'\)", message)[0]
+    eval(remedy, {"ph": ph, "body": body})
+    assert set(_view.Source(tmp_path / "FILE.nc").document()) >= {"format", "recorded"}
 
 
 @pytest.mark.usefixtures("bundle")

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode._native import SceneError
+from polhode._support.file_kinds import require_scene
 from polhode._support.files import check_target, form_of
 
 if TYPE_CHECKING:
@@ -70,11 +71,13 @@ def read_scene(name: str) -> Scene:
     Raises
     ------
     SceneError
-        As `Scene.read`; places in standard input have the file name ``<stdin>``.
+        As `Scene.read`; places in standard input have the file name ``<stdin>``. Of a file of another kind
+        it says what that is.
     """
     from polhode._scene.scene import Scene
 
     if name != "-":
+        require_scene(name)
         return Scene.read(name)
     from polhode._viewer.document import of_text, scene_of
 

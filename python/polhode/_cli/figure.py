@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode._cli.common import add_command, add_force, check_written, file_name, progress
+from polhode._support.file_kinds import require_scene
 
 if TYPE_CHECKING:
     from polhode._mechanics.trajectory import Trajectory
@@ -117,6 +118,7 @@ def _motion(name: str) -> Trajectory:
     """Run the scene of a file; a ValueError for an ensemble."""
     from polhode import Scene
 
+    require_scene(name)
     scene = Scene.read(name)
     if scene.ensemble is not None:
         raise ValueError(

@@ -9,7 +9,15 @@ from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli.common import add_amount, add_command, add_force, check_written, file_name, positive
+from polhode._cli.common import (
+    add_amount,
+    add_command,
+    add_force,
+    check_written,
+    file_name,
+    positive,
+    read_scene,
+)
 from polhode._native import __version__
 
 if TYPE_CHECKING:
@@ -174,7 +182,7 @@ def _as_json(facts: dict[str, Any]) -> str:
 
 
 def _fitted(options: argparse.Namespace) -> Fit:
-    from polhode import Rotor, Scene, fit
+    from polhode import Rotor, fit
     from polhode._fit.table import RATES, read_tables
 
     error = options.parser.error
@@ -186,7 +194,7 @@ def _fitted(options: argparse.Namespace) -> Fit:
         error("--free names parameters of torques; give them with --torque SCENE.toml")
     if options.columns is not None and len(options.columns) > len(RATES) and options.order is None:
         error("a quaternion of --columns needs its order: --order wxyz or --order xyzw")
-    torque = None if options.torque is None else Scene.read(options.torque).torque
+    torque = None if options.torque is None else read_scene(options.torque).torque
     if options.torque is not None and torque is None:
         error(f"--torque needs a scene with torques, and {options.torque} has none")
     tables = read_tables(Path(options.data), options.columns)

@@ -270,6 +270,12 @@ _OWN = {
 def read(path: str | os.PathLike[str]) -> Trajectory:
     """Return the motion in a netCDF file, as `Trajectory.read`."""
     fields, attributes = _content(path)
+    if "attitude" in fields and "inertia" not in fields:
+        raise ValueError(
+            f"{path} has no inertia, which a motion needs: it is a table of attitudes, as of a CSV or AEM "
+            f"file; ph.io.read_netcdf({os.fspath(path)!r}).trajectory(body).save('FILE.nc') writes a motion "
+            "of a body"
+        )
     try:
         require_shapes(fields["time"], {name: fields[name] for name in MOTION if name != "inertia"})
         return Trajectory(

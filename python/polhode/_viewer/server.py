@@ -17,6 +17,7 @@ from typing import Any
 
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.scene import Scene
+from polhode._support.file_kinds import require_scene
 from polhode._support.files import UnreadableError, check_target
 from polhode._viewer.document import Document, of_file, of_scene, of_text, of_trajectory
 from polhode._viewer.html import bundle_path, page, served_page
@@ -61,18 +62,22 @@ def motion_page(trajectory: Trajectory) -> bytes:
 Bar = Callable[[str], AbstractContextManager[Callable[[int, float], object] | None]]
 
 
-# Suffixes of motions in files that the viewer does not read.
-_CONVERTED = (".csv", ".parquet", ".zarr", ".aem", ".bc")
+# Suffixes of files that are shown; a scene may have any other that is not known.
+_SHOWN = (".nc", ".md")
+# Suffixes of tables of attitudes, which have no inertia.
+_TABLES = (".csv", ".parquet", ".aem", ".bc")
 
 
 def run(options: argparse.Namespace, bar: Bar) -> int:
     """Serve a file until Ctrl-C, which ends it with a KeyboardInterrupt."""
     path = Path(options.file)
-    if path.suffix.lower() in _CONVERTED and path.exists():
+    if path.suffix.lower() in _TABLES and path.exists():
         raise UnreadableError(
-            f"{path}: error: scenes, lessons and netCDF files of one motion are shown; convert it first: "
-            f"polhode convert {path} FILE.nc"
+            f"{path}: error: a table of attitudes has no inertia, which a motion that is shown needs; "
+            f"in Python, ph.io.read({str(path)!r}).trajectory(body).save('FILE.nc') writes a motion of a body"
         )
+    if path.suffix.lower() not in _SHOWN:
+        require_scene(path)
     script = bundle_path().read_bytes()
     source = Source(path)
     with bar(path.name) as report:
@@ -103,7 +108,7 @@ class Source:
 
         An UnreadableError or a SceneError reports an invalid file; a ValueError, a motion that fails.
         """
-        if self.path.suffix.lower() in (".nc", ".md"):
+        if self.path.suffix.lower() in _SHOWN:
             try:
                 return of_file(self.path)
             except (OSError, ValueError) as error:

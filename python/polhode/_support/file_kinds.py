@@ -1,0 +1,70 @@
+"""Files given in place of a scene: what they are, and the command that takes them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from polhode._native import SceneError
+
+_PICTURE = "a picture, which is written, not read"
+_MESH = "a mesh: `polhode check {0}` checks it, and a scene names it as mesh in its table [body]"
+_ROBOT = "a robot file: `polhode check {0}` checks it"
+_TABLE = (
+    "a table of a motion: `polhode convert {0} FILE` converts it; `polhode fit` fits a body to measurements"
+)
+_NUMBERS = "a table of numbers: meshes are STL, OBJ or PLY files, and `polhode fit` takes CSV files"
+_PAGE = "a page: open it in a browser"
+_KINDS = {
+    ".nc": "a motion in netCDF: `polhode view {0}` shows it, `polhode convert {0} FILE` converts it",
+    ".zarr": "a store: `polhode run --status {0}` verifies it, `polhode convert {0} FILE.nc --body N` reads "
+    "a body of it",
+    **dict.fromkeys((".csv", ".parquet", ".aem", ".bc"), _TABLE),
+    **dict.fromkeys((".stl", ".obj", ".ply"), _MESH),
+    **dict.fromkeys((".urdf", ".sdf", ".xml", ".mjcf", ".world", ".xacro"), _ROBOT),
+    **dict.fromkeys((".png", ".svg", ".pdf", ".gif", ".mp4"), _PICTURE),
+    **dict.fromkeys((".glb", ".gltf"), "an animation, which is written, not read"),
+    **dict.fromkeys((".html", ".htm"), _PAGE),
+    ".md": "a lesson: `polhode view {0}` shows it",
+}
+# First bytes of files with other names.
+_HEADS = {
+    b"\x89HDF": ".nc",
+    b"PAR1": ".parquet",
+    b"CCSDS_AEM": ".aem",
+    b"DAF/CK": ".bc",
+    b"\x89PNG": ".png",
+    b"GIF8": ".gif",
+    b"%PDF": ".pdf",
+    b"glTF": ".glb",
+}
+
+
+def require_scene(path: str | os.PathLike[str]) -> None:
+    """Raise a SceneError that says what an existing file is if it is not a scene."""
+    name, suffix = os.fsdecode(path), Path(path).suffix.lower()
+    if suffix == ".toml" or not os.path.exists(path):
+        return
+    kind = _KINDS.get(suffix) or (_kind_by_content(path) if os.path.isfile(path) else None)
+    if kind is not None:
+        raise SceneError(f"{name}: error: not a scene but {kind.format(name)}")
+
+
+def _kind_by_content(path: str | os.PathLike[str]) -> str | None:
+    with open(path, "rb") as file:
+        head = file.read(200)
+    for start, suffix in _HEADS.items():
+        if head.startswith(start):
+            return _KINDS[suffix]
+    first = head.lstrip().partition(b"\n")[0].replace(b",", b" ").replace(b";", b" ").split()
+    if first and all(_is_number(x) for x in first):
+        return _NUMBERS
+    return None
+
+
+def _is_number(text: bytes) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -22,8 +22,7 @@ SCENES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/scenes.md").read_text(),
 
 @pytest.mark.parametrize("text", SCENES, ids=lambda text: text.splitlines()[1][:20])
 def test_scenes_run(text, tmp_path):
-    (tmp_path / "examples").mkdir()
-    shutil.copy(ROOT / "examples/t-handle.stl", tmp_path / "examples")
+    shutil.copy(ROOT / "examples/t-handle.stl", tmp_path)
     path = tmp_path / "scene.toml"
     path.write_text(text)
     scene = ph.Scene.read(path)
@@ -63,8 +62,8 @@ EXTRAS = ("jax", "sympy", "anywidget", "matplotlib", "pandas", "pyarrow", "scipy
 def test_the_pages_run_and_print_their_comments(name, tmp_path):
     for needed in EXTRAS if name in DAYS else EXTRAS[:3]:
         pytest.importorskip(needed)
-    # Pages read the examples, and write their files here.
-    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    # Pages read the examples, as `polhode examples` copies them, and write their files here.
+    shutil.copytree(ROOT / "examples", tmp_path, dirs_exist_ok=True)
     blocks = blocks_of(ROOT / f"docs/{name}.md")
     code = "\n".join(text for language, text in blocks if language == "python")
     environment = {**os.environ, "MPLBACKEND": "agg"}
@@ -106,7 +105,7 @@ def test_the_commands_of_a_page_are_commands(page, count):
 def test_the_page_of_figures_runs(tmp_path):
     pytest.importorskip("matplotlib")
     studios.require_browser()
-    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    shutil.copytree(ROOT / "examples", tmp_path, dirs_exist_ok=True)
     blocks = blocks_of(ROOT / "docs/figures.md")
     asked = (
         "".join(text for language, text in blocks if language == "console").removeprefix("$ ").split("\n$ ")
@@ -122,7 +121,8 @@ def test_the_page_of_figures_runs(tmp_path):
     expected = re.findall(r"^ *print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
     assert [line.strip() for line in done.stdout.splitlines()] == expected
     written = {"polhode.svg", "scene.pdf", "turned.svg", "plate.gif", "locus.pdf", "column.pdf"}
-    assert {path.name for path in tmp_path.iterdir()} == {"examples", *written}
+    examples = {path.name for path in (ROOT / "examples").iterdir()}
+    assert {path.name for path in tmp_path.iterdir()} == examples | written
 
 
 def blocks_of(page):

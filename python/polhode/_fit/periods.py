@@ -51,7 +51,7 @@ def omega_from_periods(
     Raises
     ------
     ValueError
-        If a period is not positive and finite, no body has the moments, or the mode is another.
+        If a period is not positive and finite, no body has the moments, or the mode is neither.
 
     Examples
     --------

@@ -49,7 +49,7 @@ class Stepper:
     body, state, torque, force
         As for `simulate`: the shapes of batches broadcast, `torque` and `force` act besides the held torque.
     method
-        ``"auto"``, which is ``"rk4"``, the fastest, of order 4; or another method of `simulate` but
+        ``"auto"``, which is ``"rk4"``, the fastest, of order 4; or any other method of `simulate` except
         ``"exact"``.
     step
         The longest step of the method, in s: a longer dt consists of equal shorter steps. By default each dt

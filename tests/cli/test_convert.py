@@ -63,7 +63,7 @@ def test_the_command_reads_what_the_command_wrote(tmp_path, scene):
         assert (done.returncode, done.stderr) == (0, "")
         assert done.stdout == f"Written\n  {target}\n"
     done = polhode("convert", "d.nc", "f.glb", cwd=tmp_path)
-    assert (done.returncode, done.stdout) == (1, "")
+    assert (done.returncode, done.stdout) == (2, "")
     assert "the shape of the body is not known; give --scene=FILE.toml" in done.stderr
 
 
@@ -76,7 +76,7 @@ def test_netcdf_keeps_the_certificate(convert):
 def test_what_is_missing_is_asked_for_by_option(convert, tmp_path):
     MOTION.save("a.nc")
     done = convert("a.nc", "b.aem")
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "the epoch of time 0 is not known; give --epoch='YYYY-MM-DDThh:mm:ss'" in done.stderr
     assert not (tmp_path / "b.aem").exists()
     ph.io.write_aem(MOTION, "c.aem", epoch="2026-01-01T00:00:00", reference_frame="EME2000", version="1.0")

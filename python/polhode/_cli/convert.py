@@ -125,13 +125,13 @@ def _convert_motion(options: argparse.Namespace) -> int:
     except (FileError, OSError) as error:
         raise _unreadable(error) from None
     except ValueError as error:
-        raise ValueError(_with_flags(str(error))) from None
+        raise _refused(options, error) from None
     try:
         write(motion, target, **shape, **{name: x for name, x in given.items() if name in takes["write"]})
     except FileNotFoundError as error:  # a kernel
         raise _unreadable(error) from None
     except ValueError as error:
-        raise ValueError(_with_flags(str(error))) from None
+        raise _refused(options, error) from None
     print(f"Written\n  {target}")
     return common.OK
 
@@ -157,9 +157,17 @@ def _convert_bodies(options: argparse.Namespace) -> int:
     except (DocumentError, FileNotFoundError, IsADirectoryError) as error:
         raise _unreadable(error) from None
     except ValueError as error:
-        raise ValueError(_with_flags(str(error))) from None
+        raise _refused(options, error) from None
     print("\n".join(["Written", f"  {target}", *lines]))
     return common.OK
+
+
+def _refused(options: argparse.Namespace, error: ValueError) -> ValueError:
+    """Return the error of a conversion; one that names an option is wrong usage, and ends the command."""
+    message = _with_flags(str(error))
+    if message != str(error):
+        options.parser.error(message)
+    return error
 
 
 def _unreadable(error: Exception) -> UnreadableError:

@@ -29,6 +29,7 @@ from polhode._mechanics.parameters import (
     gains,
     named_together,
     numbers,
+    numbers_of,
     rotors,
     together,
     vectors,
@@ -155,7 +156,7 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
     body
         A `Body`, or a nested sequence or array of them, (...).
     g
-        The acceleration in m/s², (...).
+        The acceleration in m/s², (...), a number or one for each body; not a vector.
     pivot
         The fixed point in body axes, a vector or (..., 3) in m; by default the origin of these axes.
 
@@ -184,6 +185,11 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
     >>> print(f"{slow / fast:.5f}")
     1.18034
     """
+    acceleration = numbers(g, "g")
+    values = numbers_of(acceleration)
+    # Of three bodies with these values, two would have no weight.
+    if values.shape == (3, 1) and np.count_nonzero(values) == 1:
+        raise ValueError(f"g must be a number, as gravity acts along −e3, got the vector {g}; write g=9.81")
     bodies = bodies_of(body)
     if has(Inertia, bodies):
         raise TypeError("gravity needs a Body, which has a mass, got an Inertia; see ph.torque.heavy(c)")
@@ -191,7 +197,7 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
     centers = np.array([one._core.center_of_mass() for one in bodies.flat]).reshape(*bodies.shape, 3)
     return _native_law(
         "gravity",
-        numbers(g, "g"),
+        acceleration,
         numbers(masses, "the mass"),
         vectors(centers, "the centre of mass"),
         vectors(pivot, "the pivot"),

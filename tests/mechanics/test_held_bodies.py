@@ -187,6 +187,11 @@ def test_gravity_of_another_body_raises():
         ph.simulate(TOP, START, TIMES, law + ph.torque.heavy([0, 0, 0.2]))
     with pytest.raises(TypeError, match=r"gravity needs a Body.*heavy\(c\)"):
         ph.torque.gravity(TOP.inertia)
+    with pytest.raises(
+        ValueError, match=r"g must be a number, .* got the vector \[0, 0, -9.81\]; write g=9.81"
+    ):
+        ph.torque.gravity(TOP, [0, 0, -9.81])
+    assert ph.torque.gravity(TOP, [9.81, 1.6, 0]).shape == (3,)
     with pytest.raises(ValueError, match=r"the pivot is .*nan"):
         ph.torque.gravity(TOP, pivot=[0, 0, np.nan])
     # An inertia is that about the pivot.

@@ -1,5 +1,6 @@
 """``polhode fit``: data from CSV files, units, columns, errors with their places."""
 
+import io
 import json
 from pathlib import Path
 
@@ -295,6 +296,30 @@ def test_options_that_do_not_apply_are_refused(rates, tmp_path, capsys):
             main.main(["fit", *arguments])
         assert stop.value.code == 2
         assert message in capsys.readouterr().err
+
+
+def test_standard_input_and_long_units(rates, monkeypatch, capsys):
+    """Rates in degrees a day and times in days of a body that turns in as many days as seconds before."""
+    text = Path(rates).read_text()
+    rows = [[float(x) for x in line.split(",")] for line in text.splitlines()[1:]]
+    slow = "\n".join(["t,wx,wy,wz", *(",".join(map(repr, [t / 1000, *w])) for t, *w in rows)])
+    found = []
+    for content, units in ((text, UNITS), (slow, ["--time-unit", "d", "--rate-unit", "deg/day"])):
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(content.encode())))
+        assert main.main(["fit", "-", *units, "--sigma", "0.5", "--json"]) == 0
+        found.append(json.loads(capsys.readouterr().out))
+    day = 86400
+    np.testing.assert_allclose(found[1]["moments"], found[0]["moments"], rtol=1e-5)
+    np.testing.assert_allclose(np.array(found[1]["omega_body"]) * day, found[0]["omega_body"], rtol=1e-4)
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"t,wx\n")))
+    assert main.main(["fit", "-", *UNITS]) == 3
+    assert capsys.readouterr().err.startswith("<stdin>:1:1: error: the columns t, wx have neither")
+
+
+def test_a_fit_of_nothing_names_both_kinds_of_data(capsys):
+    with pytest.raises(SystemExit):
+        main.main(["fit"])
+    assert "required: FILE.csv, or --periods ROTATION PRECESSION" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

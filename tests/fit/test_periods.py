@@ -107,7 +107,7 @@ def test_published_periods_of_apophis_give_its_published_energy():
 
 def test_the_command_reports_the_modes_of_toutatis(capsys, tmp_path):
     out = tmp_path / "toutatis.json"
-    periods = ["fit", "--periods", "5.41 d", "7.35 d"]
+    periods = ["fit", "--periods", "5.41 d", "7.35d"]
     assert main.main([*periods, "--moments", "3.09", "3.22", "1", "-o", str(out)]) == 0
     text = capsys.readouterr().out
     assert text.startswith("rotation 467424 s, precession 635040 s, long-axis mode\n  omega ")
@@ -139,7 +139,7 @@ def test_the_command_reports_the_bodies_of_two_periods(capsys):
         (["--periods", "-1 d", "7.35 d"], "expected a period such as"),
         (["a.csv", "--periods", "1 d", "7 d"], "--periods takes neither a file of data nor --plot"),
         (["--moments", "1", "2", "3"], "--moments needs --periods"),
-        ([], "required: FILE.csv"),
+        (["--periods", "5.41d", "7 x"], "expected a number and a unit s, min, h or d, got '7 x'"),
     ],
 )
 def test_wrong_usage_of_periods(options, message, capsys):

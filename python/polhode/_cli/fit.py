@@ -23,9 +23,16 @@ from polhode._native import __version__
 if TYPE_CHECKING:
     from polhode._fit.result import Fit
 
-_TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _PERIODS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0}
-_RATES = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.pi / 30}
+_TIMES = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, **_PERIODS}
+_DEGREE = math.pi / 180
+_RATES = {
+    "rad/s": 1.0,
+    "deg/s": _DEGREE,
+    "deg/h": _DEGREE / 3600,
+    "deg/day": _DEGREE / 86400,
+    "rpm": math.pi / 30,
+}
 
 
 def add(commands: Any) -> None:
@@ -41,10 +48,10 @@ def add(commands: Any) -> None:
         "file of both kinds fields of one may be empty. Units are never guessed. With --periods instead of a "
         "file: the rotations of a body that a light curve with these periods leaves possible.",
     )
-    fit.add_argument("data", metavar="FILE.csv", nargs="?", help="the measured data")
-    fit.add_argument("--time-unit", metavar="UNIT", choices=_TIMES, help="unit of t: s, ms, us or ns")
+    fit.add_argument("data", metavar="FILE.csv", nargs="?", help="the measured data; - is standard input")
+    fit.add_argument("--time-unit", metavar="UNIT", choices=_TIMES, help=f"unit of t: {', '.join(_TIMES)}")
     fit.add_argument(
-        "--rate-unit", metavar="UNIT", choices=_RATES, help="unit of the rates: rad/s, deg/s or rpm"
+        "--rate-unit", metavar="UNIT", choices=_RATES, help=f"unit of the rates: {', '.join(_RATES)}"
     )
     fit.add_argument(
         "--columns",
@@ -97,7 +104,7 @@ def add(commands: Any) -> None:
         metavar=("ROTATION", "PRECESSION"),
         nargs=2,
         type=_period,
-        help='periods of a light curve, such as "5.41 d" "7.35 d" or "263 h" "27.38 h", instead of a file',
+        help='periods of a light curve, such as 5.41d 7.35d or "263 h" "27.38 h", instead of a file',
     )
     fit.add_argument(
         "--moments",
@@ -187,7 +194,7 @@ def _fitted(options: argparse.Namespace) -> Fit:
 
     error = options.parser.error
     if options.data is None:
-        error("the following arguments are required: FILE.csv")
+        error("the following arguments are required: FILE.csv, or --periods ROTATION PRECESSION")
     if options.time_unit is None:
         error("the following arguments are required: --time-unit")
     if options.free and options.torque is None:
@@ -207,7 +214,7 @@ def _fitted(options: argparse.Namespace) -> Fit:
         given["sigma_attitude"] = options.sigma if options.sigma_attitude is None else options.sigma_attitude
     if "rates" in tables:
         if options.rate_unit is None:
-            error("rates need their unit: --rate-unit rad/s, deg/s or rpm")
+            error(f"rates need their unit: --rate-unit {', '.join(_RATES)}")
         unit, table = _RATES[options.rate_unit], tables["rates"]
         given["rates"] = table.times * _TIMES[options.time_unit], table.values * unit
         given["sigma_rates"] = None if options.sigma is None else options.sigma * unit
@@ -259,10 +266,10 @@ def _columns(text: str) -> tuple[str, ...]:
 
 def _period(text: str) -> float:
     """Return a period in s."""
-    value, _, unit = text.strip().partition(" ")
-    if unit.strip() not in _PERIODS:
+    value = text.rstrip("".join(_PERIODS)).rstrip()
+    if (unit := text.removeprefix(value).strip()) not in _PERIODS:
         raise argparse.ArgumentTypeError(f"expected a number and a unit s, min, h or d, got {text!r}")
-    return positive(value, 'expected a period such as "5.41 d"') * _PERIODS[unit.strip()]
+    return positive(value, 'expected a period such as "5.41 d"') * _PERIODS[unit]
 
 
 def _positive(text: str) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,10 +37,10 @@ class Table:
 
 
 def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
-    """Return the tables ``"rates"``, ``"attitude"`` or both, from the columns of these names.
+    """Return the tables ``"rates"``, ``"attitude"`` or both of a file; ``-`` is standard input.
 
-    Names are those of `RATES`, `QUATERNION` or `BOTH`, or as many others; None for these. The first line has
-    the names of the columns, which may be quoted, separated as the numbers below: by commas, or else by
+    Names of the columns are those of `RATES`, `QUATERNION` or `BOTH`, or as many others; None for these. The
+    first line has the names, which may be quoted, separated as the numbers below: by commas, or else by
     semicolons or tabs. Empty lines and lines that begin with # are skipped. In a file of both kinds a row may
     have empty fields for one of them.
 
@@ -51,7 +52,11 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
         too few rows; with the file if it cannot be read.
     """
     try:
-        lines = contents(path, copies=4).decode("utf-8-sig").replace("\r\n", "\n").split("\n")
+        if path == Path("-"):
+            path, content = Path("<stdin>"), _standard_input()
+        else:
+            content = contents(path, copies=4)
+        lines = content.decode("utf-8-sig").replace("\r\n", "\n").split("\n")
     except OSError as error:
         raise UnreadableError(f"{path}: error: {(error.strerror or str(error)).lower()}") from None
     except UnicodeDecodeError as error:
@@ -107,6 +112,12 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
                 f"{kind}; a fit needs at least {FEWEST}"
             )
     return {kind: _table(path, own, len(columns[kind]) + 1) for kind, own in found.items()}
+
+
+def _standard_input() -> bytes:
+    if sys.stdin is None:
+        raise OSError("standard input is closed; give the path of a file")
+    return sys.stdin.buffer.read()
 
 
 def _default(path: Path, line: int, header: list[str]) -> tuple[str, ...]:

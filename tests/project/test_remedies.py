@@ -218,3 +218,27 @@ def test_errors_of_arguments_that_fit_stay():
 def test_results_have_no_public_constructor(kind, remedy, given):
     with pytest.raises(TypeError, match=f"^{kind.__name__} has no public constructor; use {remedy}$"):
         kind(*given)
+
+
+def test_attitudes_of_a_table_are_interpolated_by_a_spline():
+    motion = ph.simulate(BODY, START, [0.0, 0.5, 1.0])
+    m = ph.io.AttitudeHistory.of(motion).trajectory(BODY)
+    with pytest.raises(
+        ValueError, match=r"made of an AttitudeHistory .* ph\.RotorSpline\(m\.time, m\.rotor\)"
+    ):
+        m.at(0.3)
+    assert ph.RotorSpline(m.time, m.rotor)(0.5).is_close(motion.at(0.5).rotor)
+
+
+def test_moments_and_matrices_in_place_of_other_values():
+    with pytest.raises(TypeError, match=r"for a matrix ph\.Inertia\.from_matrix\(J\)"):
+        ph.simulate([[1, 0, 0], [0, 2, 0], [0, 0, 3]], START, [1.0])
+    for given, remedy in ((BODY, "principal_moments"), (ph.Body(1, BODY), "inertia.principal_moments")):
+        with pytest.raises(TypeError, match=f"got {type(given).__name__}; give its .{remedy}$"):
+            ph.omega_from_periods(given, 5.0, 7.0, mode="long")
+
+
+def test_the_shape_of_wheel_torques_is_named_once():
+    wheels = ph.torque.reaction_wheels([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0.1] * 3)
+    with pytest.raises(ValueError, match=r"wheel_torque must be of shape \(3,\), got \(2,\)"):
+        ph.Stepper(BODY, START, wheels).step(0.1, wheel_torque=[1, 2])

@@ -166,7 +166,9 @@ def stroboscopic(trajectory: Trajectory, plan: Plan) -> str | None:
     # Rounded to three digits, to the side on which the film is faithful.
     speed = _rounded(_QUARTER * plan.fps / rate, np.floor)
     needed = _rounded(rate * span / _QUARTER / plan.fps, np.ceil)
-    remedy = f"seconds={needed:g} or more" if needed * plan.fps <= _MOST else "film a shorter motion"
+    remedy = "film a shorter motion"
+    if needed * plan.fps <= _MOST:
+        remedy = f"seconds={needed:g} or more (--seconds {needed:g})"
     return (
         f"the film is stroboscopic: the body turns by up to {turn / (2 * np.pi):.3g} turns between frames, "
         "and beyond a quarter turn it appears to turn at another rate. The film is faithful at up to "

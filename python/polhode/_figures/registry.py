@@ -184,6 +184,8 @@ def _weight(trajectory: Trajectory, kind: str) -> Array:
 def _acting(trajectory: Trajectory) -> str:
     """Return what acts on the body, for an error message."""
     setting = trajectory._origin
+    if setting is None and trajectory.certificate.method == "samples":
+        return "the torque on this one is unknown, because its attitudes are from a table"
     if setting is None:
         return (
             "the torque on this one is unknown, because it was picked from a batch or unpickled: "

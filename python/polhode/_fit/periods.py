@@ -9,7 +9,7 @@ import numpy as np
 from polhode._algebra.constructors import bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.bodies import Body, Inertia
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._support.arrays import Array, as_components, as_float, at_index, first_index, power_of_two
 
@@ -63,6 +63,9 @@ def omega_from_periods(
     >>> round(facts["period"] / day, 3), round(facts["precession_period"] / day, 3)
     (5.41, 7.35)
     """
+    if isinstance(moments, Body | Inertia):
+        path = "inertia.principal_moments" if isinstance(moments, Body) else "principal_moments"
+        raise TypeError(f"moments must be three numbers, got {type(moments).__name__}; give its .{path}")
     rows = as_components(moments, 3, "moments")
     periods = {"rotation_period": rotation_period, "precession_period": precession_period}
     for name, period in periods.items():

@@ -585,7 +585,10 @@ def _points(masses: Any, positions: Any) -> tuple[Array, Array]:
 
 def bodies_of(body: Any) -> Any:
     """Return an object array of bodies or inertias from one or a nested sequence of them."""
-    remedy = "; for principal moments write ph.Inertia.from_principal_moments(i1, i2, i3)"
+    remedy = (
+        "; for principal moments write ph.Inertia.from_principal_moments(i1, i2, i3), for a matrix "
+        "ph.Inertia.from_matrix(J)"
+    )
     return objects_of(body, (Body, Inertia), "body must be a Body or an Inertia", remedy)
 
 

@@ -228,8 +228,9 @@ class Stepper:
         try:
             return np.ascontiguousarray(np.broadcast_to(rows, shape))
         except ValueError:
+            wanted = dict.fromkeys((str((*self.shape, count)), str((count,))))
             raise ValueError(
-                f"wheel_torque must be of shape {(*self.shape, count)} or ({count},), got {rows.shape}"
+                f"wheel_torque must be of shape {' or '.join(wanted)}, got {rows.shape}"
             ) from None
 
     def _rows(self, torque: Any) -> Array:

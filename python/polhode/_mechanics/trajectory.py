@@ -264,6 +264,11 @@ class Trajectory:
         """
         self._require_one("at", alone=True)
         if self._motion is None:
+            if self.certificate.method == "samples":
+                raise ValueError(
+                    "a trajectory made of an AttitudeHistory has no states between its times; "
+                    "ph.RotorSpline(m.time, m.rotor) interpolates the attitudes of a trajectory m"
+                )
             raise ValueError(
                 "a trajectory picked from a batch, read or unpickled has no states between its times; "
                 "simulate the body alone"

@@ -251,3 +251,15 @@ def test_a_closed_standard_input_is_an_error(monkeypatch, capsys):
     assert capsys.readouterr().err == (
         "polhode: error: standard input is closed; give the path of a scene file\n"
     )
+
+
+def test_counts_of_one_are_singular(tmp_path, command):
+    pytest.importorskip("zarr")
+    one = '[ensemble]\nnumber = 1\nattitude = "uniform"\n\n[run]'
+    (tmp_path / "one.toml").write_text(SCENE.replace("[run]", one))
+    assert ", 1 body, " in command("check", "one.toml").stdout
+    done = command("run", "one.toml", "-o", "one.zarr")
+    assert done.stdout.startswith("one.zarr: 1 of 1 body, 1 of 1 block\n")
+    done = command("run", "--status", "one.zarr")
+    assert "  done     1 block, bodies 0:1\n  missing  0 blocks\n" in done.stdout
+    assert ": 1 of 1 body\n" in command("run", "one.toml", "--no-figures").stdout

@@ -17,6 +17,7 @@ import numpy as np
 from polhode._cli import common
 from polhode._cli.common import add_amount, add_command, positive, read_scene
 from polhode._native import SceneError
+from polhode._support.words import counted
 
 if TYPE_CHECKING:
     from polhode._mechanics.bodies import Body
@@ -101,11 +102,11 @@ def _scene(path: str) -> Finding:
     except SceneError as error:
         return Finding({"scene": path, "ok": False, "errors": str(error)}, errors=[str(error)])
     facts: dict[str, Any] = {"scene": path, "ok": True, "body": repr(scene.body)}
-    words = f"{path}: ok, {scene.body!r}, {len(scene.times)} output times"
+    words = f"{path}: ok, {scene.body!r}, {counted(len(scene.times), 'output time')}"
     if scene.ensemble is not None:
         wanted = bytes_of_file(scene) if scene.ensemble.keep else scene.result_bytes
         facts |= {"bodies": scene.ensemble.number, "bytes": wanted}
-        words += f", {scene.ensemble.number} bodies, {size(wanted)} of results"
+        words += f", {counted(scene.ensemble.number, 'body')}, {size(wanted)} of results"
     return Finding(facts, [words], warnings=[*_doubts_of_angles(scene), *_doubts_of_scene(scene)])
 
 

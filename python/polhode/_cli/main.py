@@ -29,6 +29,7 @@ from polhode._cli.common import (
 )
 from polhode._native import SceneError, __version__
 from polhode._support.files import UnreadableError, words_of
+from polhode._support.words import counted
 
 if TYPE_CHECKING:
     from polhode._scene.scene import Scene
@@ -320,8 +321,8 @@ def _checked_targets(options: argparse.Namespace, scene: Scene) -> list[Path]:
     output, form = Path(options.output), form_of(options.output, "a motion")
     if scene.ensemble is not None and form != "nc":
         raise ValueError(
-            f"{output}: this scene has an ensemble of {scene.ensemble.number} bodies, which is written as "
-            f"netCDF or, of any size, as a Zarr store; use -o {output.with_suffix('.nc')} or "
+            f"{output}: this scene has an ensemble of {counted(scene.ensemble.number, 'body')}, which is "
+            f"written as netCDF or, of any size, as a Zarr store; use -o {output.with_suffix('.nc')} or "
             f"-o {output.with_suffix('.zarr')}"
         )
     require_libraries(form)

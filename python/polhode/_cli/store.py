@@ -17,6 +17,7 @@ from polhode._cli import common
 from polhode._cli.common import file_name
 from polhode._support.extras import progress_bar
 from polhode._support.files import UnreadableError
+from polhode._support.words import counted
 
 if TYPE_CHECKING:
     from polhode._report.ensemble.store import EnsembleStore
@@ -181,7 +182,7 @@ def _lines(result: dict[str, Any]) -> Iterator[str]:
     """Yield the lines of a status after the outcome."""
     for name in ("done", "missing", "corrupt"):
         ranges = ", ".join(f"{first}:{end}" for first, end in result["bodies"][name])
-        yield f"  {name:<8} {result[name]} blocks" + (f", bodies {ranges}" if ranges else "")
+        yield f"  {name:<8} {counted(result[name], 'block')}" + (f", bodies {ranges}" if ranges else "")
     if not result["shared_variables"]:
         yield "  corrupt  variables that all bodies share; --resume writes them again"
     for user in result["running"]:
@@ -223,8 +224,8 @@ def outcome(store: EnsembleStore, blocks: Iterable[int] | None = None) -> dict[s
 def as_text(result: dict[str, Any]) -> str:
     """Return the outcome in lines for a terminal."""
     lines = [
-        f"{result['store']}: {result['bodies_complete']} of {result['number']} bodies, "
-        f"{result['blocks_complete']} of {result['blocks']} blocks"
+        f"{result['store']}: {result['bodies_complete']} of {counted(result['number'], 'body')}, "
+        f"{result['blocks_complete']} of {counted(result['blocks'], 'block')}"
     ]
     for name, (drift, body) in result["worst_drift"].items():
         lines.append(f"  largest drift of {name.replace('_', ' ')}: {drift:.2g}, body {body}")

@@ -17,6 +17,7 @@ from polhode._report.ensemble.arrays import zarr
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
+from polhode._support.words import counted
 
 # Attributes that describe the file, not the body.
 _OF_FILE = ("batch_shape", "bodies_complete", "number", "varied")
@@ -157,7 +158,7 @@ def _require_done(store: EnsembleStore, body: int) -> None:
 def _require_body(name: str, body: int | None, count: int) -> int:
     if body is None:
         raise FileError(
-            f"{name}: error: the file holds {count} bodies; choose one by its number, as in body=0"
+            f"{name}: error: the file holds {counted(count, 'body')}; choose one by its number, as in body=0"
         )
     if not 0 <= body < count:
         raise FileError(f"{name}: error: body must be from 0 to {count - 1}, got {body}")

@@ -11,6 +11,7 @@ from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.scene import Scene
+from polhode._support.words import counted
 from polhode.torque import Torque
 
 # Width of the names of rows.
@@ -169,7 +170,7 @@ def _conserved(summary: dict[str, Any]) -> Iterator[Row]:
 
 
 def _run(run: dict[str, Any], kind: str) -> Iterator[Row]:
-    yield "duration", f"{time(run['duration'])}, {run['samples']} output times"
+    yield "duration", f"{time(run['duration'])}, {counted(run['samples'], 'output time')}"
     if run["method"] == "exact":
         elliptic = kind in ("free", "damped", "lagrange")
         yield "method", "exact solution in elliptic functions" if elliptic else "exact solution"

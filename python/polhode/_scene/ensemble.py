@@ -14,6 +14,7 @@ from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.state import State
 from polhode._scene.drawn import law_of_bodies
 from polhode._support.arrays import Array
+from polhode._support.words import counted
 from polhode.torque import Torque
 
 DrawnLaw = _native.Law | tuple[str, tuple[Any, ...]]
@@ -107,7 +108,9 @@ class EnsembleSpec:
         if first < 0 or count < 0:
             raise ValueError(f"first and count must not be negative, got first = {first}, count = {count}")
         if count == 0 or first + count > self.number:
-            raise ValueError(f"range {first}..{first + count} is out of bounds for {self.number} bodies")
+            raise ValueError(
+                f"range {first}..{first + count} is out of bounds for {counted(self.number, 'body')}"
+            )
         return count
 
     def draw(self, first: int = 0, count: int | None = None) -> Drawn:

@@ -19,6 +19,7 @@ from polhode._scene.scene import Scene
 from polhode._support import memory
 from polhode._support.files import check_target
 from polhode._support.locks import LockedError
+from polhode._support.words import counted
 
 
 class InterruptedRunError(KeyboardInterrupt):
@@ -109,7 +110,7 @@ def require_ensemble(scene: Scene, path: Path, bodies: tuple[int, int] | None) -
     number = scene.ensemble.number
     first, end = bodies or (0, number)
     if not 0 <= first < end <= number:
-        raise ValueError(f"range {first}:{end} of bodies is out of bounds for {number} bodies")
+        raise ValueError(f"range {first}:{end} of bodies is out of bounds for {counted(number, 'body')}")
 
 
 def _created(path: Path, scene: Scene) -> EnsembleStore:
@@ -151,4 +152,4 @@ def _part_of(progress: Report | None, done: int, count: int) -> Report | None:
 def _kept(store: EnsembleStore) -> str:
     """Return what a store has after an interrupt, and how to continue."""
     complete = sum(mark["bodies"][1] - mark["bodies"][0] for mark in store.marks())
-    return f"{store.path} has {complete} of {store.number} bodies; continue with resume (--resume)"
+    return f"{store.path} has {complete} of {counted(store.number, 'body')}; continue with resume (--resume)"

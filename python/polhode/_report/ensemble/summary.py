@@ -22,6 +22,7 @@ from polhode._report.summary import (
     torques_of,
 )
 from polhode._support.memory import size
+from polhode._support.words import counted
 
 # Angles in rad from the nominal attitude up to which it predicts the others.
 _HORIZONS = (np.radians(10), np.radians(90))
@@ -162,7 +163,7 @@ def _drawn(ensemble: dict[str, Any]) -> Iterator[Row]:
 
 def _motion(motion: dict[str, Any], bodies: int, who: str) -> Iterator[Row]:
     for regime, count in motion["regimes"].items():
-        yield "regime", f"{regime}: {count} of {bodies} bodies"
+        yield "regime", f"{regime}: {count} of {counted(bodies, 'body')}"
     for entry in motion["horizons"]:
         until = "to the end" if entry["time"] is None else f"for {time(entry['time'], 4)}"
         words = f"95 % of {who}, {until}, of the nominal one"
@@ -212,10 +213,10 @@ def _conserved(summary: dict[str, Any]) -> Iterator[Row]:
 
 
 def _run_rows(run: dict[str, Any]) -> Iterator[Row]:
-    yield "duration", f"{time(run['duration'])}, {run['samples']} output times"
+    yield "duration", f"{time(run['duration'])}, {counted(run['samples'], 'output time')}"
     for method, count in run["methods"].items():
         words = "exact solution" if method == "exact" else method
-        yield "method", f"{words}: {count} bodies" if len(run["methods"]) > 1 else words
+        yield "method", f"{words}: {counted(count, 'body')}" if len(run["methods"]) > 1 else words
     if run["steps"]:
         yield "steps", f"{run['steps']} of all bodies"
     if run["error_estimate"] is not None:
@@ -228,7 +229,7 @@ def _run_rows(run: dict[str, Any]) -> Iterator[Row]:
 def _failures(failures: dict[str, Any], bodies: int) -> Iterator[Row]:
     if not failures["count"]:
         return
-    yield "FAILED", f"{failures['count']} of {bodies} bodies failed before the end"
+    yield "FAILED", f"{failures['count']} of {counted(bodies, 'body')} failed before the end"
     for one in failures["first"]:
         yield "", f"body {one['body']}, after {number(one['time'])} s: {one['message']}"
     if failures["count"] > len(failures["first"]):

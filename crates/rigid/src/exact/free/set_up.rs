@@ -40,7 +40,8 @@ impl FreeBody {
     pub fn motion(&self) -> FreeMotion {
         let FreeBody { moments, frame, omega, .. } = *self;
         let mut alone = FreeMotions::<1>::default();
-        alone.set_up(&[*self]);
+        // One lane needs no wide instructions.
+        SetUp { bodies: &[*self], motions: &mut alone }.run::<false>();
         let flow = match alone.hyperbolic {
             Some(flow) => Form::FreeHyperbolic(flow),
             None => Form::FreeCircular(alone.circular),

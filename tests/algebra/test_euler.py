@@ -151,6 +151,18 @@ def test_quaternions_of_the_package_numpy_quaternion():
         ph.Rotor.from_numpy_quaternion(np.array([quaternion.one, quaternion.zero]))
 
 
+def test_its_euler_angles_are_about_z_y_z_of_the_moving_axes():
+    quaternion = pytest.importorskip("quaternion")
+    angles = some_angles("ZYZ", (50,))
+    R = ph.Rotor.from_euler("ZYZ", angles)
+    assert close(ph.Rotor.from_numpy_quaternion(quaternion.from_euler_angles(angles)), R, 8)
+    found = R.to_euler("ZYZ") - quaternion.as_euler_angles(R.to_numpy_quaternion())
+    # Theirs of the outer angles may differ by whole turns; near gimbal lock half of the digits are lost.
+    assert np.abs(np.sin(found / 2)).max() < 1e-7
+    with pytest.raises(AttributeError, match=r'write to_euler\("ZYZ"\)'):
+        R.as_euler_angles()
+
+
 def test_a_missing_numpy_quaternion_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "quaternion", None)
     for use in (ph.Rotor.identity().to_numpy_quaternion, lambda: ph.Rotor.from_numpy_quaternion([1])):

@@ -142,7 +142,7 @@ def test_calls_with_too_few_or_too_many_arguments_list_all(call, python, argumen
         (lambda: ph.Body.sphere(1, mass=1).centre_of_mass, "a Body .*; write center_of_mass"),
         (lambda: ph.Stepper(BODY, START).omega_body, "a Stepper .*; write state.omega_body"),
         (lambda: TURNED.as_rotation_matrix, r"a Rotor .*; write to_matrix\(\)"),
-        (lambda: ph.Rotor.from_euler_angles, r'a Rotor .*; write from_euler\("zyz", angles\)'),
+        (lambda: ph.Rotor.from_euler_angles, r'a Rotor .*; write from_euler\("ZYZ", angles\)'),
         (lambda: ph.KeplerOrbit, r".*; see polhode\.torque\.KeplerOrbit"),
         (lambda: ph.load, r".*; see polhode\.io\.read, Trajectory\.read and Scene\.read"),
     ],

@@ -73,6 +73,13 @@ _ROTOR = {
     **dict.fromkeys("wxyz", 'to_quaternion(order="wxyz")'),
 }
 
+# Of complex coefficients, which rotors do not have. Elsewhere the names are of quaternions.
+_PARTS = {
+    "conj": "~R",
+    "imag": 'grade(2), or to_quaternion(order="xyzw")[..., :3]',
+    "real": 'R["1"]',
+}
+
 # Of plane-based algebras, as in kingdon, ganja.js and text books.
 PGA = {
     "distance": "(L & P).norm() for a line or plane L of norm 1 and a point P",
@@ -102,6 +109,8 @@ def add_to(multivector: type, rotor: type) -> None:
     """Give both classes the names of other libraries."""
     _add(multivector, _MULTIVECTOR)
     _add(rotor, _ROTOR)
+    for name, ours in _PARTS.items():
+        setattr(rotor, name, ForeignName(name, ours))
 
 
 def with_foreign_names(names: Mapping[str, str]) -> Callable[[type[T]], type[T]]:

@@ -451,3 +451,18 @@ def test_operations_do_not_change_their_operands():
         assert np.array_equal(array, before)
         assert np.array_equal(A.components, kept)
     assert (e1, e2, e3) == (ph.vector([1, 0, 0]), ph.vector([0, 1, 0]), ph.vector([0, 0, 1]))
+
+
+# --- arrays with labels
+
+
+@pytest.mark.parametrize("library", ["pandas", "xarray"])
+@pytest.mark.parametrize("value", [e1, 1 + e1, ph.Rotor.identity(), ph.vector(np.eye(3))], ids=repr)
+@pytest.mark.parametrize("operate", [*OPERATORS, operator.truediv, operator.eq])
+def test_arrays_with_labels_are_no_operands(operate, value, library):
+    module = pytest.importorskip(library)
+    make = {"pandas": ("Series", "DataFrame", "Index"), "xarray": ("DataArray",)}[library]
+    for labelled in (getattr(module, kind)([1.0, 2.0, 3.0]) for kind in make):
+        for operands in ((value, labelled), (labelled, value)):
+            with pytest.raises(TypeError, match=r"does not combine with .*pass its numbers, x\.values"):
+                operate(*operands)

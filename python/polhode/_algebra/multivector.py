@@ -89,6 +89,8 @@ class Multivector(_native.Multivector):
 
     __slots__ = ()
     __array_ufunc__ = _ufuncs.Override()
+    __pandas_priority__ = 5000  # above its own types, so that they leave operators to values
+    variable = _ufuncs.OperandOfXarray("variable", "x.values")
     __sympy__ = False  # and so do SymPy expressions, without converting it
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
 

@@ -1,12 +1,17 @@
-"""NumPy's universal functions of values: ``np.exp(A)`` is ``A.exp()``, an array times a value a product."""
+"""NumPy's universal functions of values, and operands of pandas and xarray.
+
+``np.exp(A)`` is ``A.exp()``, an array times a value a product.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from polhode import _native
+from polhode._algebra.coefficients import LABELLED
+from polhode._algebra.foreign_names import ForeignName
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -66,6 +71,18 @@ def applied(_value: Multivector, function: Any, method: str, *inputs: Any, **opt
         f"np.{name} does not accept {what}; use the operators and methods of multivectors, or NumPy on their "
         ".components"
     )
+
+
+class OperandOfXarray(ForeignName):
+    """The attribute ``variable``, which xarray reads of an operand beside a DataArray or Dataset.
+
+    A TypeError, which no default hides: xarray would wrap the product of its numbers and the value.
+    """
+
+    def __get__(self, value: Any, owner: Any = None) -> NoReturn:
+        if value is None:
+            raise AttributeError(self.name)
+        raise TypeError(LABELLED.format("arrays of xarray"))
 
 
 def _refused(_: Any) -> Any:

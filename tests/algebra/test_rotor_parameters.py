@@ -1,7 +1,9 @@
 """Axis and angle, modified Rodrigues parameters, Davenport angles and multivectors, with SciPy as peer."""
 
+import jax
 import numpy as np
 import pytest
+import sympy
 from hypothesis import given
 from scipy.spatial.transform import Rotation
 
@@ -250,3 +252,47 @@ def test_jax():
             Rotor.from_multivector(2.0 * theirs)
         made = Rotor.from_multivector(1.01 * theirs).components
         np.testing.assert_allclose(made, rows, rtol=0, atol=4 * EPS)
+
+
+# --- degrees
+
+A_ROTOR, BASIS = ph.Rotor.from_rotation_vector([0.1, 0.2, 0.3]), np.eye(3)
+IN_DEGREES = [
+    lambda x: ph.Rotor.from_euler("ZYX", BASIS[0], x),
+    lambda x: A_ROTOR.to_euler("ZYX", x),
+    lambda x: ph.Rotor.from_axis_angle(BASIS[0], 1, x),
+    lambda x: ph.Rotor.from_plane_angle(BASIS[0], 1, x),
+    lambda x: A_ROTOR.plane_angle(x)[1],
+    lambda x: ph.Rotor.from_rotation_vector(BASIS[0], x),
+    lambda x: A_ROTOR.to_rotation_vector(x),
+    lambda x: ph.Rotor.from_davenport(BASIS, "i", BASIS[0], x),
+    lambda x: A_ROTOR.to_davenport(BASIS, "i", x),
+]
+
+
+@pytest.mark.parametrize("call", IN_DEGREES)
+def test_degrees_is_true_or_false(call):
+    for yes, no in ((True, False), (np.True_, np.False_), (1, 0)):
+        assert np.all(call(yes) == call(True))
+        assert np.all(call(no) == call(False))
+    assert not np.all(call(True) == call(False))
+    for wrong in ("rad", "deg", None, 2, 1.0, [True]):
+        with pytest.raises(TypeError, match=r"^degrees must be True or False, got "):
+            call(wrong)
+
+
+def test_rotation_vectors_and_planes_in_degrees():
+    v = np.random.default_rng(1).uniform(-90, 90, (5, 3))
+    theirs = Rotation.from_rotvec(v, degrees=True)
+    R = ph.Rotor.from_rotation_vector(v, degrees=True)
+    assert close(R, ph.Rotor.from_scipy(theirs), 8)
+    assert np.allclose(R.to_rotation_vector(degrees=True), theirs.as_rotvec(degrees=True), rtol=16 * EPS)
+    B, theta = R.plane_angle(degrees=True)
+    assert close(ph.Rotor.from_plane_angle(B, theta, degrees=True), R, 8)
+    assert close(ph.Rotor.from_plane_angle(B, theta, True, errors="mask"), R, 8)
+    masked = ph.Rotor.from_rotation_vector([[0, 0, 60], [np.nan, 0, 0]], True, errors="mask")
+    assert np.degrees(masked[0].angle) == pytest.approx(60)
+    exact = ph.Rotor.from_plane_angle(e1 ^ e2, sympy.Integer(60), degrees=True)
+    assert exact.plane_angle(degrees=True)[1] == 60
+    traced = jax.jit(lambda x: ph.Rotor.from_rotation_vector(x, True).to_rotation_vector(True))(v[0])
+    assert np.allclose(traced, v[0], rtol=1e-5)

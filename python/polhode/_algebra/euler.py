@@ -52,22 +52,6 @@ def _lettered(seq: object) -> str:
     return f"; write {digits.translate(str.maketrans('123', 'XYZ'))!r} for turns about body axes"
 
 
-def to_radians(angles: Any) -> Any:
-    """Convert angles in degrees to radians."""
-    d = kind_of(angles)
-    if isinstance(d, Exact):
-        return np.frompyfunc(lambda x: exact.divide(x * exact.pi_beside(x, d.pi), 180), 1, 1)(angles)
-    return angles * (math.pi / 180)
-
-
-def to_degrees(angles: Any) -> Any:
-    """Convert angles in radians to degrees."""
-    d = kind_of(angles)
-    if isinstance(d, Exact):
-        return np.frompyfunc(lambda x: 180 * x / exact.pi_beside(x, d.pi), 1, 1)(angles)
-    return angles * (180 / math.pi)
-
-
 def angles_of(wxyz: Any, seq: str) -> Any:
     """Return the angles (..., 3) about the axes `seq` of quaternions (..., 4).
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode import _generic, _native
+from polhode._algebra.angles import DEGREE, in_degrees, to_degrees, to_radians
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.constructors import from_axial, one_grade, vector
 from polhode._algebra.grades import held, with_grades
@@ -53,7 +53,8 @@ def from_axis_angle(axis: Any, angle: Any, degrees: bool = False, *, errors: Err
     """
     if errors != "raise":
         return masked(errors, lambda n, theta: from_axis_angle(n, theta, degrees), (axis, 1), (angle, 0))
-    if (found := _native.rotor_from_turn(axis, 1, angle, math.pi / 180 if degrees else 1.0)) is not None:
+    scale = 1.0 if degrees is False or not in_degrees(degrees) else DEGREE
+    if (found := _native.rotor_from_turn(axis, 1, angle, scale)) is not None:
         return found
     given = (
         one_grade(axis, 1, "the axis") if isinstance(axis, Multivector) else vector(_triples(axis, "an axis"))
@@ -219,11 +220,7 @@ def to_davenport(R: Rotor, axes: Any, order: str, degrees: bool = False) -> Any:
     found = kind_of(angles).stack([alpha, sign * (beta - lead), gamma])
     if is_float(R._data):
         found = found.astype(R.dtype)
-    if not degrees:
-        return found
-    from polhode._algebra import euler
-
-    return euler.to_degrees(found)
+    return to_degrees(found) if in_degrees(degrees) else found
 
 
 def _as_symbols(x: Any) -> Any:
@@ -345,8 +342,4 @@ def _triples(values: Any, what: str) -> Any:
 
 def _radians(angle: Any, degrees: bool) -> Any:
     theta = as_coefficients(angle, "angle")
-    if not degrees:
-        return theta
-    from polhode._algebra import euler
-
-    return euler.to_radians(theta)
+    return to_radians(theta) if in_degrees(degrees) else theta

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from polhode._algebra import matrices as _matrices
 from polhode._algebra import parameters as _parameters
 from polhode._algebra import quaternions as _quaternions
 from polhode._algebra import signs as _signs
+from polhode._algebra.angles import DEGREE, in_degrees, to_degrees, to_radians
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, taken
 from polhode._algebra.foreign_names import add_to
 from polhode._algebra.masking import Errors, masked
@@ -113,8 +113,8 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor._from_rows(computed("from_components", components(c4, 4, "rotor")))
 
     @staticmethod
-    def from_plane_angle(B: Any, theta: Any, *, errors: Errors = "raise") -> Rotor:
-        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored.
+    def from_plane_angle(B: Any, theta: Any, degrees: bool = False, *, errors: Errors = "raise") -> Rotor:
+        """``exp(−Bθ/2)``: turn by theta, in radians, in the plane and sense of B, whose norm is ignored.
 
         B is a bivector, or an array or list (..., 3) of its components over ``(e2e3, e3e1, e1e2)``, which are
         those of the axis: ``[0, 0, 1]`` is the plane e1∧e2.
@@ -128,11 +128,16 @@ class Rotor(_native.Rotor, Multivector):
         (0.5 e1 + 0.8660254 e2, e3)
         """
         if errors != "raise":
-            return masked(errors, Rotor.from_plane_angle, (B, 1), (theta, 0))
-        if (found := _native.rotor_from_turn(B, 2, theta, 1.0)) is not None:
+            return masked(
+                errors, lambda b, angle: Rotor.from_plane_angle(b, angle, degrees), (B, 1), (theta, 0)
+            )
+        scale = 1.0 if degrees is False or not in_degrees(degrees) else DEGREE
+        if (found := _native.rotor_from_turn(B, 2, theta, scale)) is not None:
             return found
         plane = triples(B, 2, "the plane")
         angle = number_like(theta, "angle", plane)
+        if degrees:
+            angle = to_radians(angle)
         if is_float(plane) and is_float(angle):
             angle = angle[..., np.newaxis]  # a column, beside the plane
         return Rotor._from_rows(computed("from_plane_angle", plane, angle))
@@ -159,20 +164,27 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor._from_rows(computed("from_vectors", first, second))
 
     @staticmethod
-    def from_rotation_vector(v: Any, *, errors: Errors = "raise") -> Rotor:
+    def from_rotation_vector(v: Any, degrees: bool = False, *, errors: Errors = "raise") -> Rotor:
         """From vectors (..., 3) along the axis, whose length is the angle in radians; an array or vectors.
+
+        In degrees with ``degrees=True``.
 
         Examples
         --------
         >>> R = ph.Rotor.from_rotation_vector([0, 0, np.pi / 3])
         >>> R(ph.e1)
         0.5 e1 + 0.8660254 e2
+        >>> bool(R.is_close(ph.Rotor.from_rotation_vector([0, 0, 60], degrees=True)))
+        True
         """
         if errors != "raise":
-            return masked(errors, Rotor.from_rotation_vector, (v, 1))
-        if (found := _native.rotor_from("rotation vector", v)) is not None:
+            return masked(errors, lambda rows: Rotor.from_rotation_vector(rows, degrees), (v, 1))
+        converts = degrees is not False and in_degrees(degrees)
+        if not converts and (found := _native.rotor_from("rotation vector", v)) is not None:
             return found
         given = triples(v, 1, "a rotation vector")
+        if converts:
+            given = to_radians(given)
         return Rotor._from_rows(computed("from_rotation_vector", given))
 
     @staticmethod
@@ -195,10 +207,9 @@ class Rotor(_native.Rotor, Multivector):
         >>> R.to_euler("ZYX", degrees=True).round(6)
         array([60., 20., 10.])
         """
-        if errors == "raise":
-            found = _native.rotor_from_euler(seq, angles, math.pi / 180 if degrees else 1.0)
-            if found is not None:
-                return found
+        scale = 1.0 if degrees is False or not in_degrees(degrees) else DEGREE
+        if errors == "raise" and (found := _native.rotor_from_euler(seq, angles, scale)) is not None:
+            return found
         from polhode._algebra import euler
 
         if errors != "raise":
@@ -213,7 +224,7 @@ class Rotor(_native.Rotor, Multivector):
                 f"sequence {seq!r} needs {len(axes)} angles in the last axis, got shape {tuple(theta.shape)}"
             )
         if degrees:
-            theta = euler.to_radians(theta)
+            theta = to_radians(theta)
         planes = np.eye(3)[axes]
         turns = [
             Rotor.from_plane_angle(Multivector._of(plane, _BIVECTOR), theta[..., k])
@@ -277,8 +288,10 @@ class Rotor(_native.Rotor, Multivector):
         wxyz = computed("to_quaternion", self._data)
         return wxyz if wxyz_first else taken(wxyz, [1, 2, 3, 0])
 
-    def to_rotation_vector(self) -> Any:
+    def to_rotation_vector(self, degrees: bool = False) -> Any:
         """Return vectors (..., 3) along the axis whose length is the angle in radians, at most π.
+
+        In degrees with ``degrees=True``.
 
         Examples
         --------
@@ -286,9 +299,9 @@ class Rotor(_native.Rotor, Multivector):
         >>> (R * R).to_rotation_vector()
         array([0.2, 0.4, 0.6])
         """
-        if (found := _native.rotor_to("rotation vector", self)) is not None:
-            return found
-        return computed("to_rotation_vector", self._data)
+        if (found := _native.rotor_to("rotation vector", self)) is None:
+            found = computed("to_rotation_vector", self._data)
+        return found if degrees is False or not in_degrees(degrees) else to_degrees(found)
 
     def to_euler(self, seq: str, degrees: bool = False) -> Any:
         """Return Euler angles (..., 3) in radians about the three axes `seq`, named as in `from_euler`.
@@ -308,29 +321,31 @@ class Rotor(_native.Rotor, Multivector):
         >>> R.to_euler("xyz", degrees=True).round(6)
         array([10., 20., 60.])
         """
-        if (found := _native.rotor_to_euler(seq, self)) is not None:
-            return found * (180 / math.pi) if degrees else found
-        from polhode._algebra import euler
+        if (found := _native.rotor_to_euler(seq, self)) is None:
+            from polhode._algebra import euler
 
-        angles = euler.angles_of(self.to_quaternion(order="wxyz"), seq)
-        return euler.to_degrees(angles) if degrees else angles
+            found = euler.angles_of(self.to_quaternion(order="wxyz"), seq)
+        return found if degrees is False or not in_degrees(degrees) else to_degrees(found)
 
-    def plane_angle(self) -> tuple[Multivector, Any]:
+    def plane_angle(self, degrees: bool = False) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2.
+
+        θ is in degrees with ``degrees=True``.
 
         Examples
         --------
-        >>> B, theta = ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True).plane_angle()
+        >>> B, theta = ph.Rotor.from_axis_angle(ph.e3, 60, degrees=True).plane_angle(degrees=True)
         >>> B
         e1∧e2
-        >>> print(np.degrees(theta).round(6))
+        >>> print(theta.round(6))
         60.0
         """
-        if not is_float(self._data):
+        if is_float(self._data):
+            pairs = computed("plane_angle", self._data)
+            plane, angle = pairs[..., :3], pairs[..., 3][()]
+        else:
             plane, angle = _generic.rotors.plane_angle(kind_of(self._data), self._data)
-            return Multivector._of(plane, _BIVECTOR), angle
-        pairs = computed("plane_angle", self._data)
-        return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
+        return Multivector._of(plane, _BIVECTOR), to_degrees(angle) if in_degrees(degrees) else angle
 
     def distance(self, other: Rotor) -> Any:
         """Return the angle in [0, π] of the rotation from this attitude to the other.

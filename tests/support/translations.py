@@ -26,9 +26,9 @@ class Line:
     ours: str
 
 
-def code(text):
-    """The first Python block."""
-    return re.search(r"```python\n(.*?)```", text, flags=re.DOTALL)[1]
+def code(text, place=0):
+    """A Python block, by default the first."""
+    return re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)[place]
 
 
 def lines(text):

@@ -117,32 +117,15 @@ _LATER = {
     for name in names.split()
 }
 _MODULES = ("event", "force", "io", "jax", "torque")
-# What other libraries call them.
-_HABITS = {
-    "Cl": "algebra",
-    "KeplerOrbit": "torque.KeplerOrbit",
-    "Layout": "algebra",
-    "MultiVector": "multivector",
-    "Quaternion": "Rotor",
-    "RigidBody": "Body",
-    "Rotation": "Rotor",
-    "RotationSpline": "RotorSpline",
-    "Slerp": "slerp",
-    "load": "io.read, Trajectory.read and Scene.read",
-    "read": "io.read, Trajectory.read and Scene.read",
-    **{
-        name: f"Multivector.{name}"
-        for name in ("dot", "exp", "inverse", "log", "norm", "reverse", "sqrt", "wedge")
-    },
-}
 
 
 def __getattr__(name: str) -> Any:
     if name in _MODULES:
         return importlib.import_module(f"polhode.{name}")
     if name not in _LATER:
-        hint = f"; see polhode.{_HABITS[name]}" if name in _HABITS else ""
-        raise AttributeError(f"module 'polhode' has no attribute {name!r}{hint}")
+        from polhode._support.package_names import missing
+
+        raise missing(name)
     value = getattr(importlib.import_module(f"polhode.{_LATER[name]}"), name)
     globals()[name] = value
     return value

@@ -14,10 +14,12 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.blade_names import Blades, generators_of
 from polhode._algebra.coefficients import as_coefficients, duplicate
+from polhode._algebra.foreign_tables import ALGEBRA
 from polhode._algebra.grades import mask_of
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
 from polhode._support.arrays import Shape, batch_shape, normal_numbers
+from polhode._support.calls import takes_components
 
 
 @joins(_native.Algebra)
@@ -47,7 +49,7 @@ class Algebra(_native.Algebra):
     __slots__ = ()
 
     # What other libraries call them, and what to write.
-    _foreign_names: ClassVar[Mapping[str, str]] = {}
+    _foreign_names: ClassVar[Mapping[str, str]] = ALGEBRA
 
     def __init__(self, *_signature: Any, **_named: Any) -> None:
         # Values of equal algebras that are not the same object do not mix.
@@ -151,6 +153,7 @@ class Algebra(_native.Algebra):
         """
         return self._single(x, "scalar", 0, dtype)
 
+    @takes_components
     def vector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
         """Create vectors from an array (..., n) over the generators.
 
@@ -161,6 +164,7 @@ class Algebra(_native.Algebra):
         """
         return self._of_grade(components, "vector", 1, dtype, copy)
 
+    @takes_components
     def bivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
         """Create bivectors from an array (..., n(n−1)/2) over the basis bivectors in their order.
 
@@ -193,6 +197,7 @@ class Algebra(_native.Algebra):
         """
         return self._single(x, "pseudoscalar", self.dimension, dtype)
 
+    @takes_components
     def multivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
         """Create multivectors from an array (..., 2**n) over the whole basis.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -21,6 +21,22 @@ class Blades(dict[str, "Multivector"]):
     def __init__(self, algebra: Algebra, elements: dict[str, Multivector]) -> None:
         super().__init__(elements)
         self._algebra = algebra
+
+    def __contains__(self, name: object) -> bool:
+        return self.get(name) is not None
+
+    def get(self, name: Any, default: Any = None) -> Any:
+        """Return an element by any of its names, or the default."""
+        try:
+            return self[name]
+        except KeyError:
+            return default
+
+    def __getattr__(self, name: str) -> NoReturn:
+        if name.startswith("_"):  # while a copy is built
+            raise AttributeError(name)
+        remedy = f'; write blades["{name}"]' if name in self else ""
+        raise AttributeError(f"the blades of {self._algebra} have no attribute {name!r}{remedy}")
 
     def __missing__(self, name: Any) -> Multivector:
         named = self._algebra._named()

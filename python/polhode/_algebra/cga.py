@@ -19,12 +19,14 @@ from polhode._algebra.euclidean import (
     unit_in,
     vector_in,
 )
+from polhode._algebra.foreign_tables import CGA as CGA_NAMES
 from polhode._algebra.functions import as_precise
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._support.arrays import is_float, power_of_two
+from polhode._support.calls import takes_components
 
 
 class CGA(Algebra):
@@ -61,6 +63,8 @@ class CGA(Algebra):
 
     __slots__ = ()
 
+    _foreign_names = CGA_NAMES
+
     def __repr__(self) -> str:
         return f"cga({self._n})"
 
@@ -96,6 +100,7 @@ class CGA(Algebra):
 
     # --- points
 
+    @takes_components
     def up(self, x: Any) -> Multivector:
         """Return the points ``eo + x + ½ x² einf`` at the positions x.
 
@@ -112,6 +117,7 @@ class CGA(Algebra):
         one = kind.divide(kind.zeros_like(half) + 1, 2)
         return self.vector(kind.stack([*parts, half - one, half + one]))
 
+    @takes_components
     def point(self, x: Any) -> Multivector:
         """Return `up(x)`.
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _generic, _native
+from polhode._algebra.foreign_values import refuse_operand
 from polhode._support.arrays import (
     as_floats,
     in_aligned_memory,
@@ -22,8 +23,6 @@ from polhode._support.arrays import (
 from polhode._support.extras import register_pytree
 
 _COMPLEX = (np.dtype(np.complex128), np.dtype(np.complex64))
-# For arrays of pandas and xarray, whose labels no value can keep.
-LABELLED = "a multivector does not combine with {}; pass its numbers, x.values"
 _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
 
 
@@ -147,17 +146,10 @@ def scalars(value: Any, like: Any) -> Any:
             single = is_float(like) and np.result_type(like, value) == np.float32
             return numbers.astype(np.float32) if single else numbers
     elif not isinstance(value, Real):
-        refuse_labelled(value)
+        refuse_operand(value)
         if foreign_kind(value) is None:
             return None
     return as_coefficients(value, "scalar", complex_too=True)[..., None]
-
-
-def refuse_labelled(value: Any) -> None:
-    """Raise a TypeError for an array of pandas or xarray as an operand."""
-    library = type(value).__module__.partition(".")[0]
-    if library in ("pandas", "xarray"):
-        raise TypeError(LABELLED.format(f"{library}.{type(value).__name__}"))
 
 
 def number_like(value: Any, what: str, like: Any) -> Any:

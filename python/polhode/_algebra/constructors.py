@@ -13,6 +13,7 @@ from polhode._algebra.grades import with_grades
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.products import coerced
 from polhode._support.arrays import Array, as_components, mapped
+from polhode._support.calls import takes_components
 from polhode._support.memory import require_array
 
 _G3 = algebra(3)
@@ -33,6 +34,7 @@ def scalar(a: Any, *, dtype: Any = None) -> Multivector:
     return _G3.scalar(a, dtype=dtype)
 
 
+@takes_components
 def vector(xyz: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
     """Create vectors ``x e1 + y e2 + z e3`` from an array (..., 3).
 
@@ -49,9 +51,10 @@ def vector(xyz: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
     >>> ph.vector([[1, 0, 0], [3, 4, 0]]).norm()
     array([1., 5.])
     """
-    return _G3.vector(xyz, dtype=dtype, copy=copy)
+    return _G3._wrapped(xyz, "vector", 3, 0b0010, dtype, copy)
 
 
+@takes_components
 def bivector(c3: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
     """Create bivectors ``x e2∧e3 + y e3∧e1 + z e1∧e2`` from an array (..., 3).
 
@@ -64,7 +67,7 @@ def bivector(c3: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
     >>> ph.bivector([0, 0, 2]) == (2 * ph.e1).wedge(ph.e2)
     True
     """
-    return _G3.bivector(c3, dtype=dtype, copy=copy)
+    return _G3._wrapped(c3, "bivector", 3, 0b0100, dtype, copy)
 
 
 def trivector(b: Any, *, dtype: Any = None) -> Multivector:
@@ -80,6 +83,7 @@ def trivector(b: Any, *, dtype: Any = None) -> Multivector:
     return _G3._single(b, "trivector", 3, dtype)
 
 
+@takes_components
 def multivector(c8: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
     """Create multivectors from an array (..., 8) over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``.
 
@@ -93,7 +97,7 @@ def multivector(c8: Any, *, dtype: Any = None, copy: bool = True) -> Multivector
     >>> M.grade(2)
     2 e1∧e2
     """
-    return _G3.multivector(c8, dtype=dtype, copy=copy)
+    return _G3._wrapped(c8, "multivector", 8, _ALL, dtype, copy)
 
 
 def cross(a: Multivector, b: Multivector) -> Multivector:

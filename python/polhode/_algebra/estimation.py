@@ -11,11 +11,13 @@ import numpy as np
 
 from polhode._algebra.coefficients import as_coefficients, foreign_kind, kind_of
 from polhode._algebra.constructors import one_grade, vector
+from polhode._algebra.foreign_values import remedy_for
 from polhode._algebra.grades import stack
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._support.arrays import Shape, is_float, lengths, power_of_two
+from polhode._support.calls import explains_calls
 
 _NO_MEAN = "the rotors have no mean: two attitudes are equally close to all of them"
 _PARALLEL = (
@@ -31,6 +33,7 @@ _MIRRORED = "b is a mirror image of a, and two rotations fit it equally well; ch
 _RATIOS = (2.0**-400, 2.0**400)
 
 
+@explains_calls
 def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None) -> Rotor:
     """Return the mean attitude of a batch, for any signs: the Q that minimises ``Σ w |R − Q|²``.
 
@@ -57,7 +60,10 @@ def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None)
     >>> print(np.degrees(ph.mean(R, weights=[3, 1]).angle).round(1))
     15.0
     """
-    rotors = stack(R) if isinstance(R, list | tuple) and R else R
+    listed = isinstance(R, list | tuple) and R
+    if remedy := remedy_for(R[0] if listed else R, "T.mean() for a batch T of transforms"):
+        raise TypeError(f"mean needs rotors, got {type(R[0] if listed else R).__name__}{remedy}")
+    rotors = stack(R) if listed else R
     if not isinstance(rotors, Rotor) or not all(rotors.shape):
         raise ValueError(f"mean needs rotors, at least one, got {R!r}")
     kind = _numbers(rotors, weights)
@@ -151,6 +157,7 @@ class Alignment(NamedTuple):
     covariance: Any
 
 
+@explains_calls(return_sensitivity="ph.align(a, b).covariance")
 def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> Alignment:
     """Return the rotation of a to b: the rotor R that minimises ``Σ w |b − R a ~R|²``.
 
@@ -292,7 +299,8 @@ def _rows(values: Any, what: str) -> Any:
     data = as_coefficients(values, what)
     if len(data.shape) < 2 or data.shape[-1] != 3 or not data.shape[-2]:
         raise ValueError(
-            f"{what} needs vectors (..., n) or an array (..., n, 3), got shape {tuple(data.shape)}"
+            f"{what} needs vectors (..., n) or an array (..., n, 3), got shape {tuple(data.shape)}; for one "
+            "pair of directions write Rotor.from_vectors(a, b)"
         )
     return data
 

@@ -45,11 +45,15 @@ def axes_of(seq: str, lengths: tuple[int, ...]) -> list[int]:
 
 
 def _lettered(seq: object) -> str:
-    """Return the remedy for a sequence of digits, as in aerospace: ``321`` turns about body axes."""
-    digits = str(seq)
-    if not re.fullmatch("[123]{1,3}", digits):
-        return ""
-    return f"; write {digits.translate(str.maketrans('123', 'XYZ'))!r} for turns about body axes"
+    """Return the remedy for a sequence of other libraries: ``321`` of aerospace, ``rzyx`` of transforms3d."""
+    text = str(seq)
+    if re.fullmatch("[123]{1,3}", text):
+        return f"; write {text.translate(str.maketrans('123', 'XYZ'))!r} for turns about body axes"
+    if re.fullmatch("s[xyz]{3}", text):
+        return f"; write {text[1:]!r} for turns about fixed axes"
+    if re.fullmatch("r[xyz]{3}", text):
+        return f"; write {text[1:].upper()!r} for turns about body axes"
+    return ""
 
 
 def angles_of(wxyz: Any, seq: str) -> Any:

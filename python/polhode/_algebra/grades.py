@@ -12,6 +12,7 @@ import numpy as np
 from polhode import _generic, _native
 from polhode._algebra.coefficients import as_coefficients, common, duplicate, kind_of, namespace
 from polhode._algebra.coefficients import reshaped as coefficients_reshaped
+from polhode._algebra.foreign_values import remedy_for
 from polhode._algebra.products import coerced, common_algebra
 from polhode._support.arrays import Shape, is_float, new
 from polhode._support.memory import require_array
@@ -246,10 +247,14 @@ def _unified(
     given: Any = values
     if isinstance(values, _native.Multivector) and not given.shape:
         raise TypeError(f"{name} takes a list of values, as in {name}([a, b]), got the single value {values}")
-    items = list(values)
+    of_transforms = f"RigidTransform.{name}([S, T])"
+    if remedy := remedy_for(given, of_transforms):
+        raise TypeError(f"{name} joins multivectors, got {type(values).__name__}{remedy}")
+    items: list[Any] = list(values)
     for i, item in enumerate(items):
         if not isinstance(item, _native.Multivector):
-            raise TypeError(f"{name} joins multivectors; item {i} is {type(item).__name__}")
+            remedy = remedy_for(item, of_transforms)
+            raise TypeError(f"{name} joins multivectors; item {i} is {type(item).__name__}{remedy}")
     if not items:
         raise ValueError(f"{name} needs at least one value")
     algebra, mask = items[0].algebra, 0

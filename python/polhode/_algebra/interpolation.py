@@ -10,12 +10,13 @@ import numpy as np
 from polhode import _generic, _native
 from polhode._algebra.coefficients import foreign_kind, kind_of, number_like
 from polhode._algebra.constructors import bivector
+from polhode._algebra.foreign_values import remedy_for
 from polhode._algebra.grades import stack
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.signs import half_turn
 from polhode._support.arrays import Array, as_floats, at_index, first_index, frozen, is_float, power_of_two
-from polhode._support.calls import explains_calls_of
+from polhode._support.calls import explains_calls, explains_calls_of
 
 
 @overload
@@ -64,7 +65,8 @@ def _slerp_of_versors(R: Any, S: Any, t: Any) -> Any:
     for value in (R, S):
         if not isinstance(value, Multivector) or any(k % 2 for k in value.grades):
             found = f"the grades {value.grades}" if isinstance(value, Multivector) else type(value).__name__
-            raise TypeError(f"slerp needs rotors, or motors and other even versors, got {found}")
+            remedy = remedy_for(value, "S.interpolate(T, t)")
+            raise TypeError(f"slerp needs rotors, or motors and other even versors, got {found}{remedy}")
     step = ~R * S / (R * ~R).grade(0)
     shorter = step._like(_shorter(step._data, step.grade(0)._data))
     return R * shorter**t
@@ -156,6 +158,7 @@ class RotorSpline:
         """
         return Rotor.from_components(self._values)
 
+    @explains_calls(order="spline.omega_body(t) for order 1, spline.alpha_body(t) for order 2")
     def __call__(self, t: Any) -> Rotor:
         """Return the rotors at the times t (...)."""
         s, rate, _, beyond = self._at(t)

@@ -36,8 +36,20 @@ def from_matrix(m: Any, nearest: bool = False, *, errors: Errors = "raise") -> R
     """
     if errors != "raise":
         return masked(errors, lambda rows: from_matrix(rows, nearest), (m, 2))
-    if not nearest and (found := _native.rotor_from("matrix", m)) is not None:
-        return found
+    if nearest:
+        return _from_any_matrix(m, True)
+    try:
+        found = _native.rotor_from("matrix", m)
+        return found if found is not None else _from_any_matrix(m, False)
+    except ValueError as error:
+        if "not a rotation matrix" not in str(error):
+            raise
+        message = f"{error}, or take the nearest rotation with nearest=True"
+    raise ValueError(message)
+
+
+def _from_any_matrix(m: Any, nearest: bool) -> Rotor:
+    """Return rotors of matrices that the native function does not cover."""
     matrices = as_coefficients(m, "rotation matrix")
     if tuple(matrices.shape[-2:]) != (3, 3):
         raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}")

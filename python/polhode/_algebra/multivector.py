@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Self, overload
+from typing import TYPE_CHECKING, Any, NoReturn, Self, overload
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from polhode._algebra.masking import masked
 from polhode._algebra.native import joins
 from polhode._algebra.products import coerced, product
 from polhode._support.arrays import Shape, copied
+from polhode._support.calls import explains_calls
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -228,12 +229,22 @@ class Multivector(_native.Multivector):
             ) from None
         return self._like(picked)
 
+    def __setitem__(self, index: Any, value: object) -> NoReturn:
+        raise TypeError(
+            "multivectors are immutable; change an array, c = A.components, and make a new value of it, as "
+            "by ph.vector(c)"
+        )
+
     def __iter__(self) -> Iterator[Self]:
+        if not self.shape:
+            raise TypeError("a single multivector has no length and no items; its numbers are .components")
         return (self[i] for i in range(len(self)))
 
     reshape = _grades.reshaped
     sum = _grades.summed
-    mean = _grades.averaged
+    mean = explains_calls(weights="ph.mean(R, weights) for rotors, (A * w).sum() / w.sum() for others")(
+        _grades.averaged
+    )
 
     def __float__(self) -> float:
         """Return a single scalar as a float; other grades must be absent or exactly 0."""
@@ -269,9 +280,8 @@ class Multivector(_native.Multivector):
 
     def __array_function__(self, function: Any, *_: object) -> Any:
         # Otherwise np.array_equal is False, and the errors of other functions do not help.
-        raise TypeError(
-            f"np.{function.__name__} does not accept multivectors; use their methods or their .components"
-        )
+        remedy = _ufuncs.remedy_of(function.__name__, "use their methods or their .components")
+        raise TypeError(f"np.{function.__name__} does not accept multivectors; {remedy}")
 
     def __repr__(self) -> str:
         from polhode._algebra import format as _format
@@ -357,6 +367,17 @@ class Multivector(_native.Multivector):
         return product(name, self, right, out)
 
     anticommutator = _products.anticommutator
+
+    def __matmul__(self, other: Any) -> NoReturn:
+        raise TypeError(
+            "@ is the product of matrices; write A * B for the geometric product and that of rotors, R(a) to "
+            "turn a"
+        )
+
+    def __rmatmul__(self, other: Any) -> NoReturn:
+        raise TypeError(
+            "@ is the product of matrices; for a matrix M and a vector a write ph.vector(M @ a.components)"
+        )
 
     __pow__ = _functions.power
     __rpow__ = _functions.power_of

@@ -14,6 +14,7 @@ from polhode._algebra.grades import held, with_grades
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float, power_of_two
+from polhode._support.calls import explains_calls
 
 if TYPE_CHECKING:
     from polhode._algebra.rotor import Rotor
@@ -88,6 +89,7 @@ def angle(R: Rotor) -> Any:
     return R.canonical().plane_angle()[1]
 
 
+@explains_calls(degrees="np.degrees(R.angle)")
 def magnitude(R: Rotor) -> Any:
     """Return the angle of the rotation in [0, π], as SciPy's method of this name: `angle`.
 

@@ -18,7 +18,7 @@ from polhode._algebra.euclidean import (
     unit_in,
     vector_in,
 )
-from polhode._algebra.foreign_names import PGA as PGA_NAMES
+from polhode._algebra.foreign_tables import PGA as PGA_NAMES
 from polhode._algebra.functions import as_precise
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.relabel import embedded, relabelled
@@ -26,6 +26,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._algebra.versors import small
 from polhode._support.arrays import copied, is_float, new
+from polhode._support.calls import takes_components
 
 
 class PGA(Algebra):
@@ -87,6 +88,7 @@ class PGA(Algebra):
 
     # --- points, planes and lines
 
+    @takes_components
     def point(self, x: Any) -> Multivector:
         """Return points at the positions x, of weight 1.
 
@@ -98,6 +100,7 @@ class PGA(Algebra):
         v = vector_in(self._space, x, "the position")
         return self._vector(kind_of(v._data).zeros_like(v._data[..., :1]) + 1, v).right_complement()
 
+    @takes_components
     def direction(self, x: Any) -> Multivector:
         """Return points at infinity in the directions x; a motion turns, but does not shift them.
 

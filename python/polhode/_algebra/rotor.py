@@ -15,6 +15,7 @@ from polhode._algebra import signs as _signs
 from polhode._algebra.angles import DEGREE, in_degrees, to_degrees, to_radians
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, taken
 from polhode._algebra.foreign_names import add_to
+from polhode._algebra.foreign_values import remedy_for
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
@@ -360,7 +361,9 @@ class Rotor(_native.Rotor, Multivector):
         40.0
         """
         if not isinstance(other, Rotor):
-            raise TypeError(f"distance needs another rotor, got {type(other).__name__}")
+            raise TypeError(
+                f"distance needs another rotor, got {type(other).__name__}{remedy_for(other, 'T.rotor')}"
+            )
         if (found := _native.distance_between(self, other)) is not None:
             return found[()]
         # Half the angle has the cosine |⟨~R S⟩| and the sine |⟨~R S⟩₂| = |⟨~R (S ∓ R)⟩₂|, since ~R R is a

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.coefficients import LABELLED
 from polhode._algebra.foreign_names import ForeignName
+from polhode._algebra.foreign_values import LABELLED
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -41,6 +41,30 @@ _OPERATORS = {
 }
 
 
+# Functions of arrays that have another name for values, and what to write.
+_OURS = {
+    "allclose": "np.all(A.is_close(B))",
+    "array_equal": "np.all(A == B)",
+    "concatenate": "ph.concatenate([A, B])",
+    "cross": "ph.cross(a, b)",
+    "dot": "A.dot(B)",
+    "inner": "A.dot(B)",
+    "inv": "A.inverse()",
+    "isclose": "A.is_close(B)",
+    "isfinite": "A.is_finite()",
+    "isinf": "A.is_finite()",
+    "isnan": "A.is_finite()",
+    "matmul": "R * S for rotors, ph.vector(M @ a.components) for a matrix M",
+    "mean": "A.mean()",
+    "norm": "A.norm()",
+    "reshape": "A.reshape(shape)",
+    "round": "A.map(np.round)",
+    "stack": "ph.stack([A, B])",
+    "sum": "A.sum()",
+    "vdot": "A.scalar_product(B)",
+}
+
+
 class Override:
     """The attribute ``__array_ufunc__``: the function for NumPy, which asks the type, None on values.
 
@@ -67,10 +91,13 @@ def applied(_value: Multivector, function: Any, method: str, *inputs: Any, **opt
             return getattr(inputs[0], _METHODS[function])()
     name = function.__name__ if method == "__call__" else f"{function.__name__}.{method}"
     what = "these operands with out" if "out" in options else "these operands"
-    raise TypeError(
-        f"np.{name} does not accept {what}; use the operators and methods of multivectors, or NumPy on their "
-        ".components"
-    )
+    remedy = remedy_of(name, "use the operators and methods of multivectors, or NumPy on their .components")
+    raise TypeError(f"np.{name} does not accept {what}; {remedy}")
+
+
+def remedy_of(function: str, others: str) -> str:
+    """Return what to write instead of a function of NumPy, and what else can be used."""
+    return f"write {_OURS[function]}, or {others}" if function in _OURS else others
 
 
 class OperandOfXarray(ForeignName):

@@ -175,7 +175,10 @@ def new(shape: Shape, dtype: Any) -> Array:
 def normal_numbers(shape: Shape, rng: np.random.Generator | int | None, what: str) -> Array:
     """Return random numbers of the standard normal distribution; `what` has them, for errors."""
     require_array(shape, what)
-    generator, numbers = np.random.default_rng(rng), np.empty(shape)
+    try:
+        generator, numbers = np.random.default_rng(rng), np.empty(shape)
+    except TypeError:
+        raise TypeError(f"rng must be a NumPy generator, a whole number or None, got {rng!r}") from None
     line = numbers.reshape(-1)
     for first in range(0, line.size, _DRAWN):  # Ctrl-C stops between them
         generator.standard_normal(out=line[first : first + _DRAWN])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
 from functools import partial, wraps
-from typing import Any, ParamSpec, TypeVar, get_args
+from typing import Any, ParamSpec, TypeVar, get_args, overload
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -46,9 +47,50 @@ _OURS: dict[str, tuple[str, ...]] = {
 }
 
 
-def explains_calls(function: Callable[P, T]) -> Callable[P, T]:
-    """Make the TypeError for arguments that do not fit name the one that is probably meant, or all."""
-    return _with_message(function, partial(_misfit, function))
+Message = Callable[[tuple[Any, ...], Mapping[str, Any], str], str]
+
+
+@overload
+def explains_calls(function: Callable[P, T], /) -> Callable[P, T]: ...
+
+
+@overload
+def explains_calls(**remedies: str) -> Callable[[Callable[P, T]], Callable[P, T]]: ...
+
+
+def explains_calls(function: Any = None, /, **remedies: str) -> Any:
+    """Make the TypeError for arguments that do not fit name the one that is probably meant, or all.
+
+    `remedies` say what to write for an argument that the function does not have; the first one also for
+    too many arguments by position.
+    """
+    if function is None:
+        return partial(_explaining, remedies)
+    return _explaining(remedies, function)
+
+
+def _explaining(remedies: Mapping[str, str], function: Callable[P, T]) -> Callable[P, T]:
+    # The name of the result may change: methods of values are functions under another name.
+    explained = _with_message(function, lambda _, named, error: _misfit(explained, remedies, named, error))
+    return explained
+
+
+def takes_components(function: Callable[P, T]) -> Callable[P, T]:
+    """Make the TypeError for components as several arguments, or by name, show the call with a list."""
+
+    def message(arguments: tuple[Any, ...], named: Mapping[str, Any], error: str) -> str:
+        method = "self" in inspect.signature(function).parameters
+        name, values = function.__name__, arguments[1:] if method else arguments
+        if len(values) > 1:
+            listed = ", ".join(map(repr, values))
+            return f"{name} takes one list of components; write {'A' if method else 'ph'}.{name}([{listed}])"
+        if blades := [key for key in named if re.fullmatch(r"e\d+", key)]:
+            algebra = "A" if method else "ph.algebra(3)"
+            terms = " + ".join(f'{named[key]!r} * {algebra}.blades["{key}"]' for key in blades)
+            return f"{name} takes no components by name; write {terms}"
+        return _misfit(function, {}, named, error)
+
+    return _with_message(function, message)
 
 
 def explains_calls_of(kind: type[T]) -> type[T]:
@@ -63,7 +105,9 @@ def explains_calls_of(kind: type[T]) -> type[T]:
     return kind
 
 
-def _misfit(function: Callable[..., Any], named: list[str], error: str) -> str:
+def _misfit(
+    function: Callable[..., Any], remedies: Mapping[str, str], named: Mapping[str, Any], error: str
+) -> str:
     """Return the message for a call with keywords whose arguments do not fit, from that of Python."""
     import difflib  # here, because it takes a millisecond of the import
 
@@ -73,9 +117,13 @@ def _misfit(function: Callable[..., Any], named: list[str], error: str) -> str:
     remedy = f"its arguments are {_listed(shown)}{_values(function, shown)}"
     unknown = [name for name in named if name not in wanted]
     if not unknown:
+        if remedies and "positional" in error and "given" in error:
+            remedy = f"write {next(iter(remedies.values()))}"
         return f"{error.replace('.__init__()', '()')}; {remedy}"
     meant = [ours for ours in _OURS.get(unknown[0].lower(), ()) if ours in names]
-    if meant := meant or difflib.get_close_matches(unknown[0].lower(), names, 1):
+    if unknown[0] in remedies:
+        remedy = f"write {remedies[unknown[0]]}"
+    elif meant := meant or difflib.get_close_matches(unknown[0].lower(), names, 1):
         values = _values(function, [x for x in shown if x.name in meant])
         remedy = f"write {' or '.join(f'{ours}=' for ours in meant)}{values}"
     title = function.__qualname__.removesuffix(".__init__")
@@ -107,8 +155,8 @@ def made_by(remedy: str) -> Callable[[type[T]], type[T]]:
     return explained
 
 
-def _with_message(function: Callable[P, T], message: Callable[[list[str], str], str]) -> Callable[P, T]:
-    """Replace the TypeError for arguments that do not fit, given the keywords and Python's message."""
+def _with_message(function: Callable[P, T], message: Message) -> Callable[P, T]:
+    """Replace the TypeError for arguments that do not fit, given these arguments and Python's message."""
 
     @wraps(function)
     def call(*arguments: P.args, **named: P.kwargs) -> T:
@@ -117,7 +165,7 @@ def _with_message(function: Callable[P, T], message: Callable[[list[str], str], 
         except TypeError as error:
             if _fit(function, *arguments, **named):
                 raise
-            text = message(list(named), str(error))
+            text = message(arguments, named, str(error))
         raise TypeError(text)
 
     return call

@@ -1,0 +1,212 @@
+"""Names of other libraries for values, rotors, transforms and algebras, and what to write instead.
+
+Each text begins with an expression of a value of that class, or with one of A, B (multivectors), a, b
+(vectors), R, S (rotors), T (a transform), P (a point), L (a line), X, Y (values of the algebra).
+"""
+
+BLADES = ("e1", "e2", "e3", "e12", "e13", "e23", "e31", "e123")
+_IMMUTABLE = "which is immutable"
+
+# As in clifford, kingdon, galgebra, ganja.js and SymPy.
+MULTIVECTOR = {
+    **dict.fromkeys(("allclose", "almost_equal", "isclose"), "is_close(B)"),
+    "angle": "Rotor.from_vectors(a, b).angle, the angle between two vectors",
+    "as_array": "dense()",
+    **dict.fromkeys(("ccon", "Conjugate", "conjugate"), "clifford_conjugate()"),
+    "clean": "map(lambda c: np.where(abs(c) < eps, 0, c))",
+    "coordinates": "ph.pga(3).coordinates(P), with the algebra of the value",
+    "copy": f"A itself, {_IMMUTABLE}",
+    "cp": "commutator(B)",
+    "acp": "anticommutator(B)",
+    "cross": "ph.cross(a, b)",
+    **dict.fromkeys(("doit", "expand", "trigsimp"), "map(sympy.expand), with any function of SymPy"),
+    "Dual": "dual(), or right_complement() of a degenerate metric",
+    "evalf": "astype(float)",
+    "even": "grade(0, 2), the even grades",
+    **dict.fromkeys(("factorise", "factorize"), "factor()"),
+    **dict.fromkeys(("flatten", "ravel"), "reshape(-1)"),
+    "get_grade": "grade(2)",
+    **dict.fromkeys(("g_invol", "gradeInvol", "involute", "Involute"), "grade_involution()"),
+    "gp": "A * B",
+    "hodge": "right_complement()",
+    "integrate": "map(lambda c: sympy.integrate(c, x))",
+    **dict.fromkeys(
+        ("hitzer_inverse", "inv", "leftLaInv", "rightLaInv", "rightInv", "shirokov_inverse"), "inverse()"
+    ),
+    "ip": "A | B",
+    "items": "dict(zip(A.algebra.blades, A.dense()))",
+    "keys": "grades",
+    "lc": "left_contraction(B)",
+    **dict.fromkeys(("length", "Length", "magnitude"), "norm()"),
+    **dict.fromkeys(("mag2", "norm2", "normsq"), "norm_squared()"),
+    "ndim": "len(A.shape)",
+    **dict.fromkeys(("normal", "normalize", "Normalized", "unit"), "normalized()"),
+    "odd": "grade(1, 3), the odd grades",
+    "op": "A ^ B",
+    **dict.fromkeys(("outerexp", "OuterExp"), "outer_exp()"),
+    **dict.fromkeys(("proj", "project_in_blade"), "project(B)"),
+    "rc": "right_contraction(B)",
+    **dict.fromkeys(("adjoint", "rev", "Reverse"), "reverse()"),
+    **dict.fromkeys(("rotate", "rotate_multivector"), "R(a) for a rotor R"),
+    "round": "map(np.round)",
+    "rp": "A & B",
+    "scalar": 'A["1"]',
+    "size": "math.prod(A.shape)",
+    "sp": "scalar_product(B)",
+    "sw": "R >> A for a versor R",
+    "tolist": "components.tolist()",
+    "value": "dense() or components",
+    "values": "components",
+    "x": 'A["e1"]',
+    "y": 'A["e2"]',
+    "z": 'A["e3"]',
+    **{name: f'A["{name}"]' for name in BLADES},
+}
+
+_WXYZ, _XYZW = 'to_quaternion(order="wxyz")', 'to_quaternion(order="xyzw")'
+_VECTORS = ("from_two_vectors", "between", "FromTwoVectors", "setFromTwoVectors")
+_AXIS = "to_rotation_vector(), or plane_angle() for the plane and the angle"
+
+# As in SciPy, numpy-quaternion and other libraries of rotations.
+ROTOR = {
+    "act": "R(a)",
+    "adjoint": "to_matrix()",
+    "align": "ph.align(a, b), or Rotor.from_vectors(a, b) for two directions",
+    "align_vectors": "ph.align(a, b), which takes the target last",
+    "angularDistance": "distance(S)",
+    "approx_equal": "distance(S) or is_close(S, rtol, atol)",
+    "as_davenport": "to_davenport(axes, order)",
+    "as_euler": "to_euler(seq)",
+    "as_euler_angles": 'to_euler("ZYZ")',
+    "as_mrp": "to_mrp()",
+    **dict.fromkeys(("compose", "multiply"), "S * R, which turns by R first"),
+    "concatenate": "ph.stack([R, S]), or ph.concatenate([R, S]) of batches",
+    "conjugate": "~R",
+    "copy": f"R itself, {_IMMUTABLE}",
+    "create_group": "group(name)",
+    "degrees": "np.degrees(R.angle)",
+    "euler": "to_euler(seq)",
+    **dict.fromkeys(("from_dcm", "from_rotation_matrix", "from_rotmat"), "from_matrix(M)"),
+    "from_euler_angles": 'from_euler("ZYZ", angles)',
+    "from_float_array": 'from_quaternion(q, order="wxyz")',
+    "from_quat": 'from_quaternion(q, order="xyzw")',
+    **dict.fromkeys(
+        ("from_rpy", "from_rpy_radians"), 'from_euler("xyz", angles), the angles roll, pitch, yaw'
+    ),
+    "from_rotvec": "from_rotation_vector(v)",
+    **dict.fromkeys(_VECTORS, "Rotor.from_vectors(a, b)"),
+    **dict.fromkeys(("from_x_radians", "Rx"), "Rotor.from_axis_angle(ph.e1, theta)"),
+    **dict.fromkeys(("from_y_radians", "Ry"), "Rotor.from_axis_angle(ph.e2, theta)"),
+    **dict.fromkeys(("from_z_radians", "Rz"), "Rotor.from_axis_angle(ph.e3, theta)"),
+    **dict.fromkeys(("interp", "interpolate", "slerp"), "ph.slerp(R, S, t)"),
+    "inv": "~R or inverse()",
+    **dict.fromkeys(("is_unit", "normalize"), "R itself, whose norm is 1"),
+    "plane": "plane_angle()",
+    "radians": "angle",
+    "rotate": "R(a)",
+    "rpy": 'to_euler("xyz"), the angles roll, pitch, yaw',
+    "sample_uniform": "Rotor.random(shape)",
+    "scalar": 'R["1"]',
+    "single": "not R.shape",
+    "stack": "ph.stack([R, S])",
+    **dict.fromkeys(
+        ("as_dcm", "as_matrix", "as_rotation_matrix", "dcm", "matrix", "rotation_matrix", "to_dcm"),
+        "to_matrix()",
+    ),
+    "transformation_matrix": "RigidTransform.from_rotation(R).as_matrix()",
+    **dict.fromkeys(("as_axis_angle", "axis", "get_axis", "to_axis_angle"), _AXIS),
+    **dict.fromkeys(("as_rotation_vector", "as_rotvec", "rotvec", "to_rotvec"), "to_rotation_vector()"),
+    **dict.fromkeys(("as_float_array", "elements", "quaternion", "w", "wxyz", "x", "y", "z"), _WXYZ),
+    **dict.fromkeys(("as_quat", "quat", "to_quat", "xyzw"), _XYZW),
+    "vec": f"{_XYZW}[..., :3]",
+    "yaw_pitch_roll": 'to_euler("ZYX")',
+}
+
+# Of complex coefficients, which rotors do not have. Elsewhere the names are of quaternions.
+PARTS_OF_ROTORS = {
+    "conj": "~R",
+    "imag": f"grade(2), or {_XYZW}[..., :3]",
+    "real": 'R["1"]',
+}
+
+# As in SciPy, spatialmath, jaxlie and Pinocchio.
+TRANSFORM = {
+    **dict.fromkeys(("act", "transform", "transform_point", "transform_points"), "apply(x)"),
+    "actInv": "apply(x, inverse=True)",
+    **dict.fromkeys(("Ad", "Adjoint"), "adjoint()"),
+    **dict.fromkeys(("allclose", "isclose"), "is_close(S)"),
+    **dict.fromkeys(
+        ("A", "homogeneous", "as_homogeneous", "matrix", "to_matrix", "to_homogeneous"), "as_matrix()"
+    ),
+    "as_euler": "rotor.to_euler(seq)",
+    "as_quat": f"rotor.{_XYZW}",
+    **dict.fromkeys(("as_rotation", "attitude", "orientation"), "rotor"),
+    "components": "as_components()",
+    **dict.fromkeys(("compose", "multiply"), "S * T, which moves by T first"),
+    "copy": f"T itself, {_IMMUTABLE}",
+    "distance": "(~S * T).as_exp_coords()",
+    "dual_quaternion": "as_dual_quat()",
+    **dict.fromkeys(("exp", "Exp"), "RigidTransform.from_exp_coords(xi)"),
+    "from_rotation_and_translation": "RigidTransform(R, a)",
+    "from_rotor": "RigidTransform.from_rotation(R)",
+    "Identity": "RigidTransform.identity()",
+    **dict.fromkeys(("interp", "slerp"), "interpolate(S, t)"),
+    **dict.fromkeys(("log", "Log"), "as_exp_coords()"),
+    "motor": "to_motor()",
+    "ndim": "len(T.shape)",
+    **dict.fromkeys(("p", "position", "origin", "t", "trans"), "translation"),
+    "R": "rotor, or rotor.to_matrix()",
+    "random": "RigidTransform(Rotor.random(), a)",
+    "reshape": "RigidTransform(T.rotor.reshape(shape), T.translation.reshape(shape))",
+    "Rt": "as_components()",
+    "size": "math.prod(T.shape)",
+    "sum": "mean()",
+}
+
+# As in clifford, kingdon and galgebra.
+ALGEBRA = {
+    **dict.fromkeys(("bases", "basis", "blades_list"), "blades"),
+    "basis_vectors_lst": "basis_vectors",
+    "bivectors": "bivector(components)",
+    **dict.fromkeys(("d", "dims", "n"), "dimension"),
+    "evenmv": "multivector(components).grade(0, 2)",
+    "gaDims": "size",
+    **dict.fromkeys(("mv", "MultiVector"), "multivector(components)"),
+    "oddmv": "multivector(components).grade(1, 3)",
+    "p": "signature[0]",
+    "q": "signature[1]",
+    "r": "signature[2]",
+    **dict.fromkeys(("pseudoScalar", "pss", "ps"), "I"),
+    "purevector": "k_vector(k, components)",
+    "randomMV": "random()",
+    **dict.fromkeys(("metric", "sig"), "signature"),
+}
+
+# Of plane-based algebras, as in kingdon, ganja.js and text books.
+PGA = {
+    **ALGEBRA,
+    "distance": "(L & P).norm() for a line L and a point P of norm 1",
+    "ideal_point": "direction(x)",
+    "join": "P & Q",
+    "meet": "X ^ Y",
+    "project": "(X | Y) / Y",
+    "rotor": "(-θ/2 * L).exp() for the rotation by θ about a line L of norm 1",
+    "translation": "translator(t)",
+}
+
+# Of conformal algebras, as in clifford and text books.
+CGA = {
+    **ALGEBRA,
+    **dict.fromkeys(("e_inf", "n_inf", "ni", "ninf", "einfinity"), "einf"),
+    **dict.fromkeys(("e_o", "no", "origin"), "eo"),
+    "E0": "A.einf ^ A.eo",
+    "distance": "float(-2 * (P | Q)) ** 0.5 for points P, Q of weight 1",
+    "en": "basis_vectors[-1]",
+    "ep": "basis_vectors[-2]",
+    "homo": "P / -(P | A.einf)",
+    **dict.fromkeys(("normalized", "normalize_point"), "P / -(P | A.einf)"),
+    "join": "P ^ Q",
+    "project": "(X | Y) / Y",
+    "rotation": "rotor(R)",
+    "translation": "translator(t)",
+}

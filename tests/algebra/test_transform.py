@@ -69,9 +69,9 @@ def test_batches(transforms):
         RigidTransform(ph.Rotor.identity(2), np.zeros((3, 3)))
     with pytest.raises(TypeError, match="no length"):
         len(transforms[0])
-    # Like rotors, transforms are not empty containers.
-    assert transforms[0]
-    assert transforms[:0]
+    for one in (transforms[0], transforms[:0]):
+        with pytest.raises(TypeError, match="no truth value"):
+            bool(one)
 
 
 def test_values_are_kept(transforms):
@@ -80,7 +80,12 @@ def test_values_are_kept(transforms):
     with pytest.raises(AttributeError, match="immutable"):
         transforms.rotor = ph.Rotor.identity()
     assert str(RigidTransform(translation=[1, 0, 0])) == "RigidTransform(rotor=1, translation=e1)"
-    assert str(transforms) == "RigidTransform(batch (6,))"
+    first = f"rotor={transforms[0].rotor}, translation={transforms[0].translation}"
+    assert str(transforms).startswith(f"RigidTransform of shape (6,):\n[{first},\n rotor=")
+    assert str(RigidTransform.identity(9)).endswith(",\n …,\n rotor=1, translation=0]")
+    assert f"{RigidTransform(translation=[1, 2, 0]):.1f}" == (
+        "RigidTransform(rotor=1.0, translation=1.0 e1 + 2.0 e2)"
+    )
     assert RigidTransform.identity() == RigidTransform()
 
 

@@ -85,9 +85,14 @@ def _numbers(data: Any) -> Any:
 
 def _shown(array: Any, axes: int, write: Callable[[Any], str], more: str) -> list[str]:
     """Return lines of the first and last values of a batch, of `axes` axes each."""
-    flat = array.reshape(-1, *array.shape[-axes:])
-    lines = [write(one) for one in (flat if len(flat) <= _SHOWN else flat[: _SHOWN - 1])]
-    return [*lines, more, write(flat[-1])] if len(flat) > _SHOWN else lines
+    return first_and_last(array.reshape(-1, *array.shape[-axes:]), write, more)
+
+
+def first_and_last(values: Any, write: Callable[[Any], str], more: str = "…") -> list[str]:
+    """Return lines of the first and last of many values, or of all if they are few."""
+    count = len(values)
+    lines = [write(values[i]) for i in range(count if count <= _SHOWN else _SHOWN - 1)]
+    return [*lines, more, write(values[count - 1])] if count > _SHOWN else lines
 
 
 def _displayed(name: str, array: Any, axes: int, write: Callable[[Any], str]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -19,12 +19,17 @@ from polhode._algebra.coefficients import (
 from polhode._algebra.constructors import one_grade, scalar
 from polhode._algebra.estimation import mean
 from polhode._algebra.euclidean import vector_in
+from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_tables import TRANSFORM
+from polhode._algebra.foreign_values import remedy_for
+from polhode._algebra.format import first_and_last
 from polhode._algebra.grades import concatenate, stack
 from polhode._algebra.motors import columns, is_motor, of_columns, places
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.screws import adjoint_matrix, screw_parameters
 from polhode._support.arrays import Array, Shape, is_float, power_of_two
+from polhode._support.calls import explains_calls_of
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
@@ -34,6 +39,8 @@ if TYPE_CHECKING:
 _MOTORS = algebra(3, 0, 1)
 
 
+@with_foreign_names(TRANSFORM)
+@explains_calls_of
 class RigidTransform:
     """A rigid displacement ``y = R x ~R + x0`` (handout eq. 4.1), or a batch of them.
 
@@ -69,6 +76,7 @@ class RigidTransform:
     """
 
     __slots__ = ("rotor", "translation")
+    __array_ufunc__ = None  # NumPy leaves operators to transforms
 
     rotor: Rotor
     translation: Multivector
@@ -78,8 +86,8 @@ class RigidTransform:
             rotor = Rotor.identity()
         if not isinstance(rotor, Rotor):
             raise TypeError(
-                f"rotor must be a Rotor, got {type(rotor).__name__}; RigidTransform.from_components takes "
-                "SciPy's rotations too"
+                f"rotor must be a Rotor, got {type(rotor).__name__}; see RigidTransform.from_matrix for "
+                "matrices (..., 4, 4), from_components and from_scipy for values of SciPy"
             )
         moved = _as_vector(translation, "the translation")
         try:
@@ -262,8 +270,8 @@ class RigidTransform:
         return RigidTransform.from_components(*transform.as_components())
 
     @staticmethod
-    def concatenate(transforms: Iterable[RigidTransform]) -> RigidTransform:
-        """Join transforms and batches of them along the first axis.
+    def concatenate(transforms: RigidTransform | Iterable[RigidTransform]) -> RigidTransform:
+        """Join transforms and batches of them along the first axis; a transform itself stays as it is.
 
         Examples
         --------
@@ -271,7 +279,10 @@ class RigidTransform:
         >>> ph.RigidTransform.concatenate([T, ph.RigidTransform()]).shape
         (3,)
         """
-        parts = [part if part.shape else part._reshaped((1,)) for part in transforms]
+        if isinstance(transforms, RigidTransform):
+            return transforms
+        given = [_required(part, f"item {i} of concatenate") for i, part in enumerate(transforms)]
+        parts = [part if part.shape else part._reshaped((1,)) for part in given]
         rotor, translation = ([getattr(part, name) for part in parts] for name in ("rotor", "translation"))
         return RigidTransform(concatenate(rotor), concatenate(translation))
 
@@ -285,7 +296,7 @@ class RigidTransform:
         >>> ph.RigidTransform.stack([T, T, T]).shape
         (3, 2)
         """
-        parts = list(transforms)
+        parts = [_required(part, f"item {i} of stack") for i, part in enumerate(transforms)]
         return RigidTransform(stack(part.rotor for part in parts), stack(part.translation for part in parts))
 
     # --- converters
@@ -422,8 +433,17 @@ class RigidTransform:
 
     def __mul__(self, other: RigidTransform) -> RigidTransform:
         if not isinstance(other, RigidTransform):
-            return NotImplemented
+            _refuse(self, "*", other)
         return RigidTransform(self.rotor * other.rotor, self.apply(other.translation))
+
+    def __rmul__(self, other: object) -> NoReturn:
+        _refuse(other, "*", self)
+
+    def __matmul__(self, other: object) -> NoReturn:
+        _refuse(self, "@", other)
+
+    def __rmatmul__(self, other: object) -> NoReturn:
+        _refuse(other, "@", self)
 
     def inv(self) -> RigidTransform:
         """Return the transform that moves back.
@@ -468,6 +488,7 @@ class RigidTransform:
         >>> start.interpolate(end, 0.25).translation
         e1
         """
+        _required(other, "the other transform")
         step: RigidTransform = (self.inv() * other) ** t
         return self * step
 
@@ -508,13 +529,28 @@ class RigidTransform:
             raise TypeError("a single transform has no length; only batches have")
         return self.shape[0]
 
-    def __bool__(self) -> bool:
-        return True
+    def __bool__(self) -> NoReturn:
+        raise TypeError("a transform has no truth value; compare it with == or is_close")
 
     def __getitem__(self, index: Any) -> RigidTransform:
+        if isinstance(index, str):
+            raise TypeError(
+                f"a transform has no component {index!r}; those of its parts are T.rotor[name] and "
+                "T.translation[name]"
+            )
+        if not self.shape:
+            raise IndexError(
+                f"a single transform has no batch to index, got [{index!r}]; its parts are .rotor and "
+                ".translation, its matrix .as_matrix()"
+            )
         return RigidTransform(self.rotor[index], self.translation[index])
 
+    def __setitem__(self, index: Any, value: object) -> NoReturn:
+        raise TypeError("transforms are immutable; join parts with RigidTransform.concatenate")
+
     def __iter__(self) -> Iterator[RigidTransform]:
+        if not self.shape:
+            raise TypeError("a single transform is not iterable; its parts are .as_components()")
         return (self[i] for i in range(len(self)))
 
     def __eq__(self, other: object) -> Any:
@@ -534,13 +570,21 @@ class RigidTransform:
         >>> bool((T * T.inv()).is_close(ph.RigidTransform(), atol=1e-12))
         True
         """
+        _required(other, "the other transform")
         near = self.rotor.distance(other.rotor) <= rtol
         return near & self.translation.is_close(other.translation, rtol, atol)
 
     def __repr__(self) -> str:
-        if self.shape:
-            return f"RigidTransform(batch {self.shape})"
-        return f"RigidTransform(rotor={self.rotor}, translation={self.translation})"
+        return format(self)
+
+    def __format__(self, spec: str) -> str:
+        """Return the text with each component in this format: ``f"{T:.3f}"``."""
+        if not self.shape:
+            return f"RigidTransform(rotor={self.rotor:{spec}}, translation={self.translation:{spec}})"
+        rows = first_and_last(
+            self._reshaped((-1,)), lambda T: f"rotor={T.rotor:{spec}}, translation={T.translation:{spec}}"
+        )
+        return f"RigidTransform of shape {self.shape}:\n[" + ",\n ".join(rows) + "]"
 
     def _reshaped(self, shape: Sequence[int]) -> RigidTransform:
         return RigidTransform(self.rotor.reshape(*shape), self.translation.reshape(*shape))
@@ -548,6 +592,42 @@ class RigidTransform:
     def _nearer(self) -> RigidTransform:
         """Return the same transform with the rotor of a turn of at most π."""
         return RigidTransform(self.rotor.canonical(), self.translation)
+
+
+def _required(value: Any, what: str) -> RigidTransform:
+    """Return a transform; a TypeError, with the function that converts, for anything else."""
+    if isinstance(value, RigidTransform):
+        return value
+    if isinstance(value, Rotor):
+        remedy = "; write RigidTransform.from_rotation(R)"
+    elif _is_matrix(value):
+        remedy = "; write RigidTransform.from_matrix(M)"
+    else:
+        remedy = remedy_for(value)
+    raise TypeError(f"{what} must be a RigidTransform, got {type(value).__name__}{remedy}")
+
+
+def _refuse(left: object, operator: str, right: object) -> NoReturn:
+    """Raise a TypeError for an operator whose operands are not two transforms joined by ``*``."""
+    named = [_named(left, "S"), _named(right, "T")]
+    if None not in named:
+        raise TypeError(f"transforms are joined by *, of two transforms; write {named[0]} * {named[1]}")
+    other = left if named[0] is None else right
+    remedy = remedy_for(other) or "; write T.apply(x) to move points"
+    raise TypeError(f"{operator} of a RigidTransform needs another one, got {type(other).__name__}{remedy}")
+
+
+def _named(value: object, name: str) -> str | None:
+    """Return what to write for an operand that is a transform or converts to one."""
+    if isinstance(value, RigidTransform):
+        return name
+    if isinstance(value, Rotor):
+        return "RigidTransform.from_rotation(R)"
+    return "RigidTransform.from_matrix(M)" if _is_matrix(value) else None
+
+
+def _is_matrix(value: object) -> bool:
+    return not isinstance(value, Multivector) and tuple(getattr(value, "shape", ()))[-2:] == (4, 4)
 
 
 def _as_vector(value: Any, what: str) -> Multivector:

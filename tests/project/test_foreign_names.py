@@ -1,0 +1,245 @@
+"""Names and calls of other libraries are errors, and what these tell to write works."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+import sympy
+from scipy.spatial import transform as scipys
+
+import polhode as ph
+from polhode import I, RigidTransform, Rotor, e1, e2
+from polhode._algebra import foreign_tables, ufuncs
+from polhode._support import package_names
+
+# --- what the tables tell to write
+
+x = sympy.Symbol("x")
+V, PLANE, SPHERES = ph.vector(np.eye(3)), ph.pga(3), ph.cga(3)
+BASE = {
+    "np": np,
+    "ph": ph,
+    "math": math,
+    "sympy": sympy,
+    "Rotor": Rotor,
+    "RigidTransform": RigidTransform,
+    "a": V,
+    "b": Rotor.random(rng=4)(V),
+    "A": 1 + e1 + I,
+    "B": e1 ^ e2,
+    "R": Rotor.random(rng=1),
+    "S": Rotor.random(rng=2),
+    "T": RigidTransform(Rotor.random(rng=3), e1),
+    "theta": 0.3,
+    "t": 0.5,
+    "seq": "zyx",
+    "name": "C3",
+    "M": np.eye(3),
+    "angles": [0.1, 0.2, 0.3],
+    "q": [1, 0, 0, 0],
+    "v": [1, 2, 3],
+    "shape": (),
+    "eps": 0.1,
+    "axes": np.eye(3),
+    "order": "e",
+    "rtol": 0.1,
+    "atol": 0.1,
+    "x": [1, 2, 3],
+    "xi": np.ones(6),
+    "k": 1,
+}
+OF_PLANES = {
+    "A": PLANE,
+    "P": PLANE.point([1, 2, 3]),
+    "Q": PLANE.point([0, 0, 1]),
+    "θ": 0.3,
+    "t": [1, 2, 3],
+    "L": PLANE.line([0, 0, 0], [1, 0, 0]),
+    "X": PLANE.plane([1, 0, 0]),
+    "Y": PLANE.plane([0, 1, 0]),
+}
+OF_SPHERES = {
+    "A": SPHERES,
+    "P": SPHERES.up([1, 0, 0]),
+    "Q": SPHERES.up([0, 1, 0]),
+    "t": [1, 2, 3],
+    "X": SPHERES.up([1, 0, 0]),
+    "Y": SPHERES.line([0, 0, 0], [1, 0, 0]),
+}
+TABLES = {
+    "MULTIVECTOR": (BASE["A"], {"P": OF_PLANES["P"]}),
+    "ROTOR": (BASE["R"], {}),
+    "PARTS_OF_ROTORS": (BASE["R"], {}),
+    "TRANSFORM": (BASE["T"], {"S": RigidTransform(), "shape": (1,)}),
+    "ALGEBRA": (ph.algebra(3), {"A": ph.algebra(3), "components": np.ones(3)}),
+    "PGA": (PLANE, OF_PLANES),
+    "CGA": (SPHERES, OF_SPHERES),
+}
+# Expressions that need a value of another kind.
+OTHERS = {
+    "astype(float)": {"value": sympy.Integer(2) * e1},
+    "factor()": {"value": e1 ^ e2},
+    "reshape(-1)": {"value": V},
+    "map(sympy.expand)": {"value": x * e1},
+    "map(lambda c: sympy.integrate(c, x))": {"value": x * e1, "x": x},
+    "ph.concatenate([R, S])": {"R": Rotor.random(2, rng=1), "S": Rotor.random(3, rng=2)},
+    **{
+        f"multivector(components){part}": {"components": np.ones(8)}
+        for part in ("", ".grade(0, 2)", ".grade(1, 3)")
+    },
+}
+
+
+def expressions(text):
+    """The expressions of a remedy, without the words after them."""
+    for part in re.split(r",? or (?=[\w(~\"]+)", text):
+        yield re.split(r", (?:which|the|as|with)\b| for | of | itself", part)[0]
+
+
+def evaluated(text, names):
+    """The value of an expression, or of the attribute or call of a value that it is."""
+    first = re.match(r"[~(-]*(\w+)", text)[1]
+    return eval(text if first in {*names, "len", "dict", "not", "float"} else f"value.{text}", dict(names))
+
+
+REMEDIES = [
+    pytest.param(table, name, text, id=f"{table}-{name}-{text}")
+    for table in TABLES
+    for name, remedy in vars(foreign_tables)[table].items()
+    if table == "ALGEBRA" or name not in foreign_tables.ALGEBRA
+    for text in expressions(remedy)
+]
+
+
+@pytest.mark.parametrize(("table", "name", "text"), REMEDIES)
+def test_the_error_of_a_name_tells_what_works(table, name, text):
+    value, names = TABLES[table]
+    with pytest.raises(AttributeError, match=f"has no attribute '{name}'; write .*{re.escape(text)}"):
+        getattr(value, name)
+    evaluated(text, BASE | {"value": value} | names | OTHERS.get(text, {}))
+
+
+FUNCTIONS = [
+    pytest.param(text, names, id=f"{name}-{text}")
+    for table, names in ((package_names.WRITE, {}), (ufuncs._OURS, {"A": V, "B": V, "shape": (1, 3)}))
+    for name, remedy in table.items()
+    for text in expressions(remedy)
+]
+
+
+@pytest.mark.parametrize(("text", "names"), FUNCTIONS)
+def test_the_error_of_a_function_tells_what_works(text, names):
+    eval(text, BASE | names)
+
+
+def test_expressions_for_names_of_the_package_are_shown():
+    for name, ours in package_names.WRITE.items():
+        with pytest.raises(AttributeError, match=f"has no attribute '{name}'; write {re.escape(ours)}$"):
+            getattr(ph, name)
+
+
+@pytest.mark.parametrize("name", package_names.SEE)
+def test_names_of_the_package_are_seen(name):
+    for ours in re.split(", | and ", package_names.SEE[name]):
+        assert callable(eval(f"ph.{ours}"))
+    with pytest.raises(AttributeError, match=r"; see polhode\."):
+        getattr(ph, name)
+    with pytest.raises(ImportError, match=f"^cannot import name '{name}' from 'polhode'; see polhode"):
+        exec(f"from polhode import {name}")
+    assert not hasattr(ph, name)
+
+
+# --- calls and operators
+
+R, T, A = Rotor.random(rng=1), RigidTransform(Rotor.random(rng=2), [1, 2, 3]), ph.algebra(3)
+TWO, PATH = RigidTransform.stack([T, T]), ph.RotorSpline([0, 1, 2], Rotor.random(3, rng=3))
+TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
+
+
+@pytest.mark.parametrize(
+    ("call", "ours"),
+    [
+        (lambda: ph.vector(1, 2, 3), "ph.vector([1, 2, 3])"),
+        (lambda: ph.multivector(e12=3), '3 * ph.algebra(3).blades["e12"]'),
+        (lambda: A.vector(e1=1, e3=2), '1 * A.blades["e1"] + 2 * A.blades["e3"]'),
+        (lambda: PLANE.point(1, 2, 3), "A.point([1, 2, 3])"),
+        (lambda: SPHERES.up(1.5, 2), "A.up([1.5, 2])"),
+        (lambda: ph.bivector([1, 2, 3], dtyp=float), "dtype="),
+        (lambda: R.magnitude(degrees=True), "np.degrees(R.angle)"),
+        (lambda: V.mean(weights=[1, 2, 3]), "ph.mean(R, weights) for rotors"),
+        (lambda: PATH(0.5, 1), "spline.omega_body(t) for order 1"),
+        (lambda: PATH(0.5, order=2), "spline.alpha_body(t) for order 2"),
+        (lambda: ph.align(V, V, return_sensitivity=True), "ph.align(a, b).covariance"),
+        (lambda: ph.mean(R, weight=[1]), "weights="),
+        (lambda: RigidTransform(rotation=R), "rotor="),
+        (lambda: R @ R, "A * B"),
+        (lambda: np.eye(3) @ R, "ph.vector(M @ a.components)"),
+        (lambda: np.cross(e1, e2), "ph.cross(a, b)"),
+        (lambda: np.isnan(e1), "A.is_finite()"),
+        (lambda: list(e1), ".components"),
+        (lambda: V.__setitem__(0, e1), "immutable; change an array, c = A.components"),
+        (lambda: TWO.__setitem__(0, T), "immutable; join parts with RigidTransform.concatenate"),
+        (lambda: R * TURN, "Rotor.from_scipy(x)"),
+        (lambda: TURN * R, "Rotor.from_scipy(x)"),
+        (lambda: ph.mean([TURN, TURN]), "Rotor.from_scipy(x)"),
+        (lambda: R.distance(T), "T.rotor"),
+        (lambda: ph.mean(TWO), "T.mean()"),
+        (lambda: ph.slerp(T, T, 0.5), "S.interpolate(T, t)"),
+        (lambda: ph.stack([T, T]), "RigidTransform.stack([S, T])"),
+        (lambda: ph.stack(TWO), "RigidTransform.stack([S, T])"),
+        (lambda: ph.concatenate([TWO, TWO]), "RigidTransform.concatenate([S, T])"),
+        (lambda: T @ T, "S * T"),
+        (lambda: T * R, "S * RigidTransform.from_rotation(R)"),
+        (lambda: R * T, "RigidTransform.from_rotation(R) * T"),
+        (lambda: np.eye(4) @ T, "RigidTransform.from_matrix(M) * T"),
+        (lambda: T * MOVE, "RigidTransform.from_scipy(x)"),
+        (lambda: MOVE * T, "RigidTransform.from_scipy(x)"),
+        *((lambda x=x: T * x, "T.apply(x)") for x in (e1, [1, 2, 3], np.ones(3))),
+        (lambda: np.ones(3) * T, "T.apply(x)"),
+        (lambda: T.is_close(np.eye(4)), "RigidTransform.from_matrix(M)"),
+        (lambda: T.interpolate(R, 0.5), "RigidTransform.from_rotation(R)"),
+        (lambda: RigidTransform.concatenate([T, np.eye(4)]), "RigidTransform.from_matrix(M)"),
+        (lambda: RigidTransform.stack([T, R]), "RigidTransform.from_rotation(R)"),
+        (lambda: RigidTransform(np.eye(4)), "RigidTransform.from_matrix"),
+        (lambda: T["x"], "T.translation[name]"),
+        (lambda: list(T), ".as_components()"),
+        (lambda: Rotor.random(rng="a"), "rng must be a NumPy generator, a whole number or None"),
+    ],
+)
+def test_calls_and_operators_of_other_libraries_name_ours(call, ours):
+    with pytest.raises(TypeError, match=re.escape(ours)):
+        call()
+
+
+@pytest.mark.parametrize(
+    ("call", "ours"),
+    [
+        (lambda: ph.align([1, 0, 0], [0, 1, 0]), "Rotor.from_vectors(a, b)"),
+        (lambda: Rotor.from_matrix(2 * np.eye(3)), "nearest=True"),
+        (lambda: RigidTransform.from_matrix(np.diag([2, 2, 2, 1])), "nearest=True"),
+        (lambda: Rotor.from_euler("sxyz", [1, 2, 3]), "write 'xyz'"),
+        (lambda: R.to_euler("rzyx"), "write 'ZYX'"),
+        (lambda: T[0], ".rotor and .translation"),
+        (lambda: (e1 ^ e2).to_matrix(), "Rotor.from_multivector(A).to_matrix"),
+        (lambda: T.to_motor().apply(e1), "RigidTransform.from_motor(A)"),
+        (lambda: A.blades.e12, 'blades["e12"]'),
+    ],
+)
+def test_values_of_other_libraries_name_ours(call, ours):
+    with pytest.raises((ValueError, IndexError, AttributeError), match=re.escape(ours)):
+        call()
+
+
+def test_blades_are_found_by_any_name():
+    blades = ph.cga().blades
+    for name in ("e12", "e1∧e2", "e21", "einf"):
+        assert name in blades
+        assert blades.get(name) == blades[name]
+    assert "e7" not in blades
+    assert blades.get("e7", 3) == 3
+
+
+def test_a_transform_joins_to_itself():
+    assert (RigidTransform.concatenate(TWO) == TWO).all()
+    assert RigidTransform.concatenate(T) == T

@@ -19,7 +19,7 @@ from polhode._algebra.grades import mask_of
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
 from polhode._support.arrays import Shape, batch_shape, normal_numbers
-from polhode._support.calls import takes_components
+from polhode._support.calls import explains_calls, takes_components
 
 
 @joins(_native.Algebra)
@@ -175,6 +175,7 @@ class Algebra(_native.Algebra):
         """
         return self._of_grade(components, "bivector", 2, dtype, copy)
 
+    @explains_calls
     def k_vector(self, k: int, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
         """Create values of grade k from an array (..., n over k).
 
@@ -208,6 +209,7 @@ class Algebra(_native.Algebra):
         """
         return self._wrapped(components, "multivector", self.size, self._all, dtype, copy)
 
+    @explains_calls
     def random(
         self,
         shape: int | Shape = (),

@@ -15,6 +15,7 @@ from polhode._algebra.coefficients import kind_of
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.products import common_algebra
 from polhode._support.arrays import Array, at_index, first_index, is_float, power_of_two
+from polhode._support.calls import explains_calls
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -108,6 +109,7 @@ def _orthogonal(axes: Array, metric: Array) -> Array:
     )
 
 
+@explains_calls
 def reciprocal_frame(vectors: Sequence[Multivector]) -> tuple[Multivector, ...]:
     """Return the reciprocal vectors ``b^i`` of vectors ``b_j``: ``b^i·b_j`` is 1 for i = j, else 0.
 

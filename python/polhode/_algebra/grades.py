@@ -15,6 +15,7 @@ from polhode._algebra.coefficients import reshaped as coefficients_reshaped
 from polhode._algebra.foreign_values import remedy_for
 from polhode._algebra.products import coerced, common_algebra
 from polhode._support.arrays import Shape, is_float, new
+from polhode._support.calls import explains_calls
 from polhode._support.memory import require_array
 
 if TYPE_CHECKING:
@@ -153,6 +154,7 @@ def reshaped(value: V, *shape: Any) -> V:
     return value._like(coefficients_reshaped(data, (*lengths, data.shape[-1])))
 
 
+@explains_calls
 def stack(values: Iterable[V], axis: int = 0) -> V:
     """Join values of equal batch shape along a new batch axis; rotors give rotors.
 
@@ -208,6 +210,7 @@ def averaged(value: Multivector, axis: int | tuple[int, ...] | None = None) -> M
     return total / count
 
 
+@explains_calls
 def concatenate(values: Iterable[V], axis: int = 0) -> V:
     """Join batches along an existing batch axis; rotors give rotors. `axis` counts batch axes.
 

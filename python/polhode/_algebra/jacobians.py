@@ -7,8 +7,10 @@ from typing import Any
 from polhode import _generic
 from polhode._algebra.coefficients import as_coefficients, kind_of, require_real
 from polhode._algebra.multivector import Multivector
+from polhode._support.calls import explains_calls
 
 
+@explains_calls
 def left_jacobian(v: Any, *, inverse: bool = False) -> Any:
     """Return the left Jacobian of the exponential map: J with ``R(v + dv) = R(J dv) R(v)``.
 
@@ -41,6 +43,7 @@ def left_jacobian(v: Any, *, inverse: bool = False) -> Any:
     return _jacobian(v, 1, inverse)
 
 
+@explains_calls
 def right_jacobian(v: Any, *, inverse: bool = False) -> Any:
     """Return the right Jacobian of the exponential map: J with ``R(v + dv) = R(v) R(J dv)``.
 

@@ -11,8 +11,10 @@ from polhode._algebra.interpolation import RotorSpline, increasing_times, spline
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._support.arrays import Array, at_index, first_index
+from polhode._support.calls import explains_calls
 
 
+@explains_calls
 def attitude_from_rates(times: Any, omega_body: Any, start: Rotor | None = None) -> Rotor:
     """Return the rotors of a body whose angular velocity was sampled: the attitude from a gyroscope.
 
@@ -102,6 +104,7 @@ def _running(steps: Array) -> Array:
     return result
 
 
+@explains_calls
 def rates_from_attitude(times: Any, R: Rotor) -> Multivector:
     """Return the angular velocities in body axes at sampled attitudes: the rates of their `RotorSpline`.
 

@@ -229,6 +229,7 @@ CALLS = {
     "RigidTransform.from_components": Call(lambda t: ph.RigidTransform.from_components(t, rotor(R)), (V,)),
     "RigidTransform.from_matrix": Call(lambda m: ph.RigidTransform.from_matrix(m), (_motor(V).as_matrix(),)),
     "RigidTransform.from_exp_coords": Call(ph.RigidTransform.from_exp_coords, (numbers(_BATCH, 6),)),
+    "RigidTransform.exp": Call(ph.RigidTransform.exp, (numbers(_BATCH, 6),)),
     "RigidTransform.from_dual_quat": Call(ph.RigidTransform.from_dual_quat, (_motor(V).as_dual_quat(),)),
     "RigidTransform.from_motor": Call(
         lambda m: ph.RigidTransform.from_motor(_even(m)), (_motor(V).to_motor().dense(),)
@@ -244,8 +245,8 @@ CALLS = {
     **_methods(
         "RigidTransform",
         _of_transform,
-        "rotation rotor translation as_components as_matrix as_exp_coords as_dual_quat to_motor "
-        "screw_parameters adjoint inv inverse shape single",
+        "rotation rotor translation as_components as_matrix to_matrix as_exp_coords log as_dual_quat "
+        "to_motor screw_parameters adjoint inv inverse shape single",
     ),
     "PGA": _pga(lambda A, x, y: A.point(x) & A.point(y), V, B),
     "PGA.point": _pga(lambda A, x: A.point(x), V),

@@ -215,6 +215,18 @@ class RigidTransform:
         return _of_motor(motor, "the rotation of exponential coordinates")
 
     @staticmethod
+    def exp(exp_coords: Any) -> RigidTransform:
+        """Return `from_exp_coords`: the exponential of a screw, its rotation vector first.
+
+        Examples
+        --------
+        >>> T = ph.RigidTransform.from_components([1, 2, 3], ph.Rotor.from_axis_angle(ph.e3, 0.5))
+        >>> bool(ph.RigidTransform.exp(T.log()).is_close(T, atol=1e-15))
+        True
+        """
+        return RigidTransform.from_exp_coords(exp_coords)
+
+    @staticmethod
     def from_dual_quat(dual_quat: Any, *, scalar_first: bool = False) -> RigidTransform:
         """From unit dual quaternions (..., 8): the real part, then the dual part, each ``(x, y, z, w)``.
 
@@ -335,6 +347,26 @@ class RigidTransform:
         zero = kind.zeros_like(upper[..., :1, :])
         one = kind.stack([zero[..., 0], zero[..., 0], zero[..., 0], zero[..., 0] + 1])
         return xp.concat([upper, one], axis=-2)
+
+    def to_matrix(self) -> Any:
+        """Return `as_matrix`, by the name that rotors have for it.
+
+        Examples
+        --------
+        >>> ph.RigidTransform.from_translation([5, 6, 7]).to_matrix()[:3, 3]
+        array([5., 6., 7.])
+        """
+        return self.as_matrix()
+
+    def log(self) -> Any:
+        """Return `as_exp_coords`, the logarithm of a displacement: a screw, whose `exp` it is.
+
+        Examples
+        --------
+        >>> ph.RigidTransform.from_translation([5, 6, 7]).log()
+        array([0., 0., 0., 5., 6., 7.])
+        """
+        return self.as_exp_coords()
 
     def as_exp_coords(self) -> Any:
         """Return exponential coordinates (..., 6): rotation vector of at most π, then the velocity.

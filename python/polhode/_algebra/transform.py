@@ -378,7 +378,8 @@ class RigidTransform:
         """
         screw = self._nearer().to_motor().log()
         _, a, b, c, x, y, z, _ = columns(screw)
-        return kind_of(screw._data).stack([-2 * a, -2 * b, -2 * c, 2 * x, 2 * y, 2 * z])
+        # Zeros are positive.
+        return kind_of(screw._data).stack([0 - 2 * a, 0 - 2 * b, 0 - 2 * c, 2 * x, 2 * y, 2 * z])
 
     def as_dual_quat(self, *, scalar_first: bool = False) -> Any:
         """Return unit dual quaternions (..., 8): see `from_dual_quat`; R and −R give opposite ones.

@@ -83,6 +83,7 @@ mod reader;
 mod run;
 mod solve;
 mod spread;
+mod syntax;
 #[cfg(test)]
 mod tests;
 
@@ -197,7 +198,7 @@ impl Scene {
         }
         let root = DeTable::parse(text).map_err(|error| {
             let span = error.span().unwrap_or(0..0);
-            vec![diagnose(span, error.message())]
+            vec![diagnose(span.clone(), &syntax::explained(error.message(), text, span))]
         })?;
         // Missing tables are reported at the end of the file.
         let end = text.trim_end().len();

@@ -189,7 +189,16 @@ fn an_interval_must_divide_the_duration() {
 #[test]
 fn syntax_errors_have_a_place() {
     assert_eq!(errors("[body\n"), ["1:6: unclosed table, expected `]`"]);
-    assert_eq!(errors("a = 1\na = 2\n"), ["2:1: duplicate key"]);
+    assert_eq!(errors("a = 1\na = 2\n"), ["2:1: duplicate key `a`, which this table has already"]);
+    for (line, remedy) in [
+        ("duration = 10 s", "write `\"10 s\"`, because a value with a unit needs quotes"),
+        ("moments = [3 2 1]", "separate the numbers by commas, `3, 2, 1`"),
+        ("order = wxyz", "write `\"wxyz\"`"),
+        ("mesh = \"a\\q.obj\"", "write a path with `/`, or in single quotes"),
+    ] {
+        let [error] = &errors(line)[..] else { panic!("one error") };
+        assert!(error.ends_with(&format!("; {remedy}")), "{error}");
+    }
     assert_eq!(errors("a = \"x\ty\u{1}\"\n").len(), 1);
     assert_eq!(errors(" \r\n "), ["the file is empty, a scene needs the tables [body], [initial] and [run]"]);
     for deep in ["[", "{a=", "[{a="] {

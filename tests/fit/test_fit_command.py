@@ -248,7 +248,7 @@ LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
         ("t,wx,wy,wz\n", ":1:1: error: the file ends after 0 rows of rates; a fit needs at least 3"),
         (LINES, ":3:1: error: the file ends after 2 rows of rates; a fit needs at least 3"),
         ("t,qw,qx,qy,qz\n0,1,0,0,0\n1, 0,0,0,0\n", ":3:4: error: the quaternion must have norm 1, got 0;"),
-        ("t,qw,qx,qy,qz\n0,1,0,0,0\n1,0.6,0.8,0.1,0\n", ":3:3: error: the quaternion must have norm 1"),
+        ("t,qw,qx,qy,qz\n0,1,0,0,0\n1,0.6,0.8,0.3,0\n", ":3:3: error: the quaternion must have norm 1"),
         ("t wx wy wz\n0 1 2 3\n", ":1:1: error: the columns are separated by spaces; separate names"),
         (
             LINES + "2026-01-01T00:00:02,1,2,3\n",

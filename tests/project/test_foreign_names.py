@@ -2,6 +2,7 @@
 
 import math
 import re
+import rlcompleter
 
 import numpy as np
 import pytest
@@ -246,3 +247,51 @@ def test_blades_are_found_by_any_name():
 def test_a_transform_joins_to_itself():
     assert (RigidTransform.concatenate(TWO) == TWO).all()
     assert RigidTransform.concatenate(T) == T
+
+
+def test_names_are_completed_at_the_prompt():
+    """The prompt of Python reads every attribute, and only ignores those that do not exist."""
+    completer = rlcompleter.Completer({"A": ph.e1})
+    assert completer.complete("A.compon", 0) == "A.components"
+    assert completer.complete("A.", 0)
+    assert not hasattr(ph.e1, "variable")
+
+
+def test_values_of_other_types_are_not_equal():
+    one, other = Rotor.identity(), scipys.Rotation.identity()
+    assert one != other
+    assert one in [other, one]
+    assert RigidTransform() != other
+
+
+class Reflected:
+    """A type that defines operators with values at its left."""
+
+    def __rmul__(self, other):
+        return "*"
+
+    def __rmatmul__(self, other):
+        return "@"
+
+
+@pytest.mark.parametrize("value", [RigidTransform(), e1, Rotor.identity()])
+def test_operators_of_other_types_are_asked(value):
+    assert (value * Reflected(), value @ Reflected()) == ("*", "@")
+
+
+def test_parts_of_a_single_transform_are_indexed_as_rotors_are():
+    one = RigidTransform()
+    assert (one[None].shape, one[...].shape, one[()].shape) == ((1,), (), ())
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: ph.vector([1, 2, 3], "float32"), "its arguments are (xyz, *, dtype"),
+        (lambda: ph.vector(*np.ones((3, 5))), "ph.vector(np.stack([x, y, …], axis=-1))"),
+        (lambda: ph.multivector(e1=2, s=3), "no argument 'e1'"),
+    ],
+)
+def test_components_are_not_guessed(call, message):
+    with pytest.raises(TypeError, match=re.escape(message)):
+        call()

@@ -25,10 +25,22 @@ def remedy_for(value: Any, of_transforms: str = "") -> str:
     return f"; write {ours}" if ours else ""
 
 
+def is_foreign(value: Any) -> bool:
+    """Whether a value of another library is not an array: a rotation or a quaternion."""
+    return _origin(value) in _CONVERTED
+
+
+def has_reflected(value: Any, method: str) -> bool:
+    """Whether a class of a user or of an unknown library defines the operator with us at its left."""
+    library, _ = _origin(value)
+    known = library in ("builtins", "numpy", "polhode") or is_foreign(value)
+    return not known and hasattr(type(value), method)
+
+
 def refuse_operand(value: Any) -> None:
     """Raise a TypeError for an operand of another library that operators would misread or not explain."""
     library, name = _origin(value)
-    if library in ("pandas", "xarray"):
+    if library in ("pandas", "xarray") and hasattr(value, "values"):
         raise TypeError(LABELLED.format(f"{library}.{name}"))
     if remedy := remedy_for(value):
         raise TypeError(f"a multivector does not combine with a {name} of {library}{remedy}")

@@ -23,6 +23,7 @@ from polhode._algebra import symbols as _symbols
 from polhode._algebra import ufuncs as _ufuncs
 from polhode._algebra import versors as _versors
 from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.foreign_values import has_reflected, is_foreign
 from polhode._algebra.masking import masked
 from polhode._algebra.native import joins
 from polhode._algebra.products import coerced, product
@@ -368,7 +369,9 @@ class Multivector(_native.Multivector):
 
     anticommutator = _products.anticommutator
 
-    def __matmul__(self, other: Any) -> NoReturn:
+    def __matmul__(self, other: Any) -> Any:
+        if has_reflected(other, "__rmatmul__"):
+            return NotImplemented
         raise TypeError(
             "@ is the product of matrices; write A * B for the geometric product and that of rotors, R(a) to "
             "turn a"
@@ -472,6 +475,8 @@ class Multivector(_native.Multivector):
     # --- comparison, called by native operators
 
     def _equals(self, other: object) -> Any:
+        if is_foreign(other):  # not equal to any, as numbers and text are compared with other types
+            return NotImplemented
         right = coerced(other, self)
         return NotImplemented if right is None else _comparison.equal(self, right)
 

@@ -21,7 +21,7 @@ from polhode._algebra.estimation import mean
 from polhode._algebra.euclidean import vector_in
 from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.foreign_tables import TRANSFORM
-from polhode._algebra.foreign_values import remedy_for
+from polhode._algebra.foreign_values import has_reflected, remedy_for
 from polhode._algebra.format import first_and_last
 from polhode._algebra.grades import concatenate, stack
 from polhode._algebra.motors import columns, is_motor, of_columns, places
@@ -466,14 +466,18 @@ class RigidTransform:
 
     def __mul__(self, other: RigidTransform) -> RigidTransform:
         if not isinstance(other, RigidTransform):
+            if has_reflected(other, "__rmul__"):
+                return NotImplemented
             _refuse(self, "*", other)
         return RigidTransform(self.rotor * other.rotor, self.apply(other.translation))
 
     def __rmul__(self, other: object) -> NoReturn:
         _refuse(other, "*", self)
 
-    def __matmul__(self, other: object) -> NoReturn:
-        _refuse(self, "@", other)
+    def __matmul__(self, other: object) -> Any:
+        if has_reflected(other, "__rmatmul__"):
+            return NotImplemented
+        return _refuse(self, "@", other)
 
     def __rmatmul__(self, other: object) -> NoReturn:
         _refuse(other, "@", self)
@@ -571,7 +575,7 @@ class RigidTransform:
                 f"a transform has no component {index!r}; those of its parts are T.rotor[name] and "
                 "T.translation[name]"
             )
-        if not self.shape:
+        if not (self.shape or index is None or index is Ellipsis or isinstance(index, tuple)):
             raise IndexError(
                 f"a single transform has no batch to index, got [{index!r}]; its parts are .rotor and "
                 ".translation, its matrix .as_matrix()"
@@ -660,7 +664,8 @@ def _named(value: object, name: str) -> str | None:
 
 
 def _is_matrix(value: object) -> bool:
-    return not isinstance(value, Multivector) and tuple(getattr(value, "shape", ()))[-2:] == (4, 4)
+    shape = getattr(value, "shape", None)
+    return not isinstance(value, Multivector) and isinstance(shape, tuple) and shape[-2:] == (4, 4)
 
 
 def _as_vector(value: Any, what: str) -> Multivector:

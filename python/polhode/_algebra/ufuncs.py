@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -103,13 +104,15 @@ def remedy_of(function: str, others: str) -> str:
 class OperandOfXarray(ForeignName):
     """The attribute ``variable``, which xarray reads of an operand beside a DataArray or Dataset.
 
-    A TypeError, which no default hides: xarray would wrap the product of its numbers and the value.
+    There it is a TypeError, which no default hides: xarray would wrap the product of its numbers and the
+    value.
     """
 
     def __get__(self, value: Any, owner: Any = None) -> NoReturn:
-        if value is None:
-            raise AttributeError(self.name)
-        raise TypeError(LABELLED.format("arrays of xarray"))
+        reader = sys._getframe(1).f_globals.get("__name__", "")
+        if value is not None and reader.startswith("xarray."):
+            raise TypeError(LABELLED.format("arrays of xarray"))
+        raise AttributeError(f"{(owner or type(value)).__name__!r} object has no attribute {self.name!r}")
 
 
 def _refused(_: Any) -> Any:

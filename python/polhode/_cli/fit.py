@@ -197,6 +197,8 @@ def _fitted(options: argparse.Namespace) -> Fit:
         error("the following arguments are required: FILE.csv, or --periods ROTATION PRECESSION")
     if options.time_unit is None:
         error("the following arguments are required: --time-unit")
+    if options.data == options.torque == "-":
+        error("FILE.csv and --torque cannot both be standard input")
     if options.free and options.torque is None:
         error("--free names parameters of torques; give them with --torque SCENE.toml")
     if options.columns is not None and len(options.columns) > len(RATES) and options.order is None:
@@ -266,6 +268,7 @@ def _columns(text: str) -> tuple[str, ...]:
 
 def _period(text: str) -> float:
     """Return a period in s."""
+    text = text.strip()
     value = text.rstrip("".join(_PERIODS)).rstrip()
     if (unit := text.removeprefix(value).strip()) not in _PERIODS:
         raise argparse.ArgumentTypeError(f"expected a number and a unit s, min, h or d, got {text!r}")

@@ -24,8 +24,8 @@ SEPARATORS = (",", ";", "\t")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d|\d\d?:\d\d")
 # Least number of rows of each kind.
 FEWEST = 3
-# Greatest difference from 1 of the norm of a quaternion, for rounding in a file.
-_OFF = 1e-3
+# Greatest difference from 1 of the norm of a quaternion: that of components with two decimals is below it.
+_OFF = 0.02
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
             f"{path}:{rows[0][0]}:1: error: not names of columns: {error}; write them as t,wx,wy,wz"
         ) from None
     header = [x.strip() for x in fields]
-    if len(header) == 1 and len(header[0].split()) > 1:
+    if len(header) == 1 and len(header[0].split()) >= len(RATES):
         raise UnreadableError(
             f"{path}:{rows[0][0]}:1: error: the columns are separated by spaces; separate names and numbers "
             "by commas, semicolons or tabs"

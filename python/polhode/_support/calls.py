@@ -6,7 +6,10 @@ import inspect
 import re
 from collections.abc import Callable, Mapping
 from functools import partial, wraps
+from numbers import Real
 from typing import Any, ParamSpec, TypeVar, get_args, overload
+
+import numpy as np
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -81,12 +84,14 @@ def takes_components(function: Callable[P, T]) -> Callable[P, T]:
     def message(arguments: tuple[Any, ...], named: Mapping[str, Any], error: str) -> str:
         method = "self" in inspect.signature(function).parameters
         name, values = function.__name__, arguments[1:] if method else arguments
-        if len(values) > 1:
-            listed = ", ".join(map(repr, values))
-            return f"{name} takes one list of components; write {'A' if method else 'ph'}.{name}([{listed}])"
-        if blades := [key for key in named if re.fullmatch(r"e\d+", key)]:
+        call = f"{'A' if method else 'ph'}.{name}"
+        if len(values) > 1 and all(isinstance(x, Real) for x in values):
+            return f"{name} takes one list of components; write {call}([{', '.join(map(repr, values))}])"
+        if len(values) > 1 and all(np.ndim(x) and np.shape(x) == np.shape(values[0]) for x in values):
+            return f"{name} takes one array of components; write {call}(np.stack([x, y, …], axis=-1))"
+        if named and all(re.fullmatch(r"e\d+", key) for key in named):
             algebra = "A" if method else "ph.algebra(3)"
-            terms = " + ".join(f'{named[key]!r} * {algebra}.blades["{key}"]' for key in blades)
+            terms = " + ".join(f'{x!r} * {algebra}.blades["{key}"]' for key, x in named.items())
             return f"{name} takes no components by name; write {terms}"
         return _misfit(function, {}, named, error)
 
@@ -119,7 +124,8 @@ def _misfit(
     if not unknown:
         if remedies and "positional" in error and "given" in error:
             remedy = f"write {next(iter(remedies.values()))}"
-        return f"{error.replace('.__init__()', '()')}; {remedy}"
+        own = function.__qualname__.removesuffix(".__init__")
+        return re.sub(r"^[\w.<>]+\(\)", f"{own}()", error) + f"; {remedy}"
     meant = [ours for ours in _OURS.get(unknown[0].lower(), ()) if ours in names]
     if unknown[0] in remedies:
         remedy = f"write {remedies[unknown[0]]}"

@@ -7,7 +7,6 @@ use crate::support::facts::{columns, dict};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::inertia;
 use polhode_rigid::exact::damped::DampedTop;
-use polhode_rigid::exact::free::FreeBody;
 use polhode_rigid::exact::lagrange::{self, LagrangeDescription};
 use polhode_rigid::exact::larmor::LarmorSphere;
 use polhode_rigid::exact::many::Tile;
@@ -86,7 +85,8 @@ pub(crate) fn damped_tops(
     let (tops, _) = ClosedForm::new(py, given, damped, |bodies| {
         Tile::damped(bodies.map(|body| {
             let Started { inertia, rotor, omega, law: [g] } = body?;
-            FreeBody::new(inertia, rotor, omega).map(|body| (body, g)).map_err(|error| error.to_string())
+            let body = DampedTop::body(inertia, rotor, omega, g).map_err(|error| error.to_string())?;
+            Ok((body, g))
         }))
     })?;
     Ok(tops)

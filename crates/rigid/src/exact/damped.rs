@@ -44,11 +44,28 @@ impl DampedTop {
         omega: Bivector,
         damping: f64,
     ) -> Result<DampedTop, SimulateError> {
-        let body = FreeBody::new(inertia, rotor, omega)?;
+        let body = DampedTop::body(inertia, rotor, omega, damping)?;
         let free = body.motion();
-        let horizon = own_horizon(&body, free.horizon(), damping)?;
+        let horizon = own_horizon(&body, free.horizon())?;
         let flow = free.flow.damped(damping).ok_or(SimulateError::Unresolved)?;
         Ok(DampedTop { flow, damping, horizon })
+    }
+
+    /// The free body of the motion. An error as of [`DampedTop::new`].
+    pub fn body(
+        inertia: &Inertia,
+        rotor: Rotor,
+        omega: Bivector,
+        damping: f64,
+    ) -> Result<FreeBody, SimulateError> {
+        // Products in double-double precision overflow early.
+        if damping.is_nan() || damping.abs() > 1e150 {
+            return Err(SimulateError::BadValue { what: "the damping g", value: damping });
+        }
+        if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
+            return Err(SimulateError::BadValue { what: "the angular velocity", value });
+        }
+        FreeBody::new(inertia, rotor, omega)
     }
 
     /// How far in time, in s, the phase is accurate, backwards and forwards; infinite where the motion decays.
@@ -71,19 +88,13 @@ impl DampedTop {
 }
 
 /// How far in the time of the free body its phase and τ are accurate, from how far its phase is.
-pub(super) fn own_horizon(body: &FreeBody, horizon: f64, damping: f64) -> Result<f64, SimulateError> {
-    // Products in double-double precision overflow early.
-    if damping.is_nan() || damping.abs() > 1e150 {
-        return Err(SimulateError::BadValue { what: "the damping g", value: damping });
-    }
+pub(super) fn own_horizon(body: &FreeBody, horizon: f64) -> Result<f64, SimulateError> {
     let (moments, omega) = (body.moments, body.omega);
     // |ω| stays below |L|/i_min.
     let least = moments.iter().fold(f64::INFINITY, |m: f64, i| m.min(*i));
     let fastest = Gyrostat::rigid(moments).momentum(omega).norm() / least;
-    for value in omega.0.into_iter().chain([fastest]) {
-        if !value.is_finite() {
-            return Err(SimulateError::BadValue { what: "the angular velocity", value });
-        }
+    if !fastest.is_finite() {
+        return Err(SimulateError::BadValue { what: "the angular velocity", value: fastest });
     }
     Ok(horizon.min(MOST_RADIANS / fastest))
 }

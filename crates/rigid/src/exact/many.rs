@@ -109,10 +109,10 @@ impl Tile {
         )
     }
 
-    /// The same of bodies with the torque `−g L`, from each body and its g.
+    /// The same of bodies with the torque `−g L`, from each [`super::damped::DampedTop::body`] and its g.
     ///
     /// # Errors
-    /// The first error of the iterator or of a motion, with its index.
+    /// An error of the iterator or of a motion, with its index.
     pub fn damped<E: From<String>>(
         bodies: impl Iterator<Item = Result<(FreeBody, f64), E>>,
     ) -> Result<Tile, (usize, E)> {
@@ -123,7 +123,7 @@ impl Tile {
                 let (first, mut dampings) = (tile.horizons.len(), [0.0; TOGETHER]);
                 for (l, (body, g)) in bodies.iter().enumerate() {
                     dampings[l] = *g;
-                    let own = damped::own_horizon(body, motions.horizon(l, body), *g)
+                    let own = damped::own_horizon(body, motions.horizon(l, body))
                         .map_err(|e| (l, e.to_string().into()))?;
                     tile.horizons.push(damped::horizons(own, *g));
                 }

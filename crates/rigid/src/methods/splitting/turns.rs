@@ -252,8 +252,8 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         let factor = half * sinc;
         let turn = [cos, w[0] * factor, w[1] * factor, w[2] * factor];
         spin.rotor = composed(&spin.rotor, &turn);
-        // ~q m q. The turn has the same roundings in every step of a length; adding the change keeps the constant stretch by
-        // |q|² − 1 to the small part of m that turns.
+        // ~q m q. The turn has the same rounding error in every step of one length. Adding the change, instead of mapping m,
+        // multiplies |q|² − 1 by the small change only, so that the error does not grow with the number of steps.
         let v = [turn[1], turn[2], turn[3]];
         let once = cross(&v, &spin.momentum);
         let twice = cross(&v, &once);

@@ -192,9 +192,14 @@ fn syntax_errors_have_a_place() {
     assert_eq!(errors("a = 1\na = 2\n"), ["2:1: duplicate key `a`, which this table has already"]);
     for (line, remedy) in [
         ("duration = 10 s", "write `\"10 s\"`, because a value with a unit needs quotes"),
-        ("moments = [3 2 1]", "separate the numbers by commas, `3, 2, 1`"),
+        ("moments = [3 2 1]", "separate numbers by commas, `3, 2, 1`"),
+        ("moments = 3 2 1", "separate numbers by commas, `[3, 2, 1]`"),
         ("order = wxyz", "write `\"wxyz\"`"),
+        ("order = None", "write `\"None\"`"),
+        ("order = true-north", "write `\"true-north\"`"),
+        ("duration =", "write a value after `=`"),
         ("mesh = \"a\\q.obj\"", "write a path with `/`, or in single quotes"),
+        ("mesh = \"C:\\Users\\q.obj\"", "write a path with `/`, or in single quotes"),
     ] {
         let [error] = &errors(line)[..] else { panic!("one error") };
         assert!(error.ends_with(&format!("; {remedy}")), "{error}");

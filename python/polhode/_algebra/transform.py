@@ -465,9 +465,9 @@ class RigidTransform:
         return self.apply(points)
 
     def __mul__(self, other: RigidTransform) -> RigidTransform:
+        if has_reflected(other, "__rmul__"):
+            return NotImplemented
         if not isinstance(other, RigidTransform):
-            if has_reflected(other, "__rmul__"):
-                return NotImplemented
             _refuse(self, "*", other)
         return RigidTransform(self.rotor * other.rotor, self.apply(other.translation))
 

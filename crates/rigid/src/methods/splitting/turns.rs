@@ -259,7 +259,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         let twice = cross(&v, &once);
         for k in 0..3 {
             let half_the_change = once[k].times_plus(cos, twice[k]);
-            spin.momentum[k] = spin.momentum[k] + (half_the_change + half_the_change);
+            spin.momentum[k] += half_the_change + half_the_change;
         }
     }
 

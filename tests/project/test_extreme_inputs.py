@@ -71,6 +71,7 @@ def test_extreme_numbers(name):
         # Of steps that are too long, as `simulate` documents.
         warnings.filterwarnings("ignore", "with step = .* the body turns", RuntimeWarning)
         warnings.filterwarnings("ignore", ".* changes too fast for step", RuntimeWarning)
+        warnings.filterwarnings("ignore", "the body does not fit", RuntimeWarning)
         run_each(name, kinds.extremes)
 
 
@@ -81,5 +82,6 @@ def test_other_shapes(name):
 
 @each
 @pytest.mark.filterwarnings("ignore:invalid value encountered in cast")
+@pytest.mark.filterwarnings("ignore:the body does not fit")
 def test_other_types(name):
     run_each(name, kinds.types)

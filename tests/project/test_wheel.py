@@ -1,5 +1,6 @@
 """The wheel, in an environment with NumPy alone and no other program; the source distribution."""
 
+import fcntl
 import os
 import sys
 import tarfile
@@ -29,7 +30,10 @@ pytestmark = [
 
 def packed(folder, *arguments):
     """The path of what maturin makes; the extension is compiled already."""
-    done = processes.run([MATURIN, *arguments, "--out", folder], cwd=ROOT, timeout=600)
+    # maturin moves files between fixed places, which other workers of the tests must not do at the same time.
+    with (ROOT / "target/packing").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        done = processes.run([MATURIN, *arguments, "--out", folder], cwd=ROOT, timeout=600)
     assert done.returncode == 0, done.stderr
     (path,) = folder.iterdir()
     return path

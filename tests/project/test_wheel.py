@@ -1,6 +1,5 @@
 """The wheel, in an environment with NumPy alone and no other program; the source distribution."""
 
-import fcntl
 import os
 import sys
 import tarfile
@@ -14,6 +13,11 @@ import pytest
 import processes
 from command_line import EXAMPLES, ROOT
 from viewers import needs_bundle
+
+try:
+    import fcntl
+except ImportError:  # on Windows
+    fcntl = None
 
 MATURIN = Path(sys.executable).with_name("maturin")
 
@@ -32,7 +36,8 @@ def packed(folder, *arguments):
     """The path of what maturin makes; the extension is compiled already."""
     # maturin moves files between fixed places, which other workers of the tests must not do at the same time.
     with (ROOT / "target/packing").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        if fcntl is not None:
+            fcntl.flock(lock, fcntl.LOCK_EX)
         done = processes.run([MATURIN, *arguments, "--out", folder], cwd=ROOT, timeout=600)
     assert done.returncode == 0, done.stderr
     (path,) = folder.iterdir()

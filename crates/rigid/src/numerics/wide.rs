@@ -1,6 +1,6 @@
 //! Double-double numbers with an unbounded exponent, for fourth powers of a tilt of 1e-300, in lanes.
 //!
-//! There are no branches, so loops over lanes are vectorised; one number is one lane.
+//! There are no branches, so loops over lanes are vectorised; a single number is one lane.
 
 use super::double_double::{DoubleDouble, DoubleDoubles};
 use std::cmp::Ordering;

@@ -26,7 +26,7 @@ fn quoted(token: &str) -> String {
     format!("write `\"{token}\"`")
 }
 
-/// What to write for a value that is none, within an array or not.
+/// What to write for text that is not a TOML value; in an array it is not put in brackets.
 fn remedy_of_value(token: &str, in_array: bool) -> Option<String> {
     let parts: Vec<&str> = token.split_whitespace().collect();
     let is_number = |part: &&str| part.parse::<f64>().is_ok();

@@ -123,8 +123,7 @@ impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
             (signed[0][l], signed[1][l], signed[2][l]) = (signs[0][l], signs[1][l] * s[l], sigma);
         }
         let sizes = inv.amplitudes();
-        let (mut precession, mean) =
-            inv.precession(&s, &k2, kc.or(&not(&on_separatrix), Wides::all(1.0)), lambda);
+        let (mut precession, mean) = inv.precession(&s, &k2, Wides::all(1.0).or(&on_separatrix, kc), lambda);
         precession = (inv.g2.sqrt() / inv.b).narrowed().or(&on_separatrix, precession);
         let [cn, sn] = [(wa / sizes[0]).signed(&signed[0]), (wb / sizes[1]).signed(&signed[1])];
         let mut amplitudes = sizes.map(Wides::values);
@@ -177,15 +176,6 @@ impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
             start: (self.start[0][l], self.start[1][l]),
         }
     }
-}
-
-#[inline(always)]
-fn not<const W: usize>(mask: &[bool; W]) -> [bool; W] {
-    let mut result = [false; W];
-    for l in 0..W {
-        result[l] = !mask[l];
-    }
-    result
 }
 
 impl<const W: usize, const FMA: bool> Invariants<W, FMA> {

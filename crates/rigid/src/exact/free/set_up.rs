@@ -165,17 +165,13 @@ pub(crate) fn phases_and_nomes<const W: usize, const FMA: bool>(
     other: &[f64; W],
 ) -> (Phases<W>, [f64; W]) {
     // 1/4K.
-    let per_u = (*mean * DoubleDoubles::all(DoubleDouble::OVER_TWO_PI))
-        .or(&on_separatrix.map(|is_on| !is_on), DoubleDoubles::all((1.0 / NEVER).into()));
+    let per_u = *mean * DoubleDoubles::all(DoubleDouble::OVER_TWO_PI);
+    let per_u = DoubleDoubles::all((1.0 / NEVER).into()).or(on_separatrix, per_u);
     let rate = *lambda * per_u;
     let (mut start, mut nome) = ([[0.0; W]; 2], [0.0; W]);
     for l in 0..W {
-        (start[0][l], start[1][l]) = (0.25 * whole[l], rest[l] * per_u.hi[l]);
-        if on_separatrix[l] {
-            (start[0][l], start[1][l]) = (start[1][l], 0.0);
-        }
-    }
-    for l in 0..W {
+        let part = rest[l] * per_u.hi[l];
+        (start[0][l], start[1][l]) = if on_separatrix[l] { (part, 0.0) } else { (0.25 * whole[l], part) };
         let exponent = if other[l] > 0.0 { -PI * mean.hi[l] / other[l] } else { f64::NEG_INFINITY };
         nome[l] = if on_separatrix[l] { f64::INFINITY } else { exponent.exp() };
     }

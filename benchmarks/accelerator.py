@@ -2,18 +2,21 @@
 
 One kernel takes many steps of a large ensemble. Operations are counted in the program of a step before
 compilation: each sum, product, quotient, root, comparison and selection counts as one. The maker's peak
-performance counts a fused multiply-add as two; a step without fused operations can reach half of it.
-Without a GPU nothing is measured.
+performance counts a fused multiply-add as two; a step without fused operations can reach half of it. Free
+bodies are also stepped by MJX and by a kernel in Warp, where these are installed. Without a GPU nothing is
+measured.
 """
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
+import accelerator_peers
 import polhode as ph
 
 # Teraflops of the vector units in double and single precision, from NVIDIA's data sheets of the SXM boards.
@@ -26,6 +29,7 @@ PEAKS = {
 _MOVES = {"broadcast_in_dim", "convert_element_type", "copy", "reshape", "squeeze", "stop_gradient", "split"}
 METHODS = ("rk4", "strang", "kahan_li8")
 BODIES, STEPS, ROUNDS = 1 << 20, 1000, 3
+MOMENTS = [2.0, 2.4, 2.9]
 
 
 def operations(jaxpr: Any) -> int:
@@ -54,27 +58,48 @@ def of_a_step(method: str, heavy: bool) -> int:
     return two - one
 
 
+def bodies_of(count: int, dtype: str) -> tuple[Any, Any]:
+    """Return unit rotors and angular velocities."""
+    rng = np.random.default_rng(0)
+    rotors, omegas = (rng.normal(size=(count, n)) for n in (4, 3))
+    rotors /= np.linalg.norm(rotors, axis=1, keepdims=True)
+    return rotors.astype(dtype), omegas.astype(dtype)
+
+
 def measured(method: str, dtype: str, heavy: bool, bodies: int, steps: int) -> float:
-    """Return body-steps per second, the best of several runs."""
+    """Return body-steps per second of the kernel."""
     import jax
 
-    rng = np.random.default_rng(0)
-    moments = rng.uniform(2, 3, size=(bodies, 3)).astype(dtype)
-    rotors, omegas = (rng.normal(size=(bodies, n)).astype(dtype) for n in (4, 3))
+    moments = np.random.default_rng(1).uniform(2, 3, size=(bodies, 3)).astype(dtype)
     law = ph.jax.torque.heavy(np.array([0, 0, 1], dtype)) if heavy else None
-    given = [jax.device_put(x) for x in (moments, rotors, omegas)]
+    given = jax.device_put((moments, *bodies_of(bodies, dtype)))
 
     @jax.jit
     def moved(*given: Any) -> Any:
         return ph.jax.advance(*given, 0.01 * steps, law, method, steps=steps)
 
-    jax.block_until_ready(moved(*given))
+    return bodies * steps / shortest(lambda: jax.block_until_ready(moved(*given)))
+
+
+def shortest(run: Callable[[], Any]) -> float:
+    """Return the shortest time of several runs in s, after one that compiles."""
+    run()
     best = np.inf
     for _ in range(ROUNDS):
         begin = perf_counter()
-        jax.block_until_ready(moved(*given))
+        run()
         best = min(best, perf_counter() - begin)
-    return bodies * steps / best
+    return best
+
+
+def of_peer(name: str, dtype: str, bodies: int, steps: int) -> str:
+    """Return the rate of a peer on free bodies of equal moments, and its difference from the kernel."""
+    rotors, omegas = bodies_of(bodies, dtype)
+    run, read = getattr(accelerator_peers, name)(MOMENTS, rotors, omegas, 0.01, steps)
+    rate = bodies * steps / shortest(run)
+    own = ph.jax.advance(np.array(MOMENTS, dtype), rotors, omegas, 0.01 * steps, None, "rk4", steps=steps)
+    apart = max(float(np.abs(np.asarray(a) - np.asarray(b)).max()) for a, b in zip(read(), own, strict=True))
+    return f"{rate:.3g} body-steps/s; its states differ from the kernel's by up to {apart:.1g}"
 
 
 def main() -> None:
@@ -102,6 +127,15 @@ def main() -> None:
             share = "unknown" if peak is None else f"{rate * count / (1e12 * peak[dtype]):.0%}"
             law = "heavy" if heavy else "free"
             print(f"{method}, {law}, {dtype}: {rate:.3g} body-steps/s, {share} of the peak of the device")
+    for name in ("warp", "mjx"):
+        for dtype in ("float64", "float32"):
+            try:
+                # MJX writes its data to memory in each step.
+                fewer = max(1, arguments.steps // (20 if name == "mjx" else 1))
+                found = of_peer(name, dtype, arguments.bodies, fewer)
+            except ImportError as missing:
+                found = f"not measured: {missing}"
+            print(f"{name}, rk4, free, {dtype}: {found}")
 
 
 if __name__ == "__main__":

@@ -131,7 +131,7 @@ def test_a_motion_outside_jit_is_one_program():
     motions = (
         lambda omega: ph.jax.free(moments, ROTOR, omega, [0.0, 0.3]),
         back_and_forth,
-        lambda omega: ph.jax.advance(moments, ROTOR, omega, TIME, law, "rk4", steps=4),
+        lambda omega: ph.jax.advance(moments, ROTOR, omega, TIME, law, "rk4", steps=4, kernel=False),
     )
     for motion in motions:
         started = [equation.primitive.name for equation in jax.make_jaxpr(motion)(OMEGA).jaxpr.eqns]

@@ -6,6 +6,8 @@ import pytest
 import polhode as ph
 
 jax = pytest.importorskip("jax")
+from polhode.jax._fused import fused  # noqa: E402
+
 jnp = jax.numpy
 laws = ph.jax.torque
 
@@ -75,7 +77,32 @@ def test_it_is_a_kernel_for_a_gpu(method, monkeypatch):
         return ph.jax.advance(MOMENTS, ROTORS, omegas, 1.5, laws.heavy(HEAVY), method, steps=STEPS)
 
     lowered = jax.jit(moved).trace(OMEGAS).lower(lowering_platforms=("cuda",))
-    assert lowered.as_text().count("custom_call @__gpu$xla.gpu.triton") == 1
+    text = lowered.as_text()
+    assert text.count("custom_call @__gpu$xla.gpu.triton") == 1
+    assert "fma.rn.f64" in text
+
+
+def test_products_are_joined_to_their_sums():
+    seen = []
+
+    def multiply_add(a, b, c, signs):
+        seen.append("".join(signs))
+        product, c = (x if sign == "+" else -x for x, sign in zip((a * b, c), signs, strict=True))
+        return product + c
+
+    def step(state, h):
+        x, y = state
+        kept = x * y
+        x, y = x * h + y, 2.0 - y * kept
+        x = x * y - y * h
+        return jax.lax.fori_loop(0, 3, lambda i, z: z * h - y, x) + kept, jnp.where(x > 0, y * y, kept)
+
+    x, h = np.linspace(-1, 2, 8), 0.25
+    found = jax.jit(fused(step, multiply_add))((x, x + 1), h)
+    for a, b in zip(found, step((x, x + 1), h), strict=True):
+        assert np.abs(a - b).max() < 8 * EPS
+    # h is one number for all bodies: products with it are of the shape of the bodies, and join.
+    assert sorted(seen) == ["++", "+-", "-+", "-+"]
 
 
 def test_unsupported_arguments_of_the_kernel_raise():

@@ -16,6 +16,7 @@ from polhode._support.extras import optional
 from polhode.jax._arguments import Start
 from polhode.jax._components import joined, normalized, split
 from polhode.jax._formula_law import Formula
+from polhode.jax._fused import fused
 from polhode.jax._laws import Function, Gyrostat, Torque
 from polhode.jax._library import Array, jax, jnp, lax
 from polhode.jax._simulate import prepared, simulate_principal
@@ -112,17 +113,17 @@ def _walk(
     method: str, steps: int, tree: Any, leaves: list[Array], begin: Array, end: Array, table: Array
 ) -> tuple[Array, ...]:
     moments, rotor, omega, torque = jax.tree.unflatten(tree, leaves)
-    moves = stepper(method, Gyrostat(moments, torque.wheel()), torque, table)
+    moves = stepper(method, Gyrostat.of(moments, torque.wheel()), torque, table)
     point = moves.start(rotor, omega, begin)
     fixed = moves.fixed(point)
 
     def one(i: Array, point: Any) -> Any:
-        share = (i + 1).astype(end.dtype) / steps
+        share = (i + 1).astype(end.dtype) * (1 / steps)
         after = jnp.where(i + 1 == steps, end, begin + (end - begin) * share)
         return moves.step(fixed, point, after - point.time)._replace(time=after)
 
-    point = lax.fori_loop(0, steps, one, point)
-    return (*point.rotor, *moves.omega(point))
+    point = lax.fori_loop(0, steps, fused(one) if _fuses() else one, point)
+    return (*moves.rotor(point), *moves.omega(point))
 
 
 def _call(walk: Any, rows: list[Array], span: Array, table: Array) -> list[Array]:
@@ -153,6 +154,11 @@ def _call(walk: Any, rows: list[Array], span: Array, table: Array) -> list[Array
     )
     found: list[Array] = call(numbers, *rows)
     return found
+
+
+def _fuses() -> bool:
+    """Whether the kernel may use instructions of NVIDIA's GPUs; the interpreter and AMD's have others."""
+    return jax.default_backend() == "gpu" and "rocm" not in jax.devices()[0].client.platform_version
 
 
 def _target() -> dict[str, Any]:

@@ -17,6 +17,7 @@ from polhode._mechanics.laws import Sum
 from polhode.jax._components import (
     Four,
     Three,
+    along,
     compose,
     cross,
     joined,
@@ -50,15 +51,27 @@ class Phase(NamedTuple):
 
 
 class Gyrostat(NamedTuple):
-    """Principal moments, and the momentum h of a wheel relative to the body (None without a wheel)."""
+    """A body: principal moments, and the momentum h of a wheel relative to the body (None without a wheel).
+
+    Quotients of the moments are computed once, because one costs a processor as much as ten products:
+    ``1/i1`` and ``(i2 − i3)/i1`` with those of the other axes.
+    """
 
     moments: Three
-    wheel: Three | None = None
+    reciprocals: Three
+    differences: Three
+    wheel: Three | None
+
+    @staticmethod
+    def of(moments: Three, wheel: Three | None) -> Gyrostat:
+        """Return the body."""
+        i, j, k = moments
+        reciprocals = 1.0 / i, 1.0 / j, 1.0 / k
+        return Gyrostat(moments, reciprocals, along(reciprocals, (j - k, k - i, i - j)), wheel)
 
     def carried(self, omega: Three) -> Three:
         """``I(Ω)``."""
-        i = self.moments
-        return i[0] * omega[0], i[1] * omega[1], i[2] * omega[2]
+        return along(self.moments, omega)
 
     def momentum(self, omega: Three) -> Three:
         """``m = I(Ω) + h``."""
@@ -67,16 +80,17 @@ class Gyrostat(NamedTuple):
 
     def omega(self, momentum: Three) -> Three:
         """``Ω = I⁻¹(m − h)``."""
-        i, m = self.moments, momentum
-        if self.wheel is not None:
-            m = minus(m, self.wheel)
-        return m[0] / i[0], m[1] / i[1], m[2] / i[2]
+        carried = momentum if self.wheel is None else minus(momentum, self.wheel)
+        return along(self.reciprocals, carried)
 
-    def rate(self, omega: Three, torque: Three) -> Three:
-        """``Ω'`` by Euler's equations, handout eq. (4.21)."""
-        i, turned = self.moments, cross(self.momentum(omega), omega)
-        total = plus(turned, torque)
-        return total[0] / i[0], total[1] / i[1], total[2] / i[2]
+    def rate(self, omega: Three, torque: Three | None) -> Three:
+        """``Ω'`` by Euler's equations, handout eq. (4.21): ``i1 Ω1' = (i2 − i3) Ω2 Ω3 + N1``."""
+        p, q, r = omega
+        rate = along(self.differences, (q * r, r * p, p * q))
+        if self.wheel is not None:
+            reaction = cross(self.wheel, omega)
+            torque = reaction if torque is None else plus(torque, reaction)
+        return rate if torque is None else plus(rate, along(self.reciprocals, torque))
 
 
 # --- laws
@@ -145,7 +159,7 @@ class At(NamedTuple):
         """Multiply by gains along the body axes."""
         if self.frame is not None:
             b = turned(self.frame, b)
-        b = b[0] * gains[0], b[1] * gains[1], b[2] * gains[2]
+        b = along(gains, b)
         return b if self.frame is None else turned(reverse(self.frame), b)
 
 

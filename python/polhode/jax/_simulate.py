@@ -136,7 +136,7 @@ def simulate_principal(
     dtype = given.rotor.dtype
     torque = jax.tree.map(lambda x: jnp.asarray(x, dtype), torque)
     table = jnp.array(table_of(method), dtype)
-    moves = stepper(method, Gyrostat(split(given.moments), torque.wheel()), torque, table)
+    moves = stepper(method, Gyrostat.of(split(given.moments), torque.wheel()), torque, table)
     point = moves.start(*_batched(given, torque, moves.body), jnp.asarray(begin, dtype))
     fixed = moves.fixed(point)
     # Recompute the intermediate values of a step for gradients instead of storing them.
@@ -157,9 +157,9 @@ def simulate_principal(
             return lax.cond(i < count, go, lambda point, _: point, point, i), None
 
         point = lax.scan(one, point, jnp.arange(most))[0]
-        return point, (point.rotor, moves.omega(point))
+        return point, (moves.rotor(point), moves.omega(point))
 
-    first = point.rotor, moves.omega(point)
+    first = moves.rotor(point), moves.omega(point)
     rows = lax.scan(interval, point, (jnp.asarray(targets, dtype), jnp.asarray(counts)))[1]
     all_rows = jax.tree.map(lambda x, y: jnp.concatenate([x[None], y]), first, rows)
     rotors, omegas = (jnp.moveaxis(joined(x), 0, -2) for x in all_rows)

@@ -2,8 +2,9 @@
 
 Splittings step as in `crates/rigid/src/methods/splitting`, which derives them. The turns are about the axes
 of the smallest and the largest moment. Which those are is known when the program runs, not when it is
-compiled, so the axes are renamed: with the smallest first and the largest last, and every bivector negated
-where that order is odd. Renaming is exact.
+compiled, so a motion is stepped over renamed axes: with the smallest first and the largest last, and every
+bivector negated where that order is odd, so that products of renamed values are renamed products. Renaming
+is exact.
 """
 
 from __future__ import annotations
@@ -26,9 +27,9 @@ from polhode.jax._components import (
     plus,
     renormalized,
     reverse,
-    rotor_rate,
     times,
     turned,
+    twice_the_rate,
 )
 from polhode.jax._laws import Gyrostat, Phase, Torque
 from polhode.jax._library import Array, jnp, lax
@@ -126,12 +127,21 @@ class Axes(NamedTuple):
         """Return the bivector over e1, e2, e3."""
         return times(self.placed(b), self.sign)
 
+    def renamed_rotor(self, r: Four) -> Four:
+        """Return a rotor over the renamed axes."""
+        return r[0], *self.renamed(r[1:])
+
+    def restored_rotor(self, r: Four) -> Four:
+        """Return the rotor over e1, e2, e3."""
+        return r[0], *self.restored(r[1:])
+
 
 class Splitting:
     """A body and laws that do not depend on the angular velocity, stepped by one of `COMPOSITIONS`.
 
-    `table` has the numbers of its `stages` once more, one after the other, as the program reads them: several
-    stages are a loop, which compiles sooner than their steps side by side.
+    Phases are over the renamed axes; laws take and return values over e1, e2, e3. `table` has the numbers of
+    the `stages` once more, one after the other, as the program reads them: several stages are a loop, which
+    compiles sooner than their steps side by side.
     """
 
     def __init__(self, name: str, body: Gyrostat, torque: Torque, table: Array) -> None:
@@ -139,18 +149,28 @@ class Splitting:
         self.stages, self.table = stages(name), table
         self.axes = Axes.of(body.moments)
         small, middle, large = self.axes.pick(body.moments)
-        self.middle = middle
+        reciprocals = self.axes.pick(body.reciprocals)
+        self.over_middle = reciprocals[1]
         # 1/i_k − 1/i_p, without subtracting nearly equal quotients.
-        self.kappa = (middle - small) / (middle * small), (middle - large) / (middle * large)
-        self.turning = None if body.wheel is None else body.omega((0.0, 0.0, 0.0))
+        self.kappa = (
+            (middle - small) * reciprocals[1] * reciprocals[0],
+            (middle - large) * reciprocals[1] * reciprocals[2],
+        )
+        self.wheel = None if body.wheel is None else self.axes.renamed(body.wheel)
+        self.turning = None if body.wheel is None else self.axes.renamed(body.omega((0.0, 0.0, 0.0)))
 
     def start(self, rotor: Four, omega: Three, time: Array) -> Phase:
         """Return the initial state."""
-        return Phase(rotor, self.body.momentum(omega), time)
+        momentum = self.axes.renamed(self.body.momentum(omega))
+        return Phase(self.axes.renamed_rotor(rotor), momentum, time)
+
+    def rotor(self, phase: Phase) -> Four:
+        """Return the rotor over e1, e2, e3."""
+        return self.axes.restored_rotor(phase.rotor)
 
     def omega(self, phase: Phase) -> Three:
-        """Return the angular velocity."""
-        return self.body.omega(phase.momentum)
+        """Return the angular velocity over e1, e2, e3."""
+        return self.body.omega(self.axes.restored(phase.momentum))
 
     def fixed(self, start: Phase) -> Three | None:
         """Return L in space if the laws conserve it."""
@@ -186,36 +206,35 @@ class Splitting:
 
     def _kick(self, acting: Torque, phase: Phase, h: Array) -> Phase:
         """``m' = N − g (m − h)`` for a time: ``(m − h) e^(−gt) + N (1 − e^(−gt))/g``."""
-        momentum, torque, impulse = phase.momentum, acting.value(self.body, phase), h
+        momentum, impulse = phase.momentum, h
+        given = Phase(self.rotor(phase), self.axes.restored(momentum), phase.time)
+        torque = self.axes.renamed(acting.value(self.body, given))
         if self.damping is not None:
             decay = -self.damping * h
             ratio = _expm1_ratio(decay)
-            wheel = self.body.wheel
-            carried = momentum if wheel is None else minus(momentum, wheel)
+            carried = momentum if self.wheel is None else minus(momentum, self.wheel)
             momentum, impulse = plus(momentum, times(carried, ratio * decay)), h * ratio
         return phase._replace(momentum=plus(momentum, times(torque, impulse)))
 
     def _turn_about_momentum(self, phase: Phase, h: Array) -> Phase:
         """``R ← R exp(−½ h m/i_p)``, which commutes with the other turns."""
-        half = 0.5 * h / self.middle
+        half = 0.5 * h * self.over_middle
         cos, sinc = cosine_and_sinc(half * half * dot(phase.momentum, phase.momentum))
         return phase._replace(rotor=compose(phase.rotor, (cos, *times(phase.momentum, -half * sinc))))
 
     def _turn_about_axes(self, phase: Phase, h: Array) -> Phase:
         """Turns a–b–a, with that of a wheel in their middle."""
-        s, *b = phase.rotor
-        r, m = (s, *self.axes.renamed(tuple(b))), self.axes.renamed(phase.momentum)
-        half = 0.5 * h
+        r, m, half = phase.rotor, phase.momentum, 0.5 * h
         r, m = _turn_first(r, m, 0.5 * self.kappa[0] * m[0] * half)
         if self.turning is None:
             r, m = _turn_last(r, m, 0.5 * self.kappa[1] * m[2] * h)
         else:
             r, m = _turn_last(r, m, 0.5 * self.kappa[1] * m[2] * half)
-            q = exponential(times(self.axes.renamed(self.turning), -half))
+            q = exponential(times(self.turning, -half))
             r, m = compose(r, q), turned(reverse(q), m)
             r, m = _turn_last(r, m, 0.5 * self.kappa[1] * m[2] * half)
         r, m = _turn_first(r, m, 0.5 * self.kappa[0] * m[0] * half)
-        return phase._replace(rotor=(r[0], *self.axes.restored(r[1:])), momentum=self.axes.restored(m))
+        return phase._replace(rotor=r, momentum=m)
 
 
 def _turn_first(r: Four, m: Three, half: Array) -> tuple[Four, Three]:
@@ -243,11 +262,11 @@ def _restored(phase: Phase, fixed: Three) -> Phase:
     """Correct |m| and the direction of ``R m ~R`` for the rounding of a free step, to first order."""
     size = dot(fixed, fixed)
     still = size == 0
-    size = jnp.where(still, 1.0, size)
-    missing = jnp.where(still, 0.0, 0.5 * (size - dot(phase.momentum, phase.momentum)) / size)
+    over_size = jnp.where(still, 0.0, 1.0 / jnp.where(still, 1.0, size))
+    missing = 0.5 * over_size * (size - dot(phase.momentum, phase.momentum))
     momentum = plus(phase.momentum, times(phase.momentum, missing))
     wandered = turned(phase.rotor, momentum)
-    x, y, z = times(cross(wandered, fixed), -0.5 / size)
+    x, y, z = times(cross(wandered, fixed), -0.5 * over_size)
     return Phase(compose((jnp.ones_like(x), x, y, z), phase.rotor), momentum, phase.time)
 
 
@@ -286,6 +305,10 @@ class RungeKutta:
         """Return the initial state."""
         return Point(rotor, omega, time)
 
+    def rotor(self, point: Point) -> Four:
+        """Return the rotor."""
+        return point.rotor
+
     def omega(self, point: Point) -> Three:
         """Return the angular velocity."""
         return point.spin
@@ -303,15 +326,21 @@ class RungeKutta:
         k3 = self._slope(acting, _moved(state, k2, 0.5 * h), t + 0.5 * h)
         k4 = self._slope(acting, _moved(state, k3, h), t + h)
         mean = tuple((a + d) + 2.0 * (b + c) for a, b, c, d in zip(k1, k2, k3, k4, strict=True))
-        s, x, y, z, p, q, r = _moved(state, mean, h / 6.0)
+        s, x, y, z, p, q, r = _moved(state, mean, h * (1 / 6))
         return Point(normalized((s, x, y, z)), (p, q, r), t + h)
 
     def _slope(self, acting: Torque, state: Seven, time: Array) -> Seven:
+        """Return ``2 R'`` and ``Ω'``."""
         s, x, y, z, p, q, r = state
         rotor, omega = (s, x, y, z), (p, q, r)
-        torque = acting.exerted(self.body, Phase(rotor, self.body.momentum(omega), time))
-        return (*rotor_rate(rotor, omega), *self.body.rate(omega, torque))
+        torque = None
+        if not self.torque.turns_nothing:
+            torque = acting.exerted(self.body, Phase(rotor, self.body.momentum(omega), time))
+        return (*twice_the_rate(rotor, omega), *self.body.rate(omega, torque))
 
 
 def _moved(state: Seven, slope: Seven, h: Array) -> Seven:
-    return tuple(a + h * b for a, b in zip(state, slope, strict=True))
+    """Return the state after a time h with a slope of `_slope`."""
+    lengths = (0.5 * h,) * 4 + (h,) * 3
+    s, x, y, z, p, q, r = (a + k * b for a, b, k in zip(state, slope, lengths, strict=True))
+    return s, x, y, z, p, q, r

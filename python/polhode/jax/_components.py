@@ -120,8 +120,12 @@ def normalized(r: Four) -> Four:
 
 
 def renormalized(r: Four) -> Four:
-    """Take one Newton step towards norm 1, which corrects the rounding of many products."""
-    missing = -0.5 * ((r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]) - 1.0)
+    """``R/|R|`` to third order in ``|R|² − 1``.
+
+    Adding a small part rounds shrinking and growing alike; a factor near 1 would not.
+    """
+    excess = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]) - 1.0
+    missing = excess * (excess * 0.375 - 0.5)
     return r[0] + r[0] * missing, r[1] + r[1] * missing, r[2] + r[2] * missing, r[3] + r[3] * missing
 
 

@@ -4,8 +4,8 @@ use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::exact::damped::DampedTop;
-use polhode_rigid::exact::free::FreeMotion;
-use polhode_rigid::exact::lagrange::LagrangeTop;
+use polhode_rigid::exact::free::{FreeBody, FreeMotion};
+use polhode_rigid::exact::lagrange::{HeavyTop, LagrangeTop};
 use polhode_rigid::exact::larmor::LarmorSphere;
 use polhode_rigid::exact::many::{TILE, Tile, Times, at_each};
 use polhode_rigid::exact::motion::ExactMotion;
@@ -27,17 +27,19 @@ fn free() -> Vec<FreeMotion> {
 }
 
 /// Near the unstable axis, on the separatrix, at rest, steady and tumbling; damped, growing and without damping.
-fn damped() -> Vec<DampedTop> {
+fn damped_starts() -> Vec<(Inertia, Rotor, Bivector, f64)> {
     let omegas = [[0.001, 1.0, 0.001], [0.375, 0.5, 0.5], [0.0; 3], [0.0, 0.0, 2.0], [0.25, -0.5, 1.0]];
     let gs = [0.3, -0.01, 0.0, 1e-20, 1e-310, 1e-3];
-    let one = |k: usize| {
-        DampedTop::new(&moments([1.0, 2.0, 2.25]), start(), Bivector(omegas[k % 5]), gs[k % 6]).unwrap()
-    };
+    let one = |k: usize| (moments([1.0, 2.0, 2.25]), start(), Bivector(omegas[k % 5]), gs[k % 6]);
     (0..TILE + 70).map(one).collect()
 }
 
+fn damped() -> Vec<DampedTop> {
+    damped_starts().into_iter().map(|(i, r, w, g)| DampedTop::new(&i, r, w, g).unwrap()).collect()
+}
+
 /// Tops that precess, sleep, fall from near the upright and along the separatrix, hang, and turn without a torque.
-fn heavy() -> Vec<LagrangeTop> {
+fn heavy_starts() -> Vec<(Inertia, Rotor, Bivector, Vector)> {
     let tilt = |angle: f64| Rotor::exp(Bivector([-0.5 * angle, 0.0, 0.0]));
     let i = moments([1.0, 1.0, 0.5]);
     let up = Rotor::IDENTITY;
@@ -60,9 +62,13 @@ fn heavy() -> Vec<LagrangeTop> {
         // The multiples of rates and torques by a power of two are other motions of the same regime.
         let unit = 2f64.powi((k / kinds.len() % 7) as i32);
         let (omega, c) = (omega.map(|w| w * unit), c.map(|c| c * unit * unit));
-        LagrangeTop::new(inertia, *rotor, Bivector(omega), Vector(c)).unwrap()
+        (*inertia, *rotor, Bivector(omega), Vector(c))
     };
     (0..TILE + 50).map(one).collect()
+}
+
+fn heavy() -> Vec<LagrangeTop> {
+    heavy_starts().into_iter().map(|(i, r, w, c)| LagrangeTop::new(&i, r, w, c).unwrap()).collect()
 }
 
 fn spheres() -> Vec<LarmorSphere> {
@@ -114,6 +120,41 @@ fn many_bodies_give_the_bits_of_single_ones() {
     check_bits(&damped());
     check_bits(&heavy());
     check_bits(&spheres());
+}
+
+/// Motions that are set up together, in groups of which the last is not full, have the bits that they have alone.
+#[test]
+fn motions_set_up_in_lanes_are_those_set_up_alone() {
+    let number = TILE - 3;
+    let same = |tile: Tile, alone: &[&dyn ExactMotion]| {
+        let times = [0.0, 3.75, -100.0];
+        let (mut rotors, mut omegas) = (vec![0.0; 12 * number], vec![0.0; 9 * number]);
+        let tiles = [tile];
+        at_each(Threads::ONE, &tiles, Times::Common(&times), 0..3 * number, &mut rotors, &mut omegas);
+        for (k, motion) in alone.iter().take(number).enumerate() {
+            assert_eq!(tiles[0].horizons()[k], motion.horizons(), "body {k}");
+            for (j, &t) in times.iter().enumerate() {
+                let ((rotor, omega), row) = (motion.at(t), 3 * k + j);
+                assert_eq!(rotor.components(), rotors[4 * row..4 * row + 4], "body {k} at {t}");
+                assert_eq!(omega.0, omegas[3 * row..3 * row + 3], "body {k} at {t}");
+            }
+        }
+    };
+    fn each<M: ExactMotion>(motions: &[M]) -> Vec<&dyn ExactMotion> {
+        motions.iter().map(|motion| motion as &dyn ExactMotion).collect()
+    }
+
+    let starts = damped_starts().into_iter().take(number);
+    let free = starts.clone().map(|(i, r, w, _)| FreeBody::new(&i, r, w));
+    let alone: Vec<FreeMotion> = free.clone().map(|body| body.unwrap().motion()).collect();
+    same(Tile::free(free).unwrap(), &each(&alone));
+    let bodies = starts.map(|(i, r, w, g)| {
+        DampedTop::body(&i, r, w, g).map(|body| (body, g)).map_err(|error| error.to_string())
+    });
+    same(Tile::damped(bodies).unwrap(), &each(&damped()));
+    let tops = heavy_starts().into_iter().take(number);
+    let tops = tops.map(|(i, r, w, c)| HeavyTop::new(&i, r, w, c).map_err(|error| error.to_string()));
+    same(Tile::lagrange(tops).unwrap(), &each(&heavy()));
 }
 
 /// A tile takes the first motions, and reports the first error.

@@ -7,7 +7,7 @@ use crate::support::facts::{columns, dict};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::inertia;
 use polhode_rigid::exact::damped::DampedTop;
-use polhode_rigid::exact::lagrange::{self, LagrangeDescription};
+use polhode_rigid::exact::lagrange::{self, HeavyTop, LagrangeDescription};
 use polhode_rigid::exact::larmor::LarmorSphere;
 use polhode_rigid::exact::many::Tile;
 use polhode_rigid::exact::symmetric::SymmetricTop;
@@ -24,8 +24,12 @@ pub(crate) struct LagrangeTop {
     one: Option<Box<lagrange::LagrangeTop>>,
 }
 
-fn heavy(&Started { inertia, rotor, omega, law }: &Started<'_, 3>) -> Result<lagrange::LagrangeTop, String> {
-    lagrange::LagrangeTop::new(inertia, rotor, omega, Vector(law)).map_err(|error| error.to_string())
+fn heavy_top(&Started { inertia, rotor, omega, law }: &Started<'_, 3>) -> Result<HeavyTop, String> {
+    HeavyTop::new(inertia, rotor, omega, Vector(law)).map_err(|error| error.to_string())
+}
+
+fn heavy(body: &Started<'_, 3>) -> Result<lagrange::LagrangeTop, String> {
+    heavy_top(body)?.motion().map_err(|error| error.to_string())
 }
 
 fn damped(&Started { inertia, rotor, omega, law: [g] }: &Started<'_, 1>) -> Result<DampedTop, String> {
@@ -48,7 +52,7 @@ impl LagrangeTop {
     ) -> PyResult<PyClassInitializer<LagrangeTop>> {
         let given = Given { inertias, rotors, omegas, parameters: Some(c) };
         let (tops, one) =
-            ClosedForm::new(py, given, heavy, |bodies| Tile::new(bodies.map(|body| heavy(&body?))))?;
+            ClosedForm::new(py, given, heavy, |bodies| Tile::lagrange(bodies.map(|body| heavy_top(&body?))))?;
         Ok(PyClassInitializer::from(tops).add_subclass(LagrangeTop { one: one.map(Box::new) }))
     }
 

@@ -12,6 +12,7 @@ use super::free::series::{Circular, Hyperbolic};
 use super::free::{FreeBody, FreeMotions};
 use super::lagrange::flow::Flow as Lagrange;
 use super::lagrange::series::{Circular as LagrangeCircular, Hyperbolic as LagrangeHyperbolic};
+use super::lagrange::{HeavyTop, LagrangeTops};
 use super::lanes::Coefficients;
 use super::larmor::flow::Flow as Larmor;
 use super::motion::ExactMotion;
@@ -92,21 +93,20 @@ impl Tile {
     /// # Errors
     /// The first error of the iterator, with its index.
     pub fn free<E>(bodies: impl Iterator<Item = Result<FreeBody, E>>) -> Result<Tile, (usize, E)> {
-        Tile::in_groups(
-            bodies,
-            |body| *body,
-            |tile, bodies, motions| {
-                let first = tile.horizons.len();
-                tile.horizons
-                    .extend(bodies.iter().enumerate().map(|(l, body)| [motions.horizon(l, body); 2]));
-                let [circular, hyperbolic] = motions.lanes(bodies.len());
-                tile.free_circular.add_lanes(first, &mut motions.circular, &circular);
-                if let Some(motions) = &mut motions.hyperbolic {
-                    tile.free_hyperbolic.add_lanes(first, motions, &hyperbolic);
-                }
-                Ok(())
-            },
-        )
+        let mut motions = FreeMotions::default();
+        Tile::in_groups(bodies, |tile, bodies, count| {
+            motions.set_up(bodies);
+            let first = tile.horizons.len();
+            for (l, body) in bodies[..count].iter().enumerate() {
+                tile.horizons.push([motions.horizon(l, body); 2]);
+            }
+            let [circular, hyperbolic] = motions.lanes(count);
+            tile.free_circular.add_lanes(first, &mut motions.circular, &circular);
+            if let Some(motions) = &mut motions.hyperbolic {
+                tile.free_hyperbolic.add_lanes(first, motions, &hyperbolic);
+            }
+            Ok(())
+        })
     }
 
     /// The same of bodies with the torque `−g L`, from each [`super::damped::DampedTop::body`] and its g.
@@ -116,48 +116,69 @@ impl Tile {
     pub fn damped<E: From<String>>(
         bodies: impl Iterator<Item = Result<(FreeBody, f64), E>>,
     ) -> Result<Tile, (usize, E)> {
-        Tile::in_groups(
-            bodies,
-            |(body, _)| *body,
-            |tile, bodies, motions| {
-                let (first, mut dampings) = (tile.horizons.len(), [0.0; TOGETHER]);
-                for (l, (body, g)) in bodies.iter().enumerate() {
-                    dampings[l] = *g;
-                    let own = damped::own_horizon(body, motions.horizon(l, body))
-                        .map_err(|e| (l, e.to_string().into()))?;
-                    tile.horizons.push(damped::horizons(own, *g));
-                }
-                let [circular, hyperbolic] = motions.lanes(bodies.len());
-                tile.damped_circular.add_lanes(
-                    first,
-                    &mut Damped::new(motions.circular, dampings),
-                    &circular,
-                );
-                if let Some(motions) = motions.hyperbolic {
-                    tile.damped_hyperbolic.add_lanes(first, &mut Damped::new(motions, dampings), &hyperbolic);
-                }
-                Ok(())
-            },
-        )
+        let mut motions = FreeMotions::default();
+        Tile::in_groups(bodies, |tile, bodies, count| {
+            motions.set_up(&bodies.map(|(body, _)| body));
+            let (first, dampings) = (tile.horizons.len(), bodies.map(|(_, g)| g));
+            for (l, (body, g)) in bodies[..count].iter().enumerate() {
+                let own = damped::own_horizon(body, motions.horizon(l, body))
+                    .map_err(|error| (l, error.to_string().into()))?;
+                tile.horizons.push(damped::horizons(own, *g));
+            }
+            let [circular, hyperbolic] = motions.lanes(count);
+            let circular_motions = &mut Damped::new(motions.circular, dampings);
+            tile.damped_circular.add_lanes(first, circular_motions, &circular);
+            if let Some(motions) = motions.hyperbolic {
+                tile.damped_hyperbolic.add_lanes(first, &mut Damped::new(motions, dampings), &hyperbolic);
+            }
+            Ok(())
+        })
     }
 
-    /// Sets up motions as many at a time as there are lanes. An error has the index in its group.
-    fn in_groups<B, E>(
-        bodies: impl Iterator<Item = Result<B, E>>,
-        body: impl Fn(&B) -> FreeBody,
-        take: impl Fn(&mut Tile, &[B], &mut FreeMotions<TOGETHER>) -> Result<(), (usize, E)>,
+    /// The same of heavy symmetric tops.
+    ///
+    /// # Errors
+    /// An error of the iterator or of a motion, with its index.
+    pub fn lagrange<E: From<String>>(
+        tops: impl Iterator<Item = Result<HeavyTop, E>>,
     ) -> Result<Tile, (usize, E)> {
-        let (mut tile, mut bodies) = (Tile::default(), bodies.take(TILE));
-        let (mut group, mut motions) = (Vec::with_capacity(TOGETHER), FreeMotions::default());
+        let mut motions = LagrangeTops::default();
+        Tile::in_groups(tops, |tile, tops, count| {
+            motions.set_up(tops);
+            let (first, mut lanes) = (tile.horizons.len(), [Vec::new(), Vec::new()]);
+            for (l, top) in tops[..count].iter().enumerate() {
+                if motions.steady[l] || !motions.resolved[l] {
+                    tile.add(&top.motion().map_err(|error| (l, error.to_string().into()))?);
+                } else {
+                    tile.horizons.push([motions.horizons[l]; 2]);
+                    lanes[usize::from(!motions.is_circular[l])].push(l);
+                }
+            }
+            tile.lagrange_circular.add_lanes(first, &mut motions.circular, &lanes[0]);
+            if let Some(motions) = &mut motions.hyperbolic {
+                tile.lagrange_hyperbolic.add_lanes(first, motions, &lanes[1]);
+            }
+            Ok(())
+        })
+    }
+
+    /// Takes as many at a time as there are lanes, the number of them, and copies of the last one in the other lanes. An
+    /// error has the index in its group.
+    fn in_groups<B: Copy, E>(
+        all: impl Iterator<Item = Result<B, E>>,
+        mut take: impl FnMut(&mut Tile, &[B; TOGETHER], usize) -> Result<(), (usize, E)>,
+    ) -> Result<Tile, (usize, E)> {
+        let (mut tile, mut all) = (Tile::default(), all.take(TILE));
+        let mut group = Vec::with_capacity(TOGETHER);
         loop {
             let first = tile.horizons.len();
             group.clear();
-            for (place, body) in (first..).zip(bodies.by_ref().take(TOGETHER)) {
-                group.push(body.map_err(|error| (place, error))?);
+            for (place, one) in (first..).zip(all.by_ref().take(TOGETHER)) {
+                group.push(one.map_err(|error| (place, error))?);
             }
             let Some(last) = group.last() else { return Ok(tile) };
-            motions.set_up(&array::from_fn(|l| body(group.get(l).unwrap_or(last))));
-            take(&mut tile, &group, &mut motions).map_err(|(l, error)| (first + l, error))?;
+            let lanes = array::from_fn(|l| *group.get(l).unwrap_or(last));
+            take(&mut tile, &lanes, group.len()).map_err(|(l, error)| (first + l, error))?;
         }
     }
 

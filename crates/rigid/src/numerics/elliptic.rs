@@ -208,11 +208,6 @@ impl<const W: usize, const FMA: bool> Means<W, FMA> {
 }
 
 impl Means<1, false> {
-    /// M of a single k'.
-    pub fn single_mean(&self) -> DoubleDouble {
-        self.mean.lane(0)
-    }
-
     /// `Σ Q_n` for a single p².
     pub fn single_sum(&self, p2: DoubleDouble) -> DoubleDouble {
         self.sum(DoubleDoubles::all(p2)).lane(0)

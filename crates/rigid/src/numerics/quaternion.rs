@@ -1,6 +1,6 @@
-//! Rotors in double-double precision, as quaternions.
+//! Rotors in double-double precision, as quaternions, in lanes.
 
-use super::wide::Wide;
+use super::wide::{Wide, Wides};
 use polhode_ga::Rotor;
 
 /// Quaternion units are the negatives of the planes.
@@ -9,7 +9,18 @@ pub(crate) fn quaternion(rotor: Rotor) -> [Wide; 4] {
     [s, -x, -y, -z].map(Wide::from)
 }
 
-pub(crate) fn product(p: [Wide; 4], q: [Wide; 4]) -> [Wide; 4] {
+/// Those of many rotors, one in each lane.
+#[inline(always)]
+pub(crate) fn quaternions<const W: usize, const FMA: bool>(rotors: &[[f64; W]; 4]) -> [Wides<W, FMA>; 4] {
+    let [s, x, y, z] = rotors;
+    [Wides::from(*s), -Wides::from(*x), -Wides::from(*y), -Wides::from(*z)]
+}
+
+#[inline(always)]
+pub(crate) fn product<const W: usize, const FMA: bool>(
+    p: [Wides<W, FMA>; 4],
+    q: [Wides<W, FMA>; 4],
+) -> [Wides<W, FMA>; 4] {
     [
         p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
         p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
@@ -19,9 +30,13 @@ pub(crate) fn product(p: [Wide; 4], q: [Wide; 4]) -> [Wide; 4] {
 }
 
 /// The components of an axial vector in axes turned by q: `~q v q/|q|²`.
-pub(crate) fn turned_back(q: [Wide; 4], v: [Wide; 3]) -> [Wide; 3] {
+#[inline(always)]
+pub(crate) fn turned_back<const W: usize, const FMA: bool>(
+    q: [Wides<W, FMA>; 4],
+    v: [Wides<W, FMA>; 3],
+) -> [Wides<W, FMA>; 3] {
     let back = [q[0], -q[1], -q[2], -q[3]];
-    let [_, x, y, z] = product(product(back, [Wide::ZERO, v[0], v[1], v[2]]), q);
+    let [_, x, y, z] = product(product(back, [Wides::all(0.0), v[0], v[1], v[2]]), q);
     let [norm, ..] = product(back, q);
     [x / norm, y / norm, z / norm]
 }

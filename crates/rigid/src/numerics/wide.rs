@@ -79,6 +79,38 @@ impl<const W: usize, const FMA: bool> Wides<W, FMA> {
         zeros
     }
 
+    /// Whether each is positive.
+    #[inline(always)]
+    pub fn positive(&self) -> [bool; W] {
+        let mut positive = [false; W];
+        for l in 0..W {
+            positive[l] = self.x.hi[l] > 0.0;
+        }
+        positive
+    }
+
+    /// Whether each is negative.
+    #[inline(always)]
+    pub fn negative(&self) -> [bool; W] {
+        (-*self).positive()
+    }
+
+    /// −1 for negative numbers, else 1.
+    #[inline(always)]
+    pub fn unit_signs(&self) -> [f64; W] {
+        let mut signs = [1.0; W];
+        for l in 0..W {
+            signs[l] = if self.x.hi[l] < 0.0 { -1.0 } else { 1.0 };
+        }
+        signs
+    }
+
+    /// Whether each is more than the other.
+    #[inline(always)]
+    pub fn exceeds(self, o: Self) -> [bool; W] {
+        (self - o).positive()
+    }
+
     /// Whether each is at most the other.
     #[inline(always)]
     pub fn at_most(self, o: Self) -> [bool; W] {
@@ -118,11 +150,7 @@ impl<const W: usize, const FMA: bool> Wides<W, FMA> {
     /// Magnitudes.
     #[inline(always)]
     pub fn abs(self) -> Self {
-        let mut signs = [1.0; W];
-        for l in 0..W {
-            signs[l] = if self.x.hi[l] < 0.0 { -1.0 } else { 1.0 };
-        }
-        self.signed(&signs)
+        self.signed(&self.unit_signs())
     }
 
     /// Halves.
@@ -171,7 +199,6 @@ impl<const W: usize, const FMA: bool> Wides<W, FMA> {
 }
 
 impl Wide {
-    pub const ZERO: Wide = Wides { x: DoubleDoubles { hi: [0.0], lo: [0.0] }, exponent: [0] };
     pub const ONE: Wide = Wides { x: DoubleDoubles { hi: [1.0], lo: [0.0] }, exponent: [0] };
 
     /// `x · 2^exponent`.
@@ -201,10 +228,6 @@ impl Wide {
     #[inline]
     pub fn is_positive(self) -> bool {
         self.x.hi[0] > 0.0
-    }
-
-    pub fn is_finite(self) -> bool {
-        self.x.hi[0].is_finite()
     }
 
     /// In the range of floating point: 0 below it, infinite above.

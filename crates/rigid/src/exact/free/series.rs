@@ -68,7 +68,7 @@ pub(crate) fn sign(n: usize) -> f64 {
 
 /// `xⁿ` by squares.
 #[inline(always)]
-fn power(x: f64, n: usize) -> f64 {
+pub(crate) fn power(x: f64, n: usize) -> f64 {
     let (mut result, mut square) = (1.0, x);
     // Exponents are constants below 32, for which the loop is unrolled.
     for bit in 0..5 {

@@ -7,7 +7,7 @@ use super::{FreeMotion, horizon, power_of_two};
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::exact::flow::{self, Form};
-use crate::exact::lanes::{Coefficients, Phases};
+use crate::exact::lanes::{Coefficients, Phases, product, reverse, turned};
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
 use crate::numerics::lanes::Phase;
@@ -277,48 +277,6 @@ impl<S: Series<W>, const W: usize> Flow<S, W> {
             }
         }
     }
-}
-
-/// Products of rotors.
-#[inline(always)]
-fn product<const W: usize>(a: &[[f64; W]; 4], b: &[[f64; W]; 4]) -> [[f64; W]; 4] {
-    let mut result = [[0.0; W]; 4];
-    for l in 0..W {
-        let ([s, x, y, z], [t, u, v, w]) =
-            ([a[0][l], a[1][l], a[2][l], a[3][l]], [b[0][l], b[1][l], b[2][l], b[3][l]]);
-        // Basis planes B1 B2 = −B3.
-        result[0][l] = s * t - x * u - y * v - z * w;
-        result[1][l] = s * u + x * t - (y * w - z * v);
-        result[2][l] = s * v + y * t - (z * u - x * w);
-        result[3][l] = s * w + z * t - (x * v - y * u);
-    }
-    result
-}
-
-#[inline(always)]
-fn reverse<const W: usize>(a: &[[f64; W]; 4]) -> [[f64; W]; 4] {
-    let mut result = *a;
-    for k in 1..4 {
-        for l in 0..W {
-            result[k][l] = -a[k][l];
-        }
-    }
-    result
-}
-
-/// The planes `R B ~R`: [`Rotor::apply_bivector`].
-#[inline(always)]
-fn turned<const W: usize>(rotor: &[[f64; W]; 4], plane: &[[f64; W]; 3]) -> [[f64; W]; 3] {
-    let mut result = [[0.0; W]; 3];
-    for l in 0..W {
-        let (s, [x, y, z]) = (rotor[0][l], [-rotor[1][l], -rotor[2][l], -rotor[3][l]]);
-        let [a, b, c] = [plane[0][l], plane[1][l], plane[2][l]];
-        let [t, u, v] = [2.0 * (y * c - z * b), 2.0 * (z * a - x * c), 2.0 * (x * b - y * a)];
-        result[0][l] = a + s * t + (y * v - z * u);
-        result[1][l] = b + s * u + (z * t - x * v);
-        result[2][l] = c + s * v + (x * u - y * t);
-    }
-    result
 }
 
 impl FreeBody {

@@ -1,6 +1,7 @@
 //! The regime of a heavy symmetric top, and its periods.
 
 use super::LagrangeTop;
+use super::series::Zeros;
 use crate::exact::regime::regimes;
 use crate::facts;
 use crate::facts::Facts;
@@ -155,8 +156,8 @@ impl LagrangeTop {
         // The turns of the theta functions; one with real zeros changes sign instead.
         let turn = orbit.lambda * mean;
         let phase = |k: usize| {
-            let zero = orbit.zeros[k];
-            let turns = if zero.eta == 0.0 { 0.0 } else { zero.side };
+            let Zeros { side: [side], eta: [eta], .. } = orbit.zeros[k];
+            let turns = if eta == 0.0 { 0.0 } else { side };
             orbit.rates[k] + turn * turns.into()
         };
         let (sum, difference) = (phase(0) + phase(1), phase(0) - phase(1));

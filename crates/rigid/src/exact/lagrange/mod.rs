@@ -61,28 +61,24 @@
 mod description;
 pub(super) mod flow;
 mod orbit;
+mod roots;
 pub(super) mod series;
+mod set_up;
 mod start;
 
-use super::free::series::LARGEST_NOME;
-use super::free::{FreeMotion, MOST_TURNS, phases_and_nomes};
+use super::free::{FreeMotion, MOST_TURNS};
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
-use crate::exact::flow::{Flow, Form};
-use crate::exact::lanes::Phases;
-use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
-use crate::numerics::elliptic::mean;
-use crate::numerics::lanes::Phase;
+use crate::exact::flow::Flow;
 use crate::numerics::wide::Wide;
 use crate::state::phase::Gyrostat;
 pub use description::{LagrangeDescription, LagrangeRegime};
-use flow::Flow as LagrangeFlow;
 use orbit::Orbit;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
-use series::{Circular, Hyperbolic, Series};
+pub(super) use set_up::LagrangeTops;
+pub use start::HeavyTop;
 use start::{Axes, Start};
-use std::f64::consts::PI;
 
 /// The motion of a heavy symmetric top: rotor and angular velocity at any time up to its
 /// [`LagrangeTop::horizon`].
@@ -96,9 +92,6 @@ pub struct LagrangeTop {
     horizon: f64,
 }
 
-/// The series cannot represent tilts and rates below this.
-const LEAST: f64 = 1e-303;
-
 impl LagrangeTop {
     /// The motion that starts at `rotor` (body axes to space) with angular velocity `omega` in body axes, of a body
     /// that is held at the origin of its axes: `inertia` about that point, and `c = m g (centre of mass)` in N m,
@@ -109,56 +102,7 @@ impl LagrangeTop {
         omega: Bivector,
         c: Vector,
     ) -> Result<LagrangeTop, SimulateError> {
-        let axes = Axes::new(inertia, c)?;
-        let start = Start::new(&axes, rotor, omega)?;
-        if start.is_steady() {
-            let moments = [axes.i1, axes.i1, axes.i3];
-            let along = Bivector([0.0, 0.0, start.omega3]);
-            let motion = FreeMotion::in_frame(axes.frame, moments, rotor * axes.frame, along);
-            let (flow, horizon) = (motion.flow, motion.horizon());
-            return Ok(LagrangeTop { axes, start, orbit: None, flow, horizon });
-        }
-        let orbit = Orbit::new(&start).ok_or(SimulateError::Unresolved)?;
-        let (flow, horizon) = flow_and_horizon(&axes, &start, &orbit);
-        let top = LagrangeTop { axes, start, orbit: Some(orbit), flow, horizon };
-        if top.starts_at(rotor, omega, &orbit) && top.keeps_energy(&orbit) {
-            Ok(top)
-        } else {
-            Err(SimulateError::Unresolved)
-        }
-    }
-
-    /// Whether the solution reproduces the start. The rate across the axis is compared with its own largest size.
-    fn starts_at(&self, rotor: Rotor, omega: Bivector, orbit: &Orbit) -> bool {
-        /// The roundings of a start add up to less.
-        const MOST: f64 = 1e-12;
-        let (found, rate) = self.at(0.0);
-        let turned = (0..4).all(|k| (found.components()[k] - rotor.components()[k]).abs() <= MOST);
-        let across = orbit.sizes[2] * self.start.scale;
-        let spin = 64.0 * f64::EPSILON * self.start.omega3.abs();
-        turned && (rate - omega).norm() <= MOST * across + spin + LEAST * self.start.scale
-    }
-
-    /// Whether `|w|² + 2ĉu` is that of the start at some times of a nutation, compared with the largest |w|².
-    fn keeps_energy(&self, orbit: &Orbit) -> bool {
-        /// The rounding of a tilt of 1e-300 is 1e-13 of it.
-        const MOST: f64 = 1e-10;
-        let Start { gravity, below, above, w, scale, .. } = self.start;
-        let largest = Wide::from(orbit.sizes[2]);
-        let quarter = orbit.mean.map_or(1.0, |mean| 0.5 * PI / mean.hi) / orbit.lambda.hi / scale;
-        [0.3, 1.0, 2.2].iter().all(|part| {
-            let (rotor, omega) = self.at(part * quarter);
-            let [x, y, _] = self.axes.frame.reverse().apply_bivector(omega).0.map(|x| Wide::from(x / scale));
-            let [a, b, c, d] = (rotor * self.axes.frame).components().map(Wide::from);
-            // u relative to that of the start, from the nearer pole.
-            let two = Wide::from(2.0);
-            let rise =
-                if below < Wide::ONE { below - (b * b + c * c) * two } else { (a * a + d * d) * two - above };
-            let change = x * x + y * y - start::square(w) + gravity * rise;
-            // The rounding of the rate about the axis, in body axes.
-            let spin = Wide::from(self.start.omega3.abs() / scale * f64::EPSILON * 8.0 + LEAST);
-            change.abs() <= (largest * largest) * MOST.into() + (largest + spin) * spin
-        })
+        HeavyTop::new(inertia, rotor, omega, c)?.motion()
     }
 
     /// Estimated angle in rad at time `t` between the body's motion and this one, which neglects rounding differences
@@ -208,129 +152,4 @@ impl LagrangeTop {
             self.start.omega3,
         ]))
     }
-}
-
-/// The states by the rapidly converging series, and how far in time, in s, their phases are accurate.
-fn flow_and_horizon(axes: &Axes, start: &Start, orbit: &Orbit) -> (Flow, f64) {
-    // AGM(1, k) = π/2K'.
-    let [other] = mean([orbit.k2.sqrt()]);
-    let [lambda, mean] = [orbit.lambda, orbit.mean.unwrap_or(DoubleDouble::ONE)].map(Alone::all);
-    let start_of_u = [[orbit.start.0], [orbit.start.1]];
-    let (phase, [nome]) = phases_and_nomes(&lambda, &mean, &[orbit.mean.is_none()], &start_of_u, &[other]);
-    match orbit.mean {
-        Some(mean) if nome <= LARGEST_NOME => {
-            let series = Circular::new(nome, mean.hi, orbit.zeros);
-            let flow = flow(axes, start, orbit, phase, series);
-            (Flow(Form::LagrangeCircular(flow)), horizon(start, orbit, &flow))
-        }
-        mean => {
-            let gammas = orbit.zeros.map(|zero| (zero.side, zero.eta * other));
-            let series = match mean {
-                Some(mean) => Hyperbolic::new(0.5 * PI * other / mean.hi, gammas),
-                None => Hyperbolic::separatrix(gammas[0].1, gammas[0].0),
-            };
-            let flow = flow(axes, start, orbit, phase, series);
-            (Flow(Form::LagrangeHyperbolic(flow)), horizon(start, orbit, &flow))
-        }
-    }
-}
-
-/// A number in a lane of its own.
-type Alone = DoubleDoubles<1, false>;
-
-/// The time of 1e17 turns of the fastest phase.
-fn horizon<S>(start: &Start, orbit: &Orbit, flow: &LagrangeFlow<S>) -> f64 {
-    let rates = flow.phases.iter().map(|phase| phase.of(0).rate.hi.abs());
-    MOST_TURNS / (rates.fold(orbit.lambda.hi / PI, f64::max) * start.scale)
-}
-
-/// Phases, series and frames together.
-fn flow<S: Series<1>>(
-    axes: &Axes,
-    start: &Start,
-    orbit: &Orbit,
-    phase: Phases<1>,
-    series: S,
-) -> LagrangeFlow<S> {
-    // The uniform turn about the axis adds to ψ.
-    let excess = start.excess.narrow();
-    let half = excess * 0.5.into();
-    let [alpha, beta, across] = orbit.rates;
-    let uniform = |rate: DoubleDouble| Phase { rate: rate * DoubleDouble::OVER_TWO_PI, start: [0.0; 2] };
-    let phases = [alpha + half, beta - half, across - excess].map(uniform);
-    let back = axes.frame.reverse();
-    let unit = |c: [f64; 4]| (Rotor::from_unit_components(c) * back).components();
-    let columns =
-        [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0]].map(unit);
-    let axis = |k: usize, size: f64| {
-        let mut e = [0.0; 3];
-        e[k] = size;
-        axes.frame.apply_bivector(Bivector(e)).0
-    };
-    let rates = [axis(0, start.scale), axis(1, start.scale), axis(2, start.omega3)];
-    let mut flow = LagrangeFlow {
-        scale: [start.scale],
-        orbit: phase,
-        phases: phases.map(Phases::from),
-        series,
-        factors: [[[1.0], [0.0]]; 3],
-        rotor: std::array::from_fn(|i| columns.map(|c| [c[i]])),
-        omega: std::array::from_fn(|i| rates.map(|c| [c[i]])),
-    };
-    flow.factors = factors(start, orbit, &flow).map(|factor| factor.map(|x| [x]));
-    flow
-}
-
-/// The product of complex numbers.
-fn times(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
-}
-
-/// The constants A, B and C: their sizes from the bounds, their phases from the two of α, β and w that are relatively
-/// largest at the start.
-fn factors<S: Series<1>>(start: &Start, orbit: &Orbit, flow: &LagrangeFlow<S>) -> [[f64; 2]; 3] {
-    let at = |turns: f64, k: usize| {
-        let state = flow.series.state::<1, false>(&[turns], &[0.0]);
-        let [re, im] = state.z[k].map(|z| z[0]);
-        (re.hypot(im), state.denominator[0])
-    };
-    let bounds = [at(0.25, 0), at(0.0, 1), at(0.0, 2)];
-    let now = flow.turned::<1, false>(&[0.0]);
-    let state = [start.alpha, start.beta, start.w].map(|z| z.map(|x| x.value()));
-    let mut unit: [[f64; 2]; 3] = std::array::from_fn(|k| {
-        let [re, im] = now.z[k].map(|z| z[0]);
-        normalized(times(state[k], normalized([re, -im])))
-    });
-    let part = |k: usize| state[k][0].hypot(state[k][1]) / orbit.sizes[k];
-    let smallest = (0..3).min_by(|&j, &k| part(j).total_cmp(&part(k))).unwrap_or(2);
-    // C = −iκ A* B at v = 0.
-    let conjugate = |[x, y]: [f64; 2]| [x, -y];
-    let relation = times([0.0, -orbit.kappa], turn_since_bound(orbit));
-    match smallest {
-        0 => unit[0] = conjugate(times(times(unit[2], conjugate(unit[1])), conjugate(relation))),
-        1 => unit[1] = times(times(unit[2], unit[0]), conjugate(relation)),
-        _ => unit[2] = times(times(conjugate(unit[0]), unit[1]), relation),
-    }
-    std::array::from_fn(|k| {
-        let (size, denominator) = bounds[k];
-        unit[k].map(|x| x * (orbit.sizes[k] * denominator / size))
-    })
-}
-
-/// The phase by `μ_β − μ_α − μ_w` since v = 0: an odd number of turns of the theta functions in each period.
-fn turn_since_bound(orbit: &Orbit) -> [f64; 2] {
-    let Some(mean) = orbit.mean else { return [1.0, 0.0] };
-    let [alpha, beta, across] = orbit.rates;
-    let turns = ((across - beta + alpha) / (orbit.lambda * mean)).value();
-    let odd = 2.0 * (0.5 * (turns - 1.0)).round() + 1.0;
-    // v/π at the start.
-    let (whole, rest) = orbit.start;
-    let part = 0.5 * whole + rest * mean.hi / PI;
-    let (sin, cos) = (PI * odd * part).sin_cos();
-    [cos, sin]
-}
-
-fn normalized([x, y]: [f64; 2]) -> [f64; 2] {
-    let size = x.hypot(y);
-    if size > 0.0 { [x / size, y / size] } else { [1.0, 0.0] }
 }

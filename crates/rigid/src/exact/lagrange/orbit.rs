@@ -1,15 +1,15 @@
-//! Orbit of a heavy top: roots, periods, rates and phases.
+//! Orbits of heavy tops, one in each lane: roots, periods, rates and phases.
 //!
-//! Near the vertical the roots differ from ±1, and from each other, by squares of the tilt. They are [`Wide`] numbers,
-//! and no distance is a difference of larger ones.
+//! Near the vertical the roots differ from ±1, and from each other, by squares of the tilt. They are [`Wides`], and no
+//! distance is a difference of larger ones.
 
-use super::series::Zero;
-use super::start::{Start, square, times_conjugate};
+use super::roots::{Cubic, factors};
+use super::series::{Zero, Zeros};
+use super::start::{Starts, square, times_conjugate};
 use crate::exact::free::orbit::arguments;
-use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::{Means, first_kind};
-use crate::numerics::wide::Wide;
-use std::ops::{Add, Mul, Sub};
+use crate::numerics::wide::{Wide, Wides};
 
 /// A motion in which the tilt is defined by the cubic, in units of the start's scale.
 #[derive(Clone, Copy, Debug)]
@@ -20,16 +20,10 @@ pub(super) struct Orbit {
     pub kc: Wide,
     /// AGM(1, k') = π/2K; None on the separatrix.
     pub mean: Option<DoubleDouble>,
-    /// u at time 0: a multiple of K, and the rest.
-    pub start: (f64, f64),
     /// μ_α, μ_β and μ_w in rad per time.
     pub rates: [DoubleDouble; 3],
     /// Zeros of α, β and w.
     pub zeros: [Zero; 3],
-    /// |α| at the upper bound, |β| and |w| at the lower one.
-    pub sizes: [f64; 3],
-    /// The sign κ between the three phases.
-    pub kappa: f64,
     /// 1 − r1, 1 − r2 and 1 + r1, 1 + r2.
     pub below: [Wide; 2],
     pub above: [Wide; 2],
@@ -39,315 +33,347 @@ pub(super) struct Orbit {
     pub surplus: Wide,
 }
 
-/// The positive x and y with given `x y` and `y − x`.
-fn factors(product: Wide, difference: Wide) -> [Wide; 2] {
-    let root = (difference * difference + product * 4.0.into()).sqrt();
-    let large = (root + difference.abs()) * 0.5.into();
-    let small = if large.is_positive() { product / large } else { Wide::ZERO };
-    if difference.is_negative() { [large, small] } else { [small, large] }
-}
-
-/// The largest root of a cubic with real roots by Newton's method from a start above it; the other roots are all >= 0 or
-/// all <= 0. `f` gives the value and two derivatives: while all three have the sign of the leading coefficient, there is
-/// no root above (Budan). `floats` is the same in floats: the method begins beside the root that they find, if that is above
-/// the root.
-fn root_below(
-    start: Wide,
-    leading: f64,
-    f: impl Fn(Wide) -> [Wide; 3],
-    floats: impl Fn(f64) -> [f64; 3],
-) -> Wide {
-    const STRIDE: f64 = 1.0 / (1u64 << 32) as f64;
-    /// Above the rounding of the root of floats, and below the root of the rounding of [`Wide`].
-    const MARGIN: f64 = 1e-12;
-    let is_above = |x: Wide| f(x).iter().all(|&d| (d * leading.into()).is_positive());
-    let near = root_of_floats(start.value(), floats).map(|x| Wide::from(x * (1.0 + MARGIN)));
-    let mut x = start;
-    if let Some(near) = near.filter(|&near| is_above(near)) {
-        x = near;
-    } else {
-        for _ in 0..100 {
-            let next = x * STRIDE.into();
-            if !is_above(next) {
-                break;
-            }
-            x = next;
-        }
-    }
-    for _ in 0..200 {
-        let [value, slope, _] = f(x);
-        let step = if slope.is_zero() { Wide::ZERO } else { value / slope };
-        if !step.is_finite() || step <= x * 1e-31.into() {
-            break;
-        }
-        x = x - step;
-    }
-    x
-}
-
-/// The same in floats, to a few roundings of a simple root; None beyond their range.
-fn root_of_floats(start: f64, f: impl Fn(f64) -> [f64; 3]) -> Option<f64> {
-    /// Terms of this size are far from underflow.
-    const LEAST: f64 = 1e-200;
-    let mut x = start;
-    for _ in 0..60 {
-        let [value, slope, _] = f(x);
-        let step = value / slope;
-        if !step.is_finite() || (slope * x).abs() < LEAST {
-            return None;
-        }
-        x -= step;
-        if step.abs() <= 1e-9 * x {
-            return Some(x);
-        }
-    }
-    None
-}
-
-/// Numbers in which roots are computed.
-trait Real: Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
-
-impl Real for f64 {}
-impl Real for Wide {}
-
-/// The numbers of the start on which the roots depend.
-#[derive(Clone, Copy)]
-struct Cubic<T> {
-    gravity: T,
-    spin: T,
-    delta: T,
-    surplus: T,
-}
-
-impl<T: Real> Cubic<T> {
-    /// Half the second derivative by 2ĉ(u − 1), and by 1 − u, at u = 1.
-    fn bend(self) -> T {
-        T::from(2.0) * self.gravity - self.surplus - self.spin * self.spin
-    }
-
-    /// By y = 2ĉ(u − 1): the cubic, its derivative and half the second.
-    fn above(self, y: T) -> [T; 3] {
-        let Cubic { gravity, spin, delta, surplus } = self;
-        let two = T::from(2.0);
-        let (p, q, r) = (y * (two * gravity + y), y - surplus, gravity * delta - spin * y);
-        let slope = two * (gravity + y) * q + p + two * spin * r;
-        [p * q - r * r, slope, self.bend() + y * 3.0.into()]
-    }
-
-    /// The same by w = 1 − u.
-    fn below(self, w: T) -> [T; 3] {
-        let Cubic { gravity, spin, delta, surplus } = self;
-        let two = T::from(2.0);
-        let (p, q, r) = (w * (two - w), surplus + gravity * w, delta + spin * w);
-        let third = gravity * w * 3.0.into();
-        let slope = two * (surplus - delta * spin) + two * self.bend() * w - third * w;
-        [p * q - r * r, slope, self.bend() - third]
-    }
-}
-
-impl Cubic<Wide> {
-    fn values(self) -> Cubic<f64> {
-        let Cubic { gravity, spin, delta, surplus } = self;
-        Cubic { gravity: gravity.value(), spin: spin.value(), delta: delta.value(), surplus: surplus.value() }
-    }
+/// The numbers of [`Orbit`], and what the series need besides.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Orbits<const W: usize, const FMA: bool> {
+    pub lambda: DoubleDoubles<W, FMA>,
+    pub k2: [f64; W],
+    pub kc: Wides<W, FMA>,
+    /// Arbitrary on the separatrix.
+    pub mean: DoubleDoubles<W, FMA>,
+    pub on_separatrix: [bool; W],
+    /// u at time 0: a multiple of K, and the rest.
+    pub start: [[f64; W]; 2],
+    pub rates: [DoubleDoubles<W, FMA>; 3],
+    pub zeros: [Zeros<W>; 3],
+    /// |α| at the upper bound, |β| and |w| at the lower one.
+    pub sizes: [[f64; W]; 3],
+    /// The sign κ between the three phases.
+    pub kappa: [f64; W],
+    pub below: [Wides<W, FMA>; 2],
+    pub above: [Wides<W, FMA>; 2],
+    pub delta: Wides<W, FMA>,
+    pub sigma: Wides<W, FMA>,
+    pub surplus: Wides<W, FMA>,
+    /// Whether the roots are resolved; without them nothing is valid.
+    pub resolved: [bool; W],
 }
 
 /// Distances of a point p between r2 and r3 from the roots, up to a factor.
-struct Point {
-    to: [Wide; 3],
+struct Point<const W: usize, const FMA: bool> {
+    to: [Wides<W, FMA>; 3],
     /// `(p − r2)/(p − r1)` and `(r2 − r1)/(p − r1)`, without the factor, which may vanish.
-    ratio: Wide,
-    rest: Wide,
+    ratio: Wides<W, FMA>,
+    rest: Wides<W, FMA>,
     /// `N(p) = b − ℓp`, times the same factor.
-    n: Wide,
+    n: Wides<W, FMA>,
 }
 
 /// λ, k', k² and the distances of the roots from each other.
-struct Modulus {
-    kc: Wide,
-    k2: f64,
-    lambda: DoubleDouble,
+struct Modulus<const W: usize, const FMA: bool> {
+    kc: Wides<W, FMA>,
+    k2: [f64; W],
+    lambda: DoubleDoubles<W, FMA>,
     /// r2 − r1, r3 − r1 and r3 − r2 times 2ĉ.
-    gaps: [Wide; 3],
+    gaps: [Wides<W, FMA>; 3],
 }
 
-fn sign(x: Wide) -> f64 {
-    if x.is_negative() { -1.0 } else { 1.0 }
+/// Roots by their distances.
+struct Roots<const W: usize, const FMA: bool> {
+    /// From u at the start to r1 and r2.
+    x: [Wides<W, FMA>; 2],
+    /// 1 − r1 and 1 − r2; 2ĉ(r3 − 1).
+    w: [Wides<W, FMA>; 2],
+    v: Wides<W, FMA>,
+    /// 1 + r1, 1 + r2; 2ĉ(r3 + 1).
+    z: [Wides<W, FMA>; 3],
+    /// r2 − r1.
+    gap: Wides<W, FMA>,
 }
 
-impl Orbit {
-    /// None if the roots are not resolved.
-    pub fn new(start: &Start) -> Option<Orbit> {
-        let Start { gravity, spin, below: w0, above: z0, g, w, .. } = *start;
-        let two = Wide::from(2.0);
-        // w g* = h + i u'.
+/// What all numbers follow from, in units of the scale.
+struct Invariants<const W: usize, const FMA: bool> {
+    cubic: Cubic<Wides<W, FMA>>,
+    /// b + ℓ.
+    sigma: Wides<W, FMA>,
+    /// `w g* = h + i u'`.
+    h: Wides<W, FMA>,
+    rise: Wides<W, FMA>,
+    /// |w|² and |g|².
+    w_w: Wides<W, FMA>,
+    g_g: Wides<W, FMA>,
+}
+
+impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
+    #[inline(always)]
+    fn new(start: &Starts<W, FMA>) -> Self {
+        let Starts { gravity, spin, below, above, g, w, .. } = *start;
         let [h, rise] = times_conjugate(w, g);
-        let (w_w, g_g) = (square(w), square(g));
-        let (delta, sigma) = (h - spin * w0, h + spin * z0);
-        let surplus = w_w - gravity * w0;
-        let first = rise * rise;
-        let second = two * spin * h - gravity * g_g - two * (z0 - Wide::ONE) * w_w;
-        // Distances of u0 from r1 and r2, given that from r3 times 2ĉ.
-        let beside = |x3: Wide| {
-            let product = first / x3;
-            factors(product, (second + gravity * product) / x3)
-        };
-        // 1 − r2 and 2ĉ(r3 − 1), given 1 − r1.
-        let p1 = two * (surplus - delta * spin);
-        let astride = |w1: Wide| {
-            let product = delta * delta / w1;
-            let [v, w2_scaled] = factors(gravity * product, (product - p1) / w1);
-            // One of the two by the other, so that no factor 2ĉ is divided by.
-            let w2 = if v > w2_scaled { product / v } else { w2_scaled / gravity };
-            (w2, v)
-        };
+        let (delta, sigma, w_w) = (h - spin * below, h + spin * above, square(w));
+        let surplus = w_w - gravity * below;
         let cubic = Cubic { gravity, spin, delta, surplus };
-        let floats = cubic.values();
-        let highest = surplus + spin * spin + two * gravity;
-        let v = root_below(highest, 1.0, |y| cubic.above(y), |y| floats.above(y));
-        let x3 = gravity * w0 + v;
-        let [x1, x2] = beside(x3);
-        let w1 = if gravity * (x1 + x2) > x3 - gravity * x2 {
-            root_below(two, -1.0, |w| cubic.below(w), |w| floats.below(w))
-        } else {
-            w0 + x1
-        };
-        let (w2, v) = astride(w1);
-        let [x1, x2] = beside(gravity * w0 + v);
-        let w1 = w0 + x1;
-        let gap = x1 + x2;
-        // The last one times 2ĉ.
-        let z3 = two * gravity + v;
-        let [z1, z2] = factors(sigma * sigma / z3, gap);
+        Invariants { cubic, sigma, h, rise, w_w, g_g: square(g) }
+    }
 
-        let gaps = [gravity * gap, gravity * w1 + v, gravity * w2 + v];
-        if !(gaps[1].is_positive() && gaps[1].is_finite()) {
-            return None;
+    #[inline(always)]
+    fn roots(&self, start: &Starts<W, FMA>) -> Roots<W, FMA> {
+        let (w0, z0) = (start.below, start.above);
+        let Cubic { gravity, spin, delta, surplus } = self.cubic;
+        let two = Wides::all(2.0);
+        let highest = surplus + spin * spin + two * gravity;
+        let v = self.cubic.largest_root::<true>(highest, &[true; W]);
+        let x3 = gravity * w0 + v;
+        let second = two * spin * self.h - gravity * self.g_g - two * (z0 - Wides::all(1.0)) * self.w_w;
+        let [x1, x2] = self.beside(second, x3);
+        let far = (gravity * (x1 + x2)).exceeds(x3 - gravity * x2);
+        let mut w1 = w0 + x1;
+        if far != [false; W] {
+            w1 = self.cubic.largest_root::<false>(two, &far).or(&far, w1);
         }
-        let modulus = Modulus {
-            kc: (gaps[2] / gaps[1]).sqrt(),
-            k2: (gaps[0] / gaps[1]).value().min(1.0),
-            lambda: (gaps[1].sqrt() * 0.5.into()).narrow(),
-            gaps,
-        };
-        let to1 = gravity * w1;
-        let up = Point { to: [to1, gravity * w2, v], ratio: w2 / w1, rest: gap / w1, n: gravity * delta };
-        let across = {
-            // |w|² at u = r2: from that at the start, or with |g|² from `b − ℓ r2`.
-            let less = gravity * x2;
-            let direct = w_w - less;
-            let cancelled = direct <= (w_w + less) * 1e-2.into();
-            let turning = if w2 < Wide::ONE { delta + spin * w2 } else { sigma - spin * z2 };
-            let both = w2 * z2;
-            let to2 = if cancelled && both.is_positive() { turning * turning / both } else { direct };
-            let to1 = to2 + gaps[0];
-            let n = gravity * h - spin * w_w;
-            let direct = v - surplus;
-            let cancelled = direct <= (v + surplus.abs()) * 1e-2.into();
-            let to3 = if cancelled && to2.is_positive() { n * n / (to1 * to2) } else { direct };
-            Point { to: [to1, to2, to3], ratio: to2 / to1, rest: gaps[0] / to1, n }
-        };
-        let sides = [sign(sigma), sign(delta), -sign(across.n)];
-        let half: DoubleDouble = 0.5.into();
-        let on_separatrix = gaps[2].is_zero();
-        let axial = half * spin.narrow();
-        let (rates, mean) = if on_separatrix {
-            ([axial, DoubleDouble::ZERO, -axial], None)
-        } else {
-            let means = Means::new(modulus.kc);
-            let alpha = modulus.rate_below(&means, [z1, z2, z3], gap, gravity, sigma);
-            let [beta, across] = [&up, &across].map(|p| modulus.rate_above(&means, p));
-            ([alpha, beta, -(axial + across)], Some(means.single_mean()))
-        };
-        let integral = |squares: [f64; 2]| first_kind(squares.map(|x| [x]), &[modulus.k2])[0];
-        let zero = |k: usize, [eta, rest]: [[f64; 2]; 2]| Zero {
-            side: sides[k],
-            eta: integral(eta),
-            rest: integral(rest),
-        };
-        let zeros = [
-            zero(0, modulus.amplitudes_below([z1, z2, z3], gap, gravity)),
-            zero(1, modulus.amplitudes_above(&up)),
-            zero(2, modulus.amplitudes_above(&across)),
-        ];
-        let lowest = if w1 < Wide::ONE { delta + spin * w1 } else { sigma - spin * z1 };
-        let part = |x: Wide| if gap.is_positive() { (x / gap).sqrt() } else { Wide::ZERO };
-        let sn = if rise.is_negative() { -part(x1) } else { part(x1) };
-        let cn = if gap.is_positive() { part(x2) } else { Wide::ONE };
-        let half: Wide = 0.5.into();
-        let [[whole], [rest]] = arguments(cn, sn, modulus.kc);
-        Some(Orbit {
-            lambda: modulus.lambda,
-            k2: modulus.k2,
-            kc: modulus.kc,
-            mean,
-            start: (whole, rest),
-            rates,
-            zeros,
-            sizes: [z2 * half, w1 * half, across.to[0]].map(|x| x.sqrt().value()),
-            kappa: sides[0] * sign(lowest),
-            below: [w1, w2],
-            above: [z1, z2],
-            delta,
-            sigma,
-            surplus,
-        })
+        // 1 − r2 and 2ĉ(r3 − 1), given 1 − r1.
+        let product = delta * delta / w1;
+        let p1 = two * (surplus - delta * spin);
+        let [v, w2_scaled] = factors(gravity * product, (product - p1) / w1);
+        // One of the two by the other, so that no factor 2ĉ is divided by.
+        let by_v = v.exceeds(w2_scaled);
+        let w2 = product.or(&by_v, w2_scaled) / v.or(&by_v, gravity);
+        let [x1, x2] = self.beside(second, gravity * w0 + v);
+        let gap = x1 + x2;
+        let z3 = two * gravity + v;
+        let [z1, z2] = factors(self.sigma * self.sigma / z3, gap);
+        Roots { x: [x1, x2], w: [w0 + x1, w2], v, z: [z1, z2, z3], gap }
+    }
+
+    /// Distances of u0 from r1 and r2, given that from r3 times 2ĉ.
+    #[inline(always)]
+    fn beside(&self, second: Wides<W, FMA>, x3: Wides<W, FMA>) -> [Wides<W, FMA>; 2] {
+        let product = self.rise * self.rise / x3;
+        factors(product, (second + self.cubic.gravity * product) / x3)
+    }
+
+    /// The upright, u = 1.
+    #[inline(always)]
+    fn up(&self, roots: &Roots<W, FMA>) -> Point<W, FMA> {
+        let Roots { w: [w1, w2], v, gap, .. } = *roots;
+        let Cubic { gravity, delta, .. } = self.cubic;
+        let to = [gravity * w1, gravity * w2, v];
+        Point { to, ratio: w2 / w1, rest: gap / w1, n: gravity * delta }
+    }
+
+    /// u = e.
+    #[inline(always)]
+    fn across(&self, roots: &Roots<W, FMA>) -> Point<W, FMA> {
+        /// A difference cancels if it is at most this times the sum of its terms.
+        const CANCELLED: f64 = 1e-2;
+        let Roots { x: [_, x2], v, z: [_, z2, _], .. } = *roots;
+        let Cubic { gravity, spin, surplus, .. } = self.cubic;
+        let w2 = roots.w[1];
+        // |w|² at u = r2: from that at the start, or with |g|² from `b − ℓ r2`.
+        let less = gravity * x2;
+        let direct = self.w_w - less;
+        let (turning, both) = (self.numerator(w2, z2), w2 * z2);
+        let cancelled = direct.at_most((self.w_w + less) * Wides::all(CANCELLED));
+        let by_turning = both_of(&cancelled, &both.positive());
+        let to2 = (turning * turning / both).or(&by_turning, direct);
+        let apart = gravity * roots.gap;
+        let to1 = to2 + apart;
+        let n = gravity * self.h - spin * self.w_w;
+        let direct = v - surplus;
+        let cancelled = direct.at_most((v + surplus.abs()) * Wides::all(CANCELLED));
+        let by_product = both_of(&cancelled, &to2.positive());
+        let to3 = (n * n / (to1 * to2)).or(&by_product, direct);
+        Point { to: [to1, to2, to3], ratio: to2 / to1, rest: apart / to1, n }
+    }
+
+    /// `b − ℓu`, from 1 − u and 1 + u.
+    #[inline(always)]
+    fn numerator(&self, below: Wides<W, FMA>, above: Wides<W, FMA>) -> Wides<W, FMA> {
+        let Cubic { spin, delta, .. } = self.cubic;
+        let upper = Wides::all(1.0).exceeds(below);
+        (delta + spin * below).or(&upper, self.sigma - spin * above)
     }
 }
 
-impl Modulus {
-    /// μ(−1), from 1 + r1, 1 + r2, 2ĉ(1 + r3), r2 − r1 and b + ℓ.
+#[inline(always)]
+fn both_of<const W: usize>(a: &[bool; W], b: &[bool; W]) -> [bool; W] {
+    let mut both = [false; W];
+    for l in 0..W {
+        both[l] = a[l] & b[l];
+    }
+    both
+}
+
+impl<const W: usize, const FMA: bool> Modulus<W, FMA> {
+    /// And whether the roots are resolved.
+    #[inline(always)]
+    fn new(gravity: Wides<W, FMA>, roots: &Roots<W, FMA>) -> (Self, [bool; W]) {
+        let [w1, w2] = roots.w;
+        let gaps = [gravity * roots.gap, gravity * w1 + roots.v, gravity * w2 + roots.v];
+        let (mut k2, mut resolved) = ((gaps[0] / gaps[1]).values(), [false; W]);
+        for l in 0..W {
+            k2[l] = k2[l].min(1.0);
+            let whole = gaps[1].signs()[l];
+            resolved[l] = (whole > 0.0) & (whole < f64::INFINITY);
+        }
+        let (kc, lambda) = ((gaps[2] / gaps[1]).sqrt(), gaps[1].sqrt().half().narrowed());
+        (Modulus { kc, k2, lambda, gaps }, resolved)
+    }
+
+    /// μ(−1), by whichever of the two parameters the means take well.
+    #[inline(always)]
     fn rate_below(
         &self,
-        means: &Means<1, false>,
-        [z1, z2, z3]: [Wide; 3],
-        gap: Wide,
-        gravity: Wide,
-        n: Wide,
-    ) -> DoubleDouble {
+        means: &Means<W, FMA>,
+        [z1, z2, z3]: [Wides<W, FMA>; 3],
+        gap: Wides<W, FMA>,
+        n: Wides<W, FMA>,
+        gravity: Wides<W, FMA>,
+    ) -> DoubleDoubles<W, FMA> {
         /// Beyond this `1 − n` the means take long to meet.
         const FAR: f64 = 1e12;
         let p2 = z3 / self.gaps[1];
-        if p2 <= FAR.into() {
-            let sum = means.single_sum(p2.narrow());
-            return (gravity * n * sum.into() / (z3 * 4.0.into())).narrow();
-        }
-        let sum = means.single_sum((z2 / z1).narrow());
-        let less = (gap / z2).narrow() * sum * 0.5.into();
-        let whole = (n / (z1 * 2.0.into())).narrow() * (DoubleDouble::ONE - less);
-        whole - self.lambda * means.single_mean() * sign(n).into()
+        let near = p2.at_most(Wides::all(FAR));
+        let sum = means.sum(p2.or(&near, z2 / z1).narrowed());
+        let direct = (gravity * n * Wides::from(sum) / (z3 * Wides::all(4.0))).narrowed();
+        let whole = (n / (z1 * Wides::all(2.0))).narrowed();
+        let other = self.complement(means, n, whole, (gap / z2).narrowed() * sum);
+        direct.or(&near, other)
     }
 
     /// μ(p) for p between r2 and r3, by whichever of the two parameters is smaller.
-    fn rate_above(&self, means: &Means<1, false>, p: &Point) -> DoubleDouble {
-        let half: DoubleDouble = 0.5.into();
+    #[inline(always)]
+    fn rate_above(&self, means: &Means<W, FMA>, p: &Point<W, FMA>) -> DoubleDoubles<W, FMA> {
+        let half = DoubleDoubles::all(0.5.into());
         let [_, to2, to3] = p.to;
-        if to2 * to2 <= to3 * to3 * self.k2.into() {
-            let sum = means.single_sum(((to2 + to3) / to3).narrow());
-            (p.n / to3).narrow() * half * (half * sum - DoubleDouble::ONE)
-        } else {
-            let [_, whole, long] = self.gaps;
-            let sum = means.single_sum((long / whole / p.ratio).narrow());
-            let less = p.rest.narrow() * sum * half;
-            let whole = (p.n / to2).narrow() * half * (DoubleDouble::ONE - less);
-            whole - self.lambda * means.single_mean() * sign(p.n).into()
-        }
+        let [_, whole, long] = self.gaps;
+        let by_n = (to2 * to2).at_most(to3 * to3 * Wides::from(self.k2));
+        let p2 = ((to2 + to3) / to3).or(&by_n, long / whole / p.ratio);
+        let sum = means.sum(p2.narrowed());
+        let slope = (p.n / to3.or(&by_n, to2)).narrowed() * half;
+        let direct = slope * (half * sum - DoubleDoubles::all(DoubleDouble::ONE));
+        direct.or(&by_n, self.complement(means, p.n, slope, p.rest.narrowed() * sum))
     }
 
-    /// Squared sine and cosine of the amplitudes of η and of K' − η for p = −1.
-    fn amplitudes_below(&self, [z1, z2, z3]: [Wide; 3], gap: Wide, gravity: Wide) -> [[f64; 2]; 2] {
+    /// A rate by the other parameter: `whole (1 − ½ less) − s λ π/2K`.
+    #[inline(always)]
+    fn complement(
+        &self,
+        means: &Means<W, FMA>,
+        n: Wides<W, FMA>,
+        whole: DoubleDoubles<W, FMA>,
+        less: DoubleDoubles<W, FMA>,
+    ) -> DoubleDoubles<W, FMA> {
+        let half = DoubleDoubles::all(0.5.into());
+        let part = DoubleDoubles::all(DoubleDouble::ONE) - less * half;
+        whole * part - (self.lambda * means.mean()).scaled(&n.unit_signs())
+    }
+
+    /// η and K' − η for p = −1.
+    #[inline(always)]
+    fn zeros_below(
+        &self,
+        side: [f64; W],
+        [z1, z2, z3]: [Wides<W, FMA>; 3],
+        gap: Wides<W, FMA>,
+        gravity: Wides<W, FMA>,
+    ) -> Zeros<W> {
         let eta = [z1 / z2, gap / z2];
-        [eta, [self.gaps[1] / z3, gravity * z1 / z3]].map(|pair| pair.map(Wide::value))
+        self.zeros(side, [eta, [self.gaps[1] / z3, gravity * z1 / z3]])
     }
 
     /// The same for p between r2 and r3; arbitrary if r2 = r3.
-    fn amplitudes_above(&self, p: &Point) -> [[f64; 2]; 2] {
+    #[inline(always)]
+    fn zeros_above(&self, side: [f64; W], p: &Point<W, FMA>) -> Zeros<W> {
         let [_, to2, to3] = p.to;
         let [_, whole, long] = self.gaps;
-        if long.is_zero() {
-            return [[0.0, 1.0]; 2];
+        let none = long.zeros();
+        let (zero, one) = (Wides::all(0.0), Wides::all(1.0));
+        let eta = [zero.or(&none, p.ratio * whole / long), one.or(&none, p.rest * to3 / long)];
+        self.zeros(side, [eta, [zero.or(&none, to3 / long), one.or(&none, to2 / long)]])
+    }
+
+    /// From the squared sines and cosines of the amplitudes.
+    #[inline(always)]
+    fn zeros(&self, side: [f64; W], [eta, rest]: [[Wides<W, FMA>; 2]; 2]) -> Zeros<W> {
+        let eta = first_kind([eta[0].values(), eta[1].values()], &self.k2);
+        let rest = first_kind([rest[0].values(), rest[1].values()], &self.k2);
+        Zeros { side, eta, rest }
+    }
+}
+
+impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
+    #[inline(always)]
+    pub fn new(start: &Starts<W, FMA>) -> Self {
+        let of = Invariants::new(start);
+        let Cubic { gravity, spin, delta, surplus } = of.cubic;
+        let roots = of.roots(start);
+        let (modulus, resolved) = Modulus::new(gravity, &roots);
+        let (up, across) = (of.up(&roots), of.across(&roots));
+
+        let on_separatrix = modulus.gaps[2].zeros();
+        // Any means, which are not used there.
+        let means = Means::new(Wides::all(1.0).or(&on_separatrix, modulus.kc));
+        let axial = DoubleDoubles::all(0.5.into()) * spin.narrowed();
+        let zero = DoubleDoubles::all(DoubleDouble::ZERO);
+        let alpha = modulus.rate_below(&means, roots.z, roots.gap, of.sigma, gravity);
+        let beta = modulus.rate_above(&means, &up);
+        let of_w = zero.or(&on_separatrix, modulus.rate_above(&means, &across));
+        let rates = [axial.or(&on_separatrix, alpha), zero.or(&on_separatrix, beta), -(axial + of_w)];
+
+        let mut sides = [of.sigma.unit_signs(), delta.unit_signs(), across.n.unit_signs()];
+        let mut kappa = of.numerator(roots.w[0], roots.z[0]).unit_signs();
+        for l in 0..W {
+            sides[2][l] = -sides[2][l];
+            kappa[l] *= sides[0][l];
         }
-        let eta = [p.ratio * whole / long, p.rest * to3 / long];
-        [eta, [to3 / long, to2 / long]].map(|pair| pair.map(Wide::value))
+        let zeros = [
+            modulus.zeros_below(sides[0], roots.z, roots.gap, gravity),
+            modulus.zeros_above(sides[1], &up),
+            modulus.zeros_above(sides[2], &across),
+        ];
+        let moves = roots.gap.positive();
+        let part = [roots.x[0] / roots.gap, roots.x[1] / roots.gap];
+        let sn = part[0].sqrt().or(&moves, Wides::all(0.0)).signed(&of.rise.unit_signs());
+        let cn = part[1].sqrt().or(&moves, Wides::all(1.0));
+        let [z1, z2, _] = roots.z;
+        Orbits {
+            lambda: modulus.lambda,
+            k2: modulus.k2,
+            kc: modulus.kc,
+            mean: means.mean(),
+            on_separatrix,
+            start: arguments(cn, sn, modulus.kc),
+            rates,
+            zeros,
+            sizes: [
+                z2.half().sqrt().values(),
+                roots.w[0].half().sqrt().values(),
+                across.to[0].sqrt().values(),
+            ],
+            kappa,
+            below: roots.w,
+            above: [z1, z2],
+            delta,
+            sigma: of.sigma,
+            surplus,
+            resolved,
+        }
+    }
+
+    /// That of lane l.
+    pub fn lane(&self, l: usize) -> Orbit {
+        Orbit {
+            lambda: self.lambda.lane(l),
+            k2: self.k2[l],
+            kc: self.kc.lane(l),
+            mean: (!self.on_separatrix[l]).then(|| self.mean.lane(l)),
+            rates: self.rates.map(|rate| rate.lane(l)),
+            zeros: [0, 1, 2].map(|k| self.zeros[k].lane(l)),
+            below: self.below.map(|x| x.lane(l)),
+            above: self.above.map(|x| x.lane(l)),
+            delta: self.delta.lane(l),
+            sigma: self.sigma.lane(l),
+            surplus: self.surplus.lane(l),
+        }
     }
 }

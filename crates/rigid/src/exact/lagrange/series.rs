@@ -4,19 +4,30 @@
 //! ([`crate::exact::free::series`]) trigonometric functions serve up to a nome `q = exp(−πK'/K)` of 0.2, hyperbolic ones
 //! beyond, where `q' = exp(−πK/K')` is below 0.0022.
 
-use crate::exact::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev, sign};
+use crate::exact::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev, power, sign};
 use crate::exact::lanes::Coefficients;
 use crate::numerics::lanes::{exp_minus, half_period, horner_in_lane, in_lane, sin_cos_turns};
 use std::f64::consts::PI;
 
 /// The zero of one of the three functions, at `v = i s y` or `π/2 + i s y`.
+pub(crate) type Zero = Zeros<1>;
+
+/// Those of the motions in lanes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Zero {
+pub(crate) struct Zeros<const C: usize> {
     /// s.
-    pub side: f64,
+    pub side: [f64; C],
     /// η and K' − η.
-    pub eta: f64,
-    pub rest: f64,
+    pub eta: [f64; C],
+    pub rest: [f64; C],
+}
+
+impl<const C: usize> Zeros<C> {
+    /// That of lane l.
+    #[inline(always)]
+    pub fn lane(&self, l: usize) -> Zero {
+        Zeros { side: [self.side[l]], eta: [self.eta[l]], rest: [self.rest[l]] }
+    }
 }
 
 /// Values of the series at `W` times: real and imaginary parts of the three functions, their denominator, and the part
@@ -45,16 +56,36 @@ pub(crate) struct Circular<const C: usize = 1> {
     denominator: [[f64; C]; 5],
 }
 
+impl<const C: usize> Circular<C> {
+    /// From the nomes, `M = π/2K`, and the zeros.
+    #[inline(always)]
+    pub fn new(q: &[f64; C], mean: &[f64; C], zeros: &[Zeros<C>; 3]) -> Circular<C> {
+        let mut all = Circular::empty();
+        for l in 0..C {
+            let one = Circular::one(q[l], mean[l], zeros.each_ref().map(|zero| zero.lane(l)));
+            for k in 0..5 {
+                for i in 0..3 {
+                    for j in 0..2 {
+                        all.z[i][j][k][l] = one.z[i][j][k][0];
+                    }
+                }
+                all.denominator[k][l] = one.denominator[k][0];
+            }
+        }
+        all
+    }
+}
+
 impl Circular {
-    /// From the nome, `M = π/2K`, and the zeros.
-    pub fn new(q: f64, mean: f64, zeros: [Zero; 3]) -> Circular {
+    #[inline(always)]
+    fn one(q: f64, mean: f64, zeros: [Zero; 3]) -> Circular {
         // q^{n²} ρ^{2n} (1 ± e^{−2(2n+1)y}) with ρ = q^½ e^y; the difference keeps its digits.
-        let coefficients = |zero: Zero| {
-            let rho = (-zero.rest * mean).exp();
-            let size = move |n: usize| q.powi((n * n) as i32) * rho.powi(2 * n as i32);
-            let less = move |n: usize| (-2.0 * (2 * n + 1) as f64 * (zero.eta * mean)).exp_m1();
-            let sums: [f64; 5] = std::array::from_fn(|n| size(n) * (2.0 + less(n)));
-            let differences: [f64; 5] = std::array::from_fn(|n| -zero.side * size(n) * less(n));
+        let coefficients = |Zeros { side: [side], eta: [eta], rest: [rest] }: Zero| {
+            let rho = (-rest * mean).exp();
+            let size = |n: usize| power(q, n * n) * power(rho, 2 * n);
+            let less = powers_less_one((-2.0 * (eta * mean)).exp_m1());
+            let sums: [f64; 5] = std::array::from_fn(|n| size(n) * (2.0 + less[n]));
+            let differences: [f64; 5] = std::array::from_fn(|n| -side * size(n) * less[n]);
             (sums, differences)
         };
         let alternating = |c: [f64; 5]| std::array::from_fn(|n| sign(n) * c[n]);
@@ -67,7 +98,7 @@ impl Circular {
             let (sums, differences) = coefficients(zero);
             [chebyshev::<5>(sums, THIRD), chebyshev::<5>(differences, FOURTH)]
         };
-        let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * sign(n) * q.powi((n * n) as i32) };
+        let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * sign(n) * power(q, n * n) };
         // Subnormal coefficients are slow on many machines and negligible.
         let normal = |c: f64| [if c.abs() < 1e-200 { 0.0 } else { c }];
         let z = [odd(zeros[0]), even(zeros[1]), even(zeros[2])];
@@ -76,6 +107,18 @@ impl Circular {
             denominator: chebyshev::<5>(std::array::from_fn(squares), FIRST).map(normal),
         }
     }
+}
+
+/// `x^{2n+1} − 1` from `x − 1`, in (−1, 0], without cancellation: `ab − 1 = (a − 1) + (b − 1) + (a − 1)(b − 1)`.
+#[inline(always)]
+fn powers_less_one(first: f64) -> [f64; 5] {
+    let square = first * (2.0 + first);
+    let (mut powers, mut last) = ([0.0; 5], first);
+    for n in 0..5 {
+        powers[n] = last;
+        last = last + square * (1.0 + last);
+    }
+    powers
 }
 
 impl<const C: usize> Series<C> for Circular<C> {

@@ -1,10 +1,10 @@
-//! Start of a heavy top: its axes, and its state in double-double precision.
+//! Starts of heavy tops: their axes, and their states in double-double precision, one top in each lane.
 
 use crate::body::inertia::{Inertia, apart, equal};
 use crate::error::SimulateError;
 use crate::exact::free::power_of_two;
-use crate::numerics::quaternion::{product, quaternion, turned_back};
-use crate::numerics::wide::Wide;
+use crate::numerics::quaternion::{product, quaternions, turned_back};
+use crate::numerics::wide::{Wide, Wides};
 use crate::state::checks::check_moments;
 use polhode_ga::{Bivector, Rotor, Vector};
 
@@ -14,16 +14,59 @@ const ASIDE: f64 = 64.0 * f64::EPSILON;
 /// Torques below this, relative to the scale of the rates, are zero.
 const NONE: f64 = 1e-250;
 
-/// A complex number of twice the precision.
-pub(super) type Complex = [Wide; 2];
+/// Complex numbers of twice the precision.
+pub(super) type Complex<const W: usize, const FMA: bool> = [Wides<W, FMA>; 2];
 
 /// `a b*`.
-pub(super) fn times_conjugate(a: Complex, b: Complex) -> Complex {
+#[inline(always)]
+pub(super) fn times_conjugate<const W: usize, const FMA: bool>(
+    a: Complex<W, FMA>,
+    b: Complex<W, FMA>,
+) -> Complex<W, FMA> {
     [a[0] * b[0] + a[1] * b[1], a[1] * b[0] - a[0] * b[1]]
 }
 
-pub(super) fn square(a: Complex) -> Wide {
+#[inline(always)]
+pub(super) fn square<const W: usize, const FMA: bool>(a: Complex<W, FMA>) -> Wides<W, FMA> {
     a[0] * a[0] + a[1] * a[1]
+}
+
+/// A heavy top at time 0.
+#[derive(Clone, Copy, Debug)]
+pub struct HeavyTop {
+    pub(super) axes: Axes,
+    /// From body axes to space.
+    pub(super) rotor: Rotor,
+    /// In body axes.
+    pub(super) omega: Bivector,
+    /// A power of two near the largest rate, in rad/s.
+    pub(super) scale: f64,
+}
+
+impl HeavyTop {
+    /// As of [`super::LagrangeTop::new`].
+    ///
+    /// # Errors
+    /// For a body that is not such a top, and for numbers that are not finite or out of range.
+    pub fn new(
+        inertia: &Inertia,
+        rotor: Rotor,
+        omega: Bivector,
+        c: Vector,
+    ) -> Result<HeavyTop, SimulateError> {
+        let axes = Axes::new(inertia, c)?;
+        if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
+            return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
+        }
+        let rate = (2.0 * (axes.c / axes.i1)).sqrt();
+        let fastest = omega.0.iter().fold(rate, |m: f64, x| m.max(x.abs()));
+        // Squares of rates, and their ratios to the moments, must be numbers.
+        if !(fastest < 1e140 && (fastest == 0.0 || fastest > 1e-140)) {
+            let what = "the largest rate, which must lie between 1e-140 and 1e140 rad/s,";
+            return Err(SimulateError::BadValue { what, value: fastest });
+        }
+        Ok(HeavyTop { axes, rotor, omega, scale: power_of_two([fastest, 0.0, 0.0]) })
+    }
 }
 
 /// The top's own axes: the third is that of symmetry, in the direction of the centre of mass.
@@ -87,73 +130,104 @@ fn axis_to(axis: usize, opposite: bool) -> Rotor {
     Rotor::from_unit_components(cyclic) * Rotor::from_unit_components(half_turn)
 }
 
-/// The state at the start, rates in units of `scale`.
+/// States at the start, rates in units of each `scale`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Start {
-    /// A power of two near the largest rate, in rad/s.
-    pub scale: f64,
+pub(super) struct Starts<const W: usize, const FMA: bool> {
+    pub scale: [f64; W],
     /// 2c/i1.
-    pub gravity: Wide,
+    pub gravity: Wides<W, FMA>,
     /// ℓ = L3/i1.
-    pub spin: Wide,
+    pub spin: Wides<W, FMA>,
     /// The rate about the axis less ℓ.
-    pub excess: Wide,
+    pub excess: Wides<W, FMA>,
     /// The rate about the axis, in rad/s.
-    pub omega3: f64,
+    pub omega3: [f64; W],
     /// The Cayley–Klein parameters, with their norm.
-    pub alpha: Complex,
-    pub beta: Complex,
+    pub alpha: Complex<W, FMA>,
+    pub beta: Complex<W, FMA>,
     /// 1 − u and 1 + u.
-    pub below: Wide,
-    pub above: Wide,
+    pub below: Wides<W, FMA>,
+    pub above: Wides<W, FMA>,
     /// g = γ1 + iγ2 and w = ω1 + iω2.
-    pub g: Complex,
-    pub w: Complex,
+    pub g: Complex<W, FMA>,
+    pub w: Complex<W, FMA>,
+    /// Whether the top turns steadily about its axis without a torque.
+    pub steady: [bool; W],
 }
 
-impl Start {
-    pub fn new(axes: &Axes, rotor: Rotor, omega: Bivector) -> Result<Start, SimulateError> {
-        if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
-            return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
+/// What a description needs of a start.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    pub scale: f64,
+    pub gravity: Wide,
+    pub spin: Wide,
+    pub excess: Wide,
+    pub omega3: f64,
+    pub below: Wide,
+    pub above: Wide,
+    pub g: [Wide; 2],
+    pub w: [Wide; 2],
+}
+
+impl<const W: usize, const FMA: bool> Starts<W, FMA> {
+    /// From the tops, with the rotors of their axes and their own, and their angular velocities.
+    #[inline(always)]
+    pub fn new(
+        tops: &[HeavyTop; W],
+        frames: &[[f64; W]; 4],
+        rotors: &[[f64; W]; 4],
+        omegas: &[[f64; W]; 3],
+    ) -> Self {
+        let (mut scale, mut constants) = ([0.0; W], [[0.0; W]; 3]);
+        for l in 0..W {
+            let HeavyTop { axes, scale: one, .. } = &tops[l];
+            scale[l] = *one;
+            (constants[0][l], constants[1][l], constants[2][l]) = (axes.i1, axes.i3, axes.c);
         }
-        let rate = (2.0 * (axes.c / axes.i1)).sqrt();
-        let fastest = omega.0.iter().fold(rate, |m: f64, x| m.max(x.abs()));
-        // Squares of rates, and their ratios to the moments, must be numbers.
-        if !(fastest < 1e140 && (fastest == 0.0 || fastest > 1e-140)) {
-            let what = "the largest rate, which must lie between 1e-140 and 1e140 rad/s,";
-            return Err(SimulateError::BadValue { what, value: fastest });
-        }
-        let scale = power_of_two([fastest, 0.0, 0.0]);
-        let frame = quaternion(axes.frame);
-        let [s, x, y, z] = product(quaternion(rotor), frame);
+        let [i1, i3, c] = [Wides::from(constants[0]), Wides::from(constants[1]), Wides::from(constants[2])];
+        let frame = quaternions(frames);
+        let [s, x, y, z] = product(quaternions(rotors), frame);
         let norm = s * s + x * x + y * y + z * z;
         let (alpha, beta) = ([s, z], [y, -x]);
-        let double = |a: Wide| (a + a) / norm;
-        let [g, g_im] = times_conjugate(beta, alpha).map(double);
-        let [w1, w2, w3] = turned_back(frame, omega.0.map(|w| Wide::from(w) / scale.into()));
-        let spin = w3 * axes.i3.into() / axes.i1.into();
-        let square_rate = Wide::from(2.0) * axes.c.into() / axes.i1.into();
-        let gravity = square_rate / scale.into() / scale.into();
+        let [g, g_im] = times_conjugate(beta, alpha);
+        let g = [-((g + g) / norm), -((g_im + g_im) / norm)];
+        let mut rates = [Wides::all(0.0); 3];
+        for k in 0..3 {
+            rates[k] = Wides::from(omegas[k]).in_units(&scale);
+        }
+        let [w1, w2, w3] = turned_back(frame, rates);
+        let spin = w3 * i3 / i1;
+        let gravity = (Wides::all(2.0) * c / i1).in_units(&scale).in_units(&scale);
         // A torque this small has no effect up to any horizon.
-        let gravity = if gravity.value() < NONE { Wide::ZERO } else { gravity };
-        Ok(Start {
-            scale,
-            gravity,
-            spin,
-            excess: w3 - spin,
-            omega3: w3.value() * scale,
-            alpha,
-            beta,
-            below: double(square(beta)),
-            above: double(square(alpha)),
-            g: [-g, -g_im],
-            w: [w1, w2],
-        })
+        let (gravity_values, mut acts) = (gravity.values(), [false; W]);
+        for l in 0..W {
+            acts[l] = gravity_values[l] >= NONE;
+        }
+        let gravity = gravity.or(&acts, Wides::all(0.0));
+        let (below, above, w) = (square(beta), square(alpha), [w1, w2]);
+        let (below, above) = ((below + below) / norm, (above + above) / norm);
+        let (mut omega3, mut steady) = (w3.values(), [false; W]);
+        let zeros = [w1.zeros(), w2.zeros(), g[0].zeros(), g[1].zeros()];
+        for l in 0..W {
+            omega3[l] *= scale[l];
+            steady[l] = zeros[0][l] & zeros[1][l] & ((zeros[2][l] & zeros[3][l]) | !acts[l]);
+        }
+        let excess = w3 - spin;
+        Starts { scale, gravity, spin, excess, omega3, alpha, beta, below, above, g, w, steady }
     }
 
-    /// Whether the top turns steadily about its axis without a torque.
-    pub fn is_steady(&self) -> bool {
-        let zero = |z: Complex| z[0].is_zero() && z[1].is_zero();
-        zero(self.w) && (zero(self.g) || self.gravity.is_zero())
+    /// That of lane l.
+    pub fn lane(&self, l: usize) -> Start {
+        Start {
+            scale: self.scale[l],
+            gravity: self.gravity.lane(l),
+            spin: self.spin.lane(l),
+            excess: self.excess.lane(l),
+            omega3: self.omega3[l],
+            below: self.below.lane(l),
+            above: self.above.lane(l),
+            g: self.g.map(|x| x.lane(l)),
+            w: self.w.map(|x| x.lane(l)),
+        }
     }
 }

@@ -22,13 +22,14 @@ proptest! {
         prop_assert!(small(a / b * b - a, 16.0, a));
         prop_assert!(small((a * a).sqrt() - a.abs(), 16.0, a));
         prop_assert_eq!(a < b, b > a);
-        prop_assert!(a - a == Wide::ZERO && a + Wide::ZERO == a && a * Wide::ZERO == Wide::ZERO);
+        let zero = Wide::from(0.0);
+        prop_assert!(a - a == zero && a + zero == a && a * zero == zero);
     }
 
     /// Lanes with fused multiply-add have the bits of single numbers without.
     #[test]
     fn lanes(a in prop::array::uniform4(number()), b in prop::array::uniform4(number())) {
-        let zero = Wide::ZERO;
+        let zero = Wide::from(0.0);
         let (mut x, mut y) = (Wides::<6, true>::all(0.0), Wides::all(0.0));
         let (a, b) = ([a[0], a[1], a[2], a[3], zero, a[0]], [b[0], b[1], b[2], b[3], b[0], zero]);
         for l in 0..6 {
@@ -42,6 +43,9 @@ proptest! {
             prop_assert!(same(x.sqrt(), a[l].sqrt()) && same(x.abs(), a[l].abs()));
             prop_assert_eq!(x.values()[l], a[l].value());
             prop_assert_eq!(x.at_most(y)[l], a[l] <= b[l]);
+            prop_assert_eq!(x.exceeds(y)[l], a[l] > b[l]);
+            prop_assert_eq!((x.positive()[l], x.negative()[l]), (a[l] > zero, a[l] < zero));
+            prop_assert_eq!(x.unit_signs()[l], if a[l] < zero { -1.0 } else { 1.0 });
         }
     }
 

@@ -1,0 +1,178 @@
+//! Roots of the cubic of heavy tops, one top in each lane.
+
+use crate::numerics::wide::Wides;
+use polhode_ga::simd::lanes::Lanes;
+use std::ops::{Add, Mul, Sub};
+
+/// Numbers in which roots are computed.
+pub(super) trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// The same number in each lane.
+    fn all(x: f64) -> Self;
+}
+
+impl<const W: usize, const FMA: bool> Real for Lanes<W, FMA> {
+    #[inline(always)]
+    fn all(x: f64) -> Self {
+        Lanes::all(x)
+    }
+}
+
+impl<const W: usize, const FMA: bool> Real for Wides<W, FMA> {
+    #[inline(always)]
+    fn all(x: f64) -> Self {
+        Wides::all(x)
+    }
+}
+
+/// The numbers of the start on which the roots depend.
+#[derive(Clone, Copy)]
+pub(super) struct Cubic<T> {
+    pub gravity: T,
+    pub spin: T,
+    pub delta: T,
+    pub surplus: T,
+}
+
+impl<T: Real> Cubic<T> {
+    /// Half the second derivative by 2ĉ(u − 1), and by 1 − u, at u = 1.
+    #[inline(always)]
+    fn bend(self) -> T {
+        T::all(2.0) * self.gravity - self.surplus - self.spin * self.spin
+    }
+
+    /// The cubic, its derivative and half the second: above the upright by y = 2ĉ(u − 1), else by w = 1 − u.
+    #[inline(always)]
+    fn at<const ABOVE: bool>(self, x: T) -> [T; 3] {
+        if ABOVE { self.above(x) } else { self.below(x) }
+    }
+
+    #[inline(always)]
+    fn above(self, y: T) -> [T; 3] {
+        let Cubic { gravity, spin, delta, surplus } = self;
+        let two = T::all(2.0);
+        let (p, q, r) = (y * (two * gravity + y), y - surplus, gravity * delta - spin * y);
+        let slope = two * (gravity + y) * q + p + two * spin * r;
+        [p * q - r * r, slope, self.bend() + y * T::all(3.0)]
+    }
+
+    #[inline(always)]
+    fn below(self, w: T) -> [T; 3] {
+        let Cubic { gravity, spin, delta, surplus } = self;
+        let two = T::all(2.0);
+        let (p, q, r) = (w * (two - w), surplus + gravity * w, delta + spin * w);
+        let bend = self.bend();
+        let third = gravity * w * T::all(3.0);
+        let slope = two * (surplus - delta * spin) + two * bend * w - third * w;
+        [p * q - r * r, slope, bend - third]
+    }
+}
+
+impl<const W: usize, const FMA: bool> Cubic<Wides<W, FMA>> {
+    /// The largest roots by Newton's method from starts above them, where `wanted`; the other roots are all >= 0 or all
+    /// <= 0. While value and derivatives have the sign of the leading coefficient, there is no root above (Budan). The
+    /// method begins beside the root that floats find, if that is above the root.
+    #[inline(always)]
+    pub fn largest_root<const ABOVE: bool>(self, start: Wides<W, FMA>, wanted: &[bool; W]) -> Wides<W, FMA> {
+        const STRIDE: f64 = 1.0 / (1u64 << 32) as f64;
+        /// Above the rounding of the root of floats, and below the root of the rounding of [`Wides`].
+        const MARGIN: f64 = 1e-12;
+        let (mut near, mut begun) = self.floats().root::<ABOVE>(start.values(), wanted);
+        for l in 0..W {
+            near[l] *= 1.0 + MARGIN;
+        }
+        let near = Wides::from(near);
+        let is_above = self.has_no_root_above::<ABOVE>(near);
+        let mut open = [false; W];
+        for l in 0..W {
+            begun[l] &= is_above[l];
+            open[l] = wanted[l] & !begun[l];
+        }
+        let mut x = near.or(&begun, start);
+        for _ in 0..100 {
+            if open == [false; W] {
+                break;
+            }
+            let next = x * Wides::all(STRIDE);
+            let is_above = self.has_no_root_above::<ABOVE>(next);
+            for l in 0..W {
+                open[l] &= is_above[l];
+            }
+            x = next.or(&open, x);
+        }
+        open = *wanted;
+        for _ in 0..200 {
+            let [value, slope, _] = self.at::<ABOVE>(x);
+            let (step, flat) = (value / slope, slope.zeros());
+            let small = step.at_most(x * Wides::all(1e-31));
+            for l in 0..W {
+                open[l] &= !flat[l] & !small[l] & step.signs()[l].is_finite();
+            }
+            if open == [false; W] {
+                break;
+            }
+            x = (x - step).or(&open, x);
+        }
+        x
+    }
+
+    #[inline(always)]
+    fn has_no_root_above<const ABOVE: bool>(self, x: Wides<W, FMA>) -> [bool; W] {
+        let leading = if ABOVE { 1.0 } else { -1.0 };
+        let values = self.at::<ABOVE>(x);
+        let mut found = [true; W];
+        for value in values {
+            for l in 0..W {
+                found[l] &= value.signs()[l] * leading > 0.0;
+            }
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn floats(self) -> Cubic<Lanes<W, FMA>> {
+        let Cubic { gravity, spin, delta, surplus } = self;
+        Cubic {
+            gravity: Lanes(gravity.values()),
+            spin: Lanes(spin.values()),
+            delta: Lanes(delta.values()),
+            surplus: Lanes(surplus.values()),
+        }
+    }
+}
+
+impl<const W: usize, const FMA: bool> Cubic<Lanes<W, FMA>> {
+    /// The same in floats, to a few roundings of a simple root, and whether it was found: not beyond their range.
+    #[inline(always)]
+    fn root<const ABOVE: bool>(self, mut x: [f64; W], wanted: &[bool; W]) -> ([f64; W], [bool; W]) {
+        /// Terms of this size are far from underflow.
+        const LEAST: f64 = 1e-200;
+        let (mut open, mut found) = (*wanted, [false; W]);
+        for _ in 0..60 {
+            if open == [false; W] {
+                break;
+            }
+            let [Lanes(value), Lanes(slope), _] = self.at::<ABOVE>(Lanes(x));
+            for l in 0..W {
+                let step = value[l] / slope[l];
+                open[l] &= step.is_finite() & ((slope[l] * x[l]).abs() >= LEAST);
+                x[l] = if open[l] { x[l] - step } else { x[l] };
+                found[l] |= open[l] & (step.abs() <= 1e-9 * x[l]);
+                open[l] &= !found[l];
+            }
+        }
+        (x, found)
+    }
+}
+
+/// The positive x and y with given `x y` and `y − x`.
+#[inline(always)]
+pub(super) fn factors<const W: usize, const FMA: bool>(
+    product: Wides<W, FMA>,
+    difference: Wides<W, FMA>,
+) -> [Wides<W, FMA>; 2] {
+    let root = (difference * difference + product * Wides::all(4.0)).sqrt();
+    let large = (root + difference.abs()).half();
+    let small = (product / large).or(&large.positive(), Wides::all(0.0));
+    let negative = difference.negative();
+    [large.or(&negative, small), small.or(&negative, large)]
+}

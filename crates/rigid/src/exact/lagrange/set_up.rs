@@ -1,0 +1,380 @@
+//! From heavy tops to their motions: orbits, series and frames, one top in each lane.
+
+use super::flow::Flow as LagrangeFlow;
+use super::orbit::Orbits;
+use super::series::{Circular, Hyperbolic, Series};
+use super::start::{HeavyTop, Starts, square};
+use super::{FreeMotion, LagrangeTop, MOST_TURNS};
+use crate::error::SimulateError;
+use crate::exact::flow::{Flow, Form};
+use crate::exact::free::phases_and_nomes;
+use crate::exact::free::series::LARGEST_NOME;
+use crate::exact::lanes::{Coefficients, Phases, product, reverse, turned};
+use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
+use crate::numerics::elliptic::mean;
+use crate::numerics::wide::Wides;
+use polhode_ga::Bivector;
+use polhode_ga::rows::curve::Curve;
+use polhode_ga::simd::lanes::{Work, fastest};
+use std::f64::consts::PI;
+
+/// The series cannot represent tilts and rates below this.
+const LEAST: f64 = 1e-303;
+
+impl HeavyTop {
+    /// Its motion.
+    ///
+    /// # Errors
+    /// [`SimulateError::Unresolved`] if the roots are not.
+    pub fn motion(&self) -> Result<LagrangeTop, SimulateError> {
+        let mut tops = LagrangeTops::<1>::default();
+        // One lane needs no wide instructions.
+        let (starts, orbits) = tops.filled::<false>(&[*self]);
+        let (axes, start) = (self.axes, starts.lane(0));
+        if tops.steady[0] {
+            let moments = [axes.i1, axes.i1, axes.i3];
+            let along = Bivector([0.0, 0.0, start.omega3]);
+            let motion = FreeMotion::in_frame(axes.frame, moments, self.rotor * axes.frame, along);
+            let (flow, horizon) = (motion.flow, motion.horizon());
+            return Ok(LagrangeTop { axes, start, orbit: None, flow, horizon });
+        }
+        if !tops.resolved[0] {
+            return Err(SimulateError::Unresolved);
+        }
+        let flow = Flow(match tops.hyperbolic {
+            Some(flow) => Form::LagrangeHyperbolic(flow),
+            None => Form::LagrangeCircular(tops.circular),
+        });
+        Ok(LagrangeTop { axes, start, orbit: Some(orbits.lane(0)), flow, horizon: tops.horizons[0] })
+    }
+}
+
+/// The motions of `W` heavy tops, one in each lane.
+#[derive(Clone, Debug)]
+pub(in crate::exact) struct LagrangeTops<const W: usize> {
+    /// Valid where [`LagrangeTops::is_circular`].
+    pub circular: LagrangeFlow<Circular<W>, W>,
+    /// The others.
+    pub hyperbolic: Option<LagrangeFlow<Hyperbolic<W>, W>>,
+    pub is_circular: [bool; W],
+    /// Tops without a torque, whose motions are of free bodies.
+    pub steady: [bool; W],
+    /// Whether the motion of another top is resolved.
+    pub resolved: [bool; W],
+    /// [`LagrangeTop::horizon`] of each.
+    pub horizons: [f64; W],
+}
+
+impl<const W: usize> Default for LagrangeTops<W> {
+    fn default() -> LagrangeTops<W> {
+        LagrangeTops {
+            circular: LagrangeFlow::empty(),
+            hyperbolic: None,
+            is_circular: [true; W],
+            steady: [false; W],
+            resolved: [true; W],
+            horizons: [0.0; W],
+        }
+    }
+}
+
+impl<const W: usize> LagrangeTops<W> {
+    /// Replaces the motions by those of other tops. Each has the bits that it has alone.
+    pub fn set_up(&mut self, tops: &[HeavyTop; W]) {
+        fastest(SetUp { tops, motions: self });
+    }
+
+    #[inline(always)]
+    fn filled<const FMA: bool>(&mut self, tops: &[HeavyTop; W]) -> (Starts<W, FMA>, Orbits<W, FMA>) {
+        let (mut frames, mut rotors, mut omegas) = ([[0.0; W]; 4], [[0.0; W]; 4], [[0.0; W]; 3]);
+        for l in 0..W {
+            let (frame, rotor) = (tops[l].axes.frame.components(), tops[l].rotor.components());
+            for k in 0..4 {
+                (frames[k][l], rotors[k][l]) = (frame[k], rotor[k]);
+            }
+            for k in 0..3 {
+                omegas[k][l] = tops[l].omega.0[k];
+            }
+        }
+        let starts = Starts::<W, FMA>::new(tops, &frames, &rotors, &omegas);
+        let orbits = Orbits::new(&starts);
+        let mut root = [0.0; W];
+        for l in 0..W {
+            root[l] = orbits.k2[l].sqrt();
+        }
+        // AGM(1, k) = π/2K'.
+        let other = mean(root);
+        let Orbits { lambda, on_separatrix, start, .. } = &orbits;
+        let one = DoubleDoubles::all(DoubleDouble::ONE);
+        let mean = one.or(on_separatrix, orbits.mean);
+        let (phases, nome) = phases_and_nomes(lambda, &mean, on_separatrix, start, &other);
+        for l in 0..W {
+            self.is_circular[l] = nome[l] <= LARGEST_NOME;
+        }
+        self.steady = starts.steady;
+        let nutating = Nutating { starts: &starts, orbits: &orbits, frames, rotors, omegas, phases };
+        let series = Circular::new(&nome, &orbits.mean.hi, &orbits.zeros);
+        self.circular = nutating.flow(series);
+        self.horizons = nutating.horizons(&self.circular);
+        self.resolved = nutating.resolved(&self.circular);
+        self.hyperbolic = None;
+        if self.is_circular != [true; W] {
+            let flow = nutating.flow(nutating.hyperbolic(&self.is_circular, &other));
+            let resolved = nutating.resolved(&flow);
+            for l in 0..W {
+                self.resolved[l] = if self.is_circular[l] { self.resolved[l] } else { resolved[l] };
+            }
+            self.hyperbolic = Some(flow);
+        }
+        for l in 0..W {
+            self.resolved[l] &= orbits.resolved[l];
+        }
+        (starts, orbits)
+    }
+}
+
+struct SetUp<'a, const W: usize> {
+    tops: &'a [HeavyTop; W],
+    motions: &'a mut LagrangeTops<W>,
+}
+
+impl<const W: usize> Work for SetUp<'_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        self.motions.filled::<FMA>(self.tops);
+    }
+}
+
+/// Tops with their orbits, in lanes.
+struct Nutating<'a, const W: usize, const FMA: bool> {
+    starts: &'a Starts<W, FMA>,
+    orbits: &'a Orbits<W, FMA>,
+    /// From the tops' axes to those of the body, and from these to space.
+    frames: [[f64; W]; 4],
+    rotors: [[f64; W]; 4],
+    /// At the start, in body axes.
+    omegas: [[f64; W]; 3],
+    phases: Phases<W>,
+}
+
+impl<const W: usize, const FMA: bool> Nutating<'_, W, FMA> {
+    /// Zeros for the circular motions.
+    #[inline(always)]
+    fn hyperbolic(&self, circular: &[bool; W], other: &[f64; W]) -> Hyperbolic<W> {
+        let (orbits, mut series) = (self.orbits, Hyperbolic::<W>::empty());
+        for l in 0..W {
+            if circular[l] {
+                continue;
+            }
+            let mut gammas = [(0.0, 0.0); 3];
+            for (gamma, zeros) in gammas.iter_mut().zip(&orbits.zeros) {
+                *gamma = (zeros.side[l], zeros.eta[l] * other[l]);
+            }
+            let one = if orbits.on_separatrix[l] {
+                Hyperbolic::separatrix(gammas[0].1, gammas[0].0)
+            } else {
+                Hyperbolic::new(0.5 * PI * other[l] / orbits.mean.hi[l], gammas)
+            };
+            series.put(l, &one);
+        }
+        series
+    }
+
+    /// Phases, series and frames together.
+    #[inline(always)]
+    fn flow<S: Series<W>>(&self, series: S) -> LagrangeFlow<S, W> {
+        let Nutating { starts, orbits, frames, phases, .. } = self;
+        let (none, one, minus) = ([0.0; W], [1.0; W], [-1.0; W]);
+        // The uniform turn about the axis adds to ψ.
+        let excess = starts.excess.narrowed();
+        let half = excess * DoubleDoubles::all(0.5.into());
+        let [alpha, beta, across] = orbits.rates;
+        let mut uniform = [Phases::STILL; 3];
+        for (phase, rate) in uniform.iter_mut().zip([alpha + half, beta - half, across - excess]) {
+            let rate = rate * DoubleDoubles::all(DoubleDouble::OVER_TWO_PI);
+            *phase = Phases([rate.hi, rate.lo, none, none]);
+        }
+        // Rotors for the real and imaginary parts of α and β, and axes for w and 1.
+        let back = reverse(frames);
+        let (mut rotor, mut omega) = ([[none; 4]; 4], [[none; 3]; 3]);
+        let units = [
+            [one, none, none, none],
+            [none, none, none, minus],
+            [none, none, minus, none],
+            [none, one, none, none],
+        ];
+        for k in 0..4 {
+            let column = product(&units[k], &back);
+            for i in 0..4 {
+                rotor[i][k] = column[i];
+            }
+        }
+        for (k, size) in [starts.scale, starts.scale, starts.omega3].into_iter().enumerate() {
+            let mut axis = [none; 3];
+            axis[k] = size;
+            let column = turned(frames, &axis);
+            for i in 0..3 {
+                omega[i][k] = column[i];
+            }
+        }
+        let factors = [[one, none]; 3];
+        let (scale, orbit) = (starts.scale, *phases);
+        let mut flow = LagrangeFlow { scale, orbit, phases: uniform, series, factors, rotor, omega };
+        flow.factors = self.factors(&flow);
+        flow
+    }
+
+    /// The constants A, B and C: their sizes from the bounds, their phases from the two of α, β and w that are relatively
+    /// largest at the start.
+    #[inline(always)]
+    fn factors<S: Series<W>>(&self, flow: &LagrangeFlow<S, W>) -> [[[f64; W]; 2]; 3] {
+        let (starts, orbits) = (self.starts, self.orbits);
+        let upper = flow.series.state::<W, FMA>(&[0.25; W], &[0.0; W]);
+        let lower = flow.series.state::<W, FMA>(&[0.0; W], &[0.0; W]);
+        let now = flow.turned::<W, FMA>(&[0.0; W]);
+        let mut state = [[[0.0; W]; 2]; 3];
+        for (parts, z) in state.iter_mut().zip([starts.alpha, starts.beta, starts.w]) {
+            *parts = [z[0].values(), z[1].values()];
+        }
+        let (relations, mut factors) = (self.relations(), [[[0.0; W]; 2]; 3]);
+        for l in 0..W {
+            let at = |[re, im]: &[[f64; W]; 2]| [re[l], im[l]];
+            let mut unit: [[f64; 2]; 3] = std::array::from_fn(|k| {
+                let [re, im] = at(&now.z[k]);
+                normalized(times(at(&state[k]), normalized([re, -im])))
+            });
+            let part = |k: usize| size(at(&state[k])) / orbits.sizes[k][l];
+            let smallest = (0..3).min_by(|&j, &k| part(j).total_cmp(&part(k))).unwrap_or(2);
+            // C = −iκ A* B at v = 0.
+            let relation = at(&relations);
+            match smallest {
+                0 => unit[0] = conjugate(times(times(unit[2], conjugate(unit[1])), conjugate(relation))),
+                1 => unit[1] = times(times(unit[2], unit[0]), conjugate(relation)),
+                _ => unit[2] = times(times(conjugate(unit[0]), unit[1]), relation),
+            }
+            for k in 0..3 {
+                let bound = if k == 0 { &upper } else { &lower };
+                let factor = orbits.sizes[k][l] * bound.denominator[l] / size(at(&bound.z[k]));
+                for part in 0..2 {
+                    factors[k][part][l] = unit[k][part] * factor;
+                }
+            }
+        }
+        factors
+    }
+
+    /// `C/(A* B)` at the start: −iκ, turned by the phase `μ_β − μ_α − μ_w` since v = 0, an odd number of turns of the theta
+    /// functions in each period.
+    #[inline(always)]
+    fn relations(&self) -> [[f64; W]; 2] {
+        let Orbits { lambda, mean, on_separatrix, start, kappa, rates, .. } = self.orbits;
+        let [alpha, beta, across] = *rates;
+        let turns = (across - beta + alpha) / (*lambda * *mean);
+        let mut relations = [[0.0; W]; 2];
+        for l in 0..W {
+            let odd = 2.0 * (0.5 * (turns.hi[l] + turns.lo[l] - 1.0)).round() + 1.0;
+            // v/π at the start.
+            let part = 0.5 * start[0][l] + start[1][l] * mean.hi[l] / PI;
+            let (sin, cos) = if on_separatrix[l] { (0.0, 1.0) } else { (PI * odd * part).sin_cos() };
+            (relations[0][l], relations[1][l]) = (kappa[l] * sin, -kappa[l] * cos);
+        }
+        relations
+    }
+
+    /// The times of 1e17 turns of the fastest phases.
+    #[inline(always)]
+    fn horizons<S>(&self, flow: &LagrangeFlow<S, W>) -> [f64; W] {
+        let mut horizons = [0.0; W];
+        for l in 0..W {
+            let mut fastest = self.orbits.lambda.hi[l] / PI;
+            for phase in &flow.phases {
+                fastest = fastest.max(phase.0[0][l].abs());
+            }
+            horizons[l] = MOST_TURNS / (fastest * self.starts.scale[l]);
+        }
+        horizons
+    }
+
+    /// Whether each solution reproduces the start, and keeps the energy.
+    #[inline(always)]
+    fn resolved<S: Series<W>>(&self, flow: &LagrangeFlow<S, W>) -> [bool; W] {
+        let mut resolved = self.starts_at(flow);
+        for part in [0.3, 1.0, 2.2] {
+            let kept = self.keeps_energy(flow, part);
+            for l in 0..W {
+                resolved[l] &= kept[l];
+            }
+        }
+        resolved
+    }
+
+    /// Whether the solution reproduces the start. The rate across the axis is compared with its own largest size.
+    #[inline(always)]
+    fn starts_at<S: Series<W>>(&self, flow: &LagrangeFlow<S, W>) -> [bool; W] {
+        /// The roundings of a start add up to less.
+        const MOST: f64 = 1e-12;
+        let (starts, mut right) = (self.starts, [true; W]);
+        let (rotors, omegas) = flow.values::<W, FMA>(&[0.0; W]);
+        for l in 0..W {
+            for k in 0..4 {
+                right[l] &= (rotors[k][l] - self.rotors[k][l]).abs() <= MOST;
+            }
+            let across = self.orbits.sizes[2][l] * starts.scale[l];
+            let spin = 64.0 * f64::EPSILON * starts.omega3[l].abs();
+            let most = MOST * across + spin + LEAST * starts.scale[l];
+            let [x, y, z] = [0, 1, 2].map(|k| omegas[k][l] - self.omegas[k][l]);
+            right[l] &= size([size([x, y]), z]) <= most;
+        }
+        right
+    }
+
+    /// Whether `|w|² + 2ĉu` is that of the start after a part of a quarter of a nutation, compared with the largest |w|².
+    #[inline(always)]
+    fn keeps_energy<S: Series<W>>(&self, flow: &LagrangeFlow<S, W>, part: f64) -> [bool; W] {
+        /// The rounding of a tilt of 1e-300 is 1e-13 of it.
+        const MOST: f64 = 1e-10;
+        let (starts, orbits) = (self.starts, self.orbits);
+        let (mut times, mut rounding) = ([0.0; W], [0.0; W]);
+        for l in 0..W {
+            let quarter = if orbits.on_separatrix[l] { 1.0 } else { 0.5 * PI / orbits.mean.hi[l] };
+            times[l] = part * (quarter / orbits.lambda.hi[l] / starts.scale[l]);
+            // That of the rate about the axis, in body axes.
+            rounding[l] = starts.omega3[l].abs() / starts.scale[l] * f64::EPSILON * 8.0 + LEAST;
+        }
+        let (rotors, omegas) = flow.values::<W, FMA>(&times);
+        let [x, y, _] = turned(&reverse(&self.frames), &omegas);
+        let (x, y) = (Wides::from(x).in_units(&starts.scale), Wides::from(y).in_units(&starts.scale));
+        let [a, b, c, d] = product(&rotors, &self.frames);
+        let [a, b, c, d] = [Wides::from(a), Wides::from(b), Wides::from(c), Wides::from(d)];
+        // u relative to that of the start, from the nearer pole.
+        let (two, upper) = (Wides::all(2.0), Wides::all(1.0).exceeds(starts.below));
+        let rise = (starts.below - (b * b + c * c) * two).or(&upper, (a * a + d * d) * two - starts.above);
+        let change = x * x + y * y - square(starts.w) + starts.gravity * rise;
+        let (largest, spin) = (Wides::from(orbits.sizes[2]), Wides::from(rounding));
+        change.abs().at_most((largest * largest) * Wides::all(MOST) + (largest + spin) * spin)
+    }
+}
+
+/// The product of complex numbers.
+#[inline(always)]
+fn times(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+#[inline(always)]
+fn conjugate([x, y]: [f64; 2]) -> [f64; 2] {
+    [x, -y]
+}
+
+#[inline(always)]
+fn size([x, y]: [f64; 2]) -> f64 {
+    x.hypot(y)
+}
+
+#[inline(always)]
+fn normalized(z: [f64; 2]) -> [f64; 2] {
+    let size = size(z);
+    if size > 0.0 { [z[0] / size, z[1] / size] } else { [1.0, 0.0] }
+}

@@ -1,7 +1,7 @@
 """Forces on the centre of mass for `polhode.simulate`: ``x' = v``, ``v' = F/m``, the x0 of handout eq. (4.1).
 
-Forces add up, and a vector or an array (..., 3) is a constant force in N:
-``ph.vector([0, 0, -9.81]) + ph.force.drag(0.1)``.
+Forces add up and are multiplied by numbers, and a vector or an array (..., 3) is a constant force in N:
+``ph.vector([0, 0, -9.81]) + 2 * ph.force.drag(0.1)``.
 
 Arguments may be batches of any shape, with a value for each of many bodies that `simulate` moves at once: an
 array of numbers, or batched vectors. Python functions are shared by all bodies.
@@ -16,13 +16,17 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.constructors import as_points, as_vectors
+from polhode._algebra.constructors import as_points, vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import Sum, function_of, law_of_formula, shown
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.force_values import names_of_motion, value_of
+from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
 from polhode._mechanics.parameters import Batch, named_together, numbers, rows, together
 from polhode._mechanics.registry import FORCES
-from polhode._support.arrays import Array
+from polhode._mechanics.state import State
+from polhode._mechanics.sums import Sum, multiple, require_single
+from polhode._support.arrays import Array, as_float
 
 __all__ = [
     "Force",
@@ -54,20 +58,53 @@ class Force(Sum):
     constant([0.0, 0.0, -9.81]) + drag(0.1)
     >>> ph.force.drag(0.1) - 9.81 * ph.e3
     drag(0.1) + constant([0.0, 0.0, -9.81])
+
+    A number times a force is a force with other arguments:
+
+    >>> 2 * ph.force.drag(0.1)
+    drag(0.2)
     """
 
     laws: tuple[_native.Force, ...]
+    _constant = "a constant force is constant(F), or a vector"
 
     def __add__(self, other: Force | Multivector | Array) -> Force:
         return super().__add__(constant(other) if isinstance(other, _VECTORS) else other)
 
-    def __sub__(self, other: Multivector | Array) -> Force:
-        if not isinstance(other, _VECTORS):
-            return NotImplemented
-        return self + constant(0.0 - as_vectors(other, "the force"))
-
     def __radd__(self, other: object) -> Force:
         return constant(other) + self if isinstance(other, _VECTORS) else super().__radd__(other)
+
+    def __sub__(self, other: Force | Multivector | Array) -> Force:
+        return super().__sub__(constant(other) if isinstance(other, _VECTORS) else other)
+
+    def __rsub__(self, other: object) -> Force:
+        return constant(other) - self if isinstance(other, _VECTORS) else super().__rsub__(other)
+
+    def _multiple(self, law: _native.Force, factor: float) -> _native.Force:
+        return multiple(law, factor, (0,))
+
+    def at(self, body: Body, state: State, t: float | None = None) -> Multivector:
+        """Return the force at a single state and time, a vector in space in N.
+
+        L of a formula is then without the wheels of a `gyrostat`. The time t is in s, by default that of the
+        state.
+
+        Examples
+        --------
+        Weight and drag of a ball that moves at 2 m/s along e1:
+
+        >>> ball = ph.Body.sphere(0.1, mass=0.5)
+        >>> state = ph.State(ph.Rotor.identity(), [0, 0, 0], velocity=[2, 0, 0])
+        >>> (ph.force.constant([0, 0, -5]) + ph.force.drag(0.1)).at(ball, state)
+        -0.2 e1 - 5 e3
+        """
+        require_single(self)
+        if not isinstance(body, Body):
+            raise TypeError(f"a force needs a Body, which has a mass, got {type(body).__name__}")
+        if state.shape:
+            raise ValueError(f"the state must be a single one, got batch {state.shape}")
+        motion = names_of_motion(body, state, finite(as_float(state.time if t is None else t, "t"), "t"))
+        return sum((value_of(law, motion) for law in self.laws), vector([0.0, 0.0, 0.0]))
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Force(())"
@@ -115,6 +152,8 @@ def thrust(force: Any, at: Any = None) -> Force:
 def drag(k: Any) -> Force:
     """Return ``−k v``, k (...) in N s/m. The centre of mass moves in closed form.
 
+    A negative k drives the body: alone, its speed grows as ``exp(−k t/m)``.
+
     Examples
     --------
     >>> ball = ph.Body.sphere(0.1, mass=2)
@@ -137,6 +176,8 @@ def drag(k: Any) -> Force:
 def quadratic_drag(k: Any) -> Force:
     """Return ``−k |v| v``, k (...) in N s²/m².
 
+    A negative k drives the body: alone, its speed is infinite at the time ``m/(−k |v|)``.
+
     Examples
     --------
     A ball that falls in air reaches the speed ``√(m g/k)``, here 7 m/s:
@@ -153,7 +194,7 @@ def quadratic_drag(k: Any) -> Force:
 def spring(stiffness: Any, anchor: Any = 0) -> Force:
     """Return ``−k (x − anchor)``, the stiffness k (...) in N/m, the anchor a point in space, (..., 3) in m.
 
-    The centre of mass moves in closed form.
+    The centre of mass moves in closed form. A negative k repels from the anchor.
 
     Examples
     --------
@@ -170,6 +211,8 @@ def spring(stiffness: Any, anchor: Any = 0) -> Force:
 
 def central(mu: Any) -> Force:
     """Return ``−μ m x/|x|³``: attraction by a centre at the origin of space, μ = G M (...) in m³/s².
+
+    A negative μ repels.
 
     Examples
     --------

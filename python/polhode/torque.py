@@ -1,8 +1,8 @@
 """Torque laws for `polhode.simulate`.
 
-Laws add up: ``ph.torque.heavy(c) + ph.torque.damping(g)``. The torque is a bivector, whose components
-``(e2e3, e3e1, e1e2)`` are those of the axial vector. R is the rotor from body axes to space, ``Ω_B`` the
-angular velocity in body axes.
+Laws add up and are multiplied by numbers: ``ph.torque.heavy(c) + 2 * ph.torque.damping(g)``. The torque is a
+bivector, whose components ``(e2e3, e3e1, e1e2)`` are those of the axial vector. R is the rotor from body
+axes to space, ``Ω_B`` the angular velocity in body axes.
 
 Arguments may be batches of any shape, with a value for each of many bodies that `simulate` moves at once: an
 array of numbers, or batched vectors, bivectors and rotors. Tables and Python functions are shared by all
@@ -22,7 +22,7 @@ from polhode._algebra.constructors import as_bivectors, bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, has, inertia_of
-from polhode._mechanics.laws import Sum, finite, function_of, law_of_formula, shown
+from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
 from polhode._mechanics.orbits import DipoleField, KeplerOrbit, dipole_field
 from polhode._mechanics.parameters import (
     bivectors,
@@ -36,6 +36,7 @@ from polhode._mechanics.parameters import (
 )
 from polhode._mechanics.pivot import HOLDING, about_pivot
 from polhode._mechanics.registry import TORQUES
+from polhode._mechanics.sums import Sum, multiple, require_single
 from polhode._mechanics.wheels import wheel_arguments
 from polhode._support.arrays import as_float, as_floats
 
@@ -73,6 +74,13 @@ _CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
     "gains": gains,
     "rotor": rotors,
 }
+# The arguments in which a law is linear; the first one of all others.
+_LINEAR: dict[str, tuple[int, ...]] = {
+    "gravity_gradient": (),
+    "pd_control": (0, 1),
+    "reaction_wheels": (),
+    "tabulated": (1,),
+}
 _FRAMES = ("body", "space")
 _KINDS = tuple(next(x.words for x in TORQUES["tabulated"].arguments if x.name == "kind"))
 
@@ -94,9 +102,18 @@ class Torque(Sum):
     True
     >>> law == ph.torque.heavy([0, 0, 2]) + ph.torque.damping(0.5)
     True
+
+    A number times a law multiplies what it exerts; the result is a law with other arguments:
+
+    >>> 2 * law - ph.torque.damping(0.25)
+    heavy([0.0, 0.0, 4.0]) + damping(1.0) + damping(-0.25)
     """
 
     laws: tuple[_native.Law, ...]
+    _constant = "a constant torque is constant_body(N) or constant_space(N)"
+
+    def _multiple(self, law: _native.Law, factor: float) -> _native.Law:
+        return multiple(law, factor, _LINEAR.get(law.name, (0,)))
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Torque(())"
@@ -124,8 +141,7 @@ class Torque(Sum):
         >>> ph.torque.damping(0.5).at(inertia, state)
         -6 e1∧e2
         """
-        if self.shape:
-            raise ValueError(f"the torque must be that of a single body, got batch shape {self.shape}")
+        require_single(self)
         if not isinstance(inertia, Inertia | Body):
             raise TypeError(f"inertia must be an Inertia or a Body, got {type(inertia).__name__}")
         if state.shape:
@@ -361,6 +377,9 @@ def radiation_pressure(
 def damping(g: Any) -> Torque:
     """Return the torque ``−g I(Ω_B)``, g in 1/s, (...): alone, it lets the spin decay as ``exp(−g t)``.
 
+    A negative g drives the body: the spin grows. Rotation about all axes is damped alike; `viscous_damping`
+    has a gain for each body axis. Three numbers are those of three bodies.
+
     Examples
     --------
     >>> inertia = ph.Inertia.from_principal_moments(1, 2, 3)
@@ -373,9 +392,10 @@ def damping(g: Any) -> Torque:
 
 
 def viscous_damping(d: Any) -> Torque:
-    """Return the torque ``−d Ω_B``, d >= 0 in N m s: a number, or three along the body axes.
+    """Return the torque ``−d Ω_B``, d >= 0 in N m s: a number, or three gains along the body axes.
 
-    A batch is (..., 3), or (..., 1) of one number for each body.
+    Three numbers ``[a, b, c]`` are the gains of a single body. A batch of gains is (..., 3), one of numbers
+    (..., 1): for three bodies with a number each write ``[[a], [b], [c]]``, or ``d[:, None]`` of an array.
 
     Examples
     --------
@@ -415,7 +435,7 @@ def torsion_spring(stiffness: Any, rest: Rotor | None = None) -> Torque:
     Parameters
     ----------
     stiffness
-        k in N m per rad.
+        k in N m per rad; a negative one turns the body away from the rest attitude.
     rest
         The attitude without torque, a rotor from body axes to space, or a batch; None for the identity.
 
@@ -440,7 +460,8 @@ def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
     Parameters
     ----------
     kp, kd
-        Gains >= 0 in N m per rad and in N m s: numbers, or three along the body axes.
+        Gains >= 0 in N m per rad and in N m s: numbers, or three along the body axes, as for
+        `viscous_damping`.
     target
         The attitude to reach, a rotor from body axes to space, or a batch; None for the identity.
 

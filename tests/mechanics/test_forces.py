@@ -62,8 +62,7 @@ def test_repr_of_forces():
             F.drag(0.1) + other
         with pytest.raises(TypeError):
             other + F.drag(0.1)
-    with pytest.raises(TypeError):
-        F.drag(0.1) - F.drag(0.1)
+    assert F.drag(0.5) - F.drag(0.25) == F.drag(0.5) + F.drag(-0.25)
 
 
 # --- closed forms

@@ -239,6 +239,7 @@ CALLS = {
     "torque.torsion_spring": _law(torque.torsion_spring, 0.5),
     "torque.viscous_damping": _law(torque.viscous_damping, 0.25),
     "force.Force": _force(lambda k: force.drag(k) + force.constant([0, 0, -1]), 0.1),
+    "force.Force.at": Call(lambda v: force.drag(0.1).at(body(), state(velocity=v)), (PLACE,)),
     "force.central": Call(lambda k: run(strength=force.central(k), place=PLACE), (ONE,)),
     "force.constant": _force(force.constant, PLACE),
     "force.drag": _force(force.drag, 0.5),

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import inspect
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any, Self, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -16,39 +14,10 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._formula.arguments import narrowed
 from polhode._formula.errors import FormulaError
-from polhode._mechanics.parameters import check_finite, common
-from polhode._support.arrays import Shape, as_float, as_floats
+from polhode._mechanics.parameters import check_finite
+from polhode._support.arrays import as_float, as_floats
 
 T = TypeVar("T")
-
-
-@dataclass(frozen=True, repr=False)
-class Sum:
-    """A sum of laws; laws are immutable values: equal if their arguments are equal, hashable, picklable."""
-
-    laws: tuple[Any, ...]
-    # An array does not add a law to each of its elements.
-    __array_ufunc__ = None
-
-    def __add__(self, other: Self) -> Self:
-        return type(self)(self.laws + other.laws) if isinstance(other, type(self)) else NotImplemented
-
-    def __radd__(self, other: object) -> Self:
-        """``0 + law``, so that ``sum(laws)`` works."""
-        if isinstance(other, np.ndarray):
-            raise TypeError(f"an array is not a {type(self).__name__}; add laws")
-        return self if isinstance(other, int) and other == 0 else NotImplemented
-
-    @property
-    def shape(self) -> Shape:
-        """Shape of the batch of bodies that the arguments describe; ``()`` for a single body."""
-        shapes: dict[str, Shape] = {}
-        numbers: Counter[str] = Counter()
-        for law in self.laws:
-            numbers[law.name] += 1
-            number = numbers[law.name]
-            shapes[law.name if number == 1 else f"{law.name} ({number})"] = law.shape
-        return common(shapes, "the laws")
 
 
 def finite(value: float, name: str) -> float:

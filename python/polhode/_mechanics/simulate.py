@@ -15,10 +15,10 @@ from polhode._algebra.constructors import vector
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, has, inertia_of, mapped_objects
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, warn_of
-from polhode._mechanics.laws import Sum
 from polhode._mechanics.parameters import common, numbers_of
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
+from polhode._mechanics.sums import Sum
 from polhode._mechanics.trajectory import BYTES_OF_POINT, Trajectory
 from polhode._support.arrays import as_count, as_float, as_floats, output_times
 from polhode._support.calls import explains_calls

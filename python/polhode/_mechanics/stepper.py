@@ -15,10 +15,10 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.ensemble import check_state
 from polhode._mechanics.foreign_names import STEPPER
-from polhode._mechanics.laws import Sum
 from polhode._mechanics.parameters import check_finite
 from polhode._mechanics.simulate import _ensemble, _settled
 from polhode._mechanics.state import State
+from polhode._mechanics.sums import Sum
 from polhode._support.arrays import Array, Shape, as_float, as_floats
 from polhode._support.calls import explains_calls_of
 

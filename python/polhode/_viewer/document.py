@@ -23,10 +23,11 @@ from polhode._algebra.transform import RigidTransform
 from polhode._mechanics.bodies import Body, Inertia, bodies_of
 from polhode._mechanics.closed_form import ClosedForm
 from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere
-from polhode._mechanics.laws import Sum, finite
+from polhode._mechanics.laws import finite
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.simulate import as_force, as_torque, simulate
 from polhode._mechanics.state import State
+from polhode._mechanics.sums import Sum
 from polhode._mechanics.trajectory import Trajectory
 from polhode._native import SceneError
 from polhode._report.netcdf import read

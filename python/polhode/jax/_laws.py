@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeVar, dataclass_transform
 
 from polhode._generic.g3_smooth import log_even
 from polhode._generic.numeric import Numeric
-from polhode._mechanics.laws import Sum
+from polhode._mechanics.sums import Sum
 from polhode.jax._components import (
     Four,
     Three,

@@ -135,7 +135,19 @@ def test_damping_reports_the_free_motion_and_its_half_life(tmp_path):
     assert result["motion"]["halved_after"] == pytest.approx(np.log(2) / 0.5)
     assert result["run"]["method"] == "exact"
     assert result["motion"]["changes"]["rate"]["end"] < result["motion"]["changes"]["rate"]["start"]
-    assert "half-life of ω" in polhode("run", tmp_path / "a.toml").stdout
+    assert "half-life of ω    1.38629 s" in polhode("run", tmp_path / "a.toml").stdout
+
+
+def test_negative_damping_reports_the_time_in_which_the_rate_doubles(tmp_path):
+    read(tmp_path, with_tables("[torque]\ndamping = -0.5"))
+    page = polhode("run", tmp_path / "a.toml").stdout
+    assert "free motion, sped up exponentially" in page
+    assert "doubling time of ω 1.38629 s" in page
+    assert "half-life" not in page
+    read(tmp_path, with_tables("[torque]\ndamping = 0"))
+    page = polhode("run", tmp_path / "a.toml").stdout
+    assert "half-life" not in page
+    assert "none: the rates g add up to 0" in page
 
 
 # A closed form, a dissipative torque, a wheel and a held body; the other laws have the same kinds of reports.

@@ -217,9 +217,15 @@ def _free(motion: dict[str, Any]) -> Iterator[Row]:
 
 
 def _damped(motion: dict[str, Any]) -> Iterator[Row]:
-    yield "damping", "free motion, slowed exponentially"
-    if motion["halved_after"] is not None:
-        yield "half-life of ω", time(motion["halved_after"])
+    g, after = motion["damping"], motion["halved_after"]
+    if g > 0:
+        yield "damping", "free motion, slowed exponentially"
+        yield "half-life of ω", time(after)
+    elif g < 0:  # the torque drives the body
+        yield "damping", "negative: free motion, sped up exponentially"
+        yield "doubling time of ω", time(-after)
+    else:
+        yield "damping", "none: the rates g add up to 0"
     yield from _free(motion)
     if motion["period"] is not None:
         yield "", "(periods at the initial rate)"

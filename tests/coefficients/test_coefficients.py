@@ -267,6 +267,30 @@ def test_pytrees_are_registered_once_and_take_any_leaves():
     assert jax.tree_util.tree_map(lambda _: None, gradient).data is None
 
 
+def test_transforms_are_pytrees_of_their_rotors_and_translations():
+    jax = pytest.importorskip("jax")
+    T = ph.RigidTransform(ph.Rotor.random(4, rng=0), [1.0, 2.0, 3.0])
+    leaves, kind = jax.tree.flatten(T)
+    assert [leaf.shape for leaf in leaves] == [(4, 4), (4, 3)]
+    assert (jax.tree.unflatten(kind, leaves) == T).all()
+    # JAX passes leaves of its own.
+    none = jax.tree.map(lambda _: None, T)
+    assert none.rotor._data is None
+    assert none.translation._data is None
+    with jax.enable_x64(True):
+        S, x = T[::-1], ph.vector([0.5, -1.0, 2.0])
+        product = jax.jit(lambda S, T: S * T.inv())(S, T)
+        assert isinstance(product, ph.RigidTransform)
+        assert np.all(product.is_close(S * T.inv(), atol=1e-14))
+        moved = jax.vmap(lambda S, x: S.apply(x), (0, None))(S, x)
+        assert np.all(moved.is_close(S.apply(x), rtol=1e-14))
+        each = jax.vmap(lambda S, T: (S * T) ** 0.5)(S, T)
+        assert each.shape == (4,)
+        assert np.all(each.is_close((S * T) ** 0.5, atol=1e-13))
+        slope = jax.grad(lambda T: T.apply(x)["e2"])(T[0])
+        assert np.allclose(slope.translation.components, [0, 1, 0])
+
+
 def test_register_pytree_without_jax_does_nothing(monkeypatch):
     monkeypatch.setitem(sys.modules, "jax", None)
     register_pytree(type("Other", (), {}), None, None)

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from polhode._algebra.algebra import Algebra, algebra
+from polhode._algebra import transform_conversions as _conversions
+from polhode._algebra.algebra import algebra
 from polhode._algebra.coefficients import (
     as_coefficients,
     common,
-    kind_of,
     namespace,
     number_like,
+    register_pytrees,
     require_real,
 )
 from polhode._algebra.constructors import one_grade, scalar
@@ -24,19 +26,16 @@ from polhode._algebra.foreign_tables import TRANSFORM
 from polhode._algebra.foreign_values import has_reflected, remedy_for
 from polhode._algebra.format import first_and_last
 from polhode._algebra.grades import concatenate, stack
-from polhode._algebra.motors import columns, is_motor, of_columns, places
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.screws import adjoint_matrix, screw_parameters
 from polhode._support.arrays import Array, Shape, is_float, power_of_two
 from polhode._support.calls import explains_calls_of
-from polhode._support.extras import optional
+from polhode._support.extras import register_pytree
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import RigidTransform as ScipyTransform
     from scipy.spatial.transform import Rotation
-
-_MOTORS = algebra(3, 0, 1)
 
 
 @with_foreign_names(TRANSFORM)
@@ -96,8 +95,12 @@ class RigidTransform:
             raise ValueError(
                 f"batch shapes do not broadcast: the rotor has {rotor.shape}, the translation {moved.shape}"
             ) from None
-        object.__setattr__(self, "rotor", _spread(rotor, shape))
-        object.__setattr__(self, "translation", _spread(moved, shape))
+        self._set(_spread(rotor, shape), _spread(moved, shape))
+        _register_pytrees()
+
+    def _set(self, rotor: Any, translation: Any) -> None:
+        object.__setattr__(self, "rotor", rotor)
+        object.__setattr__(self, "translation", translation)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a RigidTransform is immutable; make a new one instead of setting {name!r}")
@@ -171,19 +174,7 @@ class RigidTransform:
         >>> T.apply(ph.e1)
         5 e1 + 7 e2 + 7 e3
         """
-        given = as_coefficients(matrix, "transformation matrix")
-        if tuple(given.shape[-2:]) != (4, 4):
-            raise ValueError(f"a transformation matrix has shape (..., 4, 4), got {tuple(given.shape)}")
-        last, row = given[..., 3, :], np.array([0.0, 0.0, 0.0, 1.0])
-        message = "the last row of a transformation matrix must be (0, 0, 0, 1)"
-        if isinstance(given, np.ndarray):
-            wrong = (last != row).any(axis=-1)
-            if wrong.any():
-                raise ValueError(f"{message}, got {last[wrong][0].tolist()}")
-        else:
-            kind = kind_of(given)
-            kind.require(kind.xp.all(last == kind.asarray(row), axis=-1), message)
-        return RigidTransform(Rotor.from_matrix(given[..., :3, :3], nearest), given[..., :3, 3])
+        return RigidTransform(*_conversions.parts_of_matrix(matrix, nearest))
 
     @staticmethod
     def from_exp_coords(exp_coords: Any) -> RigidTransform:
@@ -202,17 +193,7 @@ class RigidTransform:
         >>> T.apply(ph.e1)
         0.5 e1 + 0.8660254 e2 + 2 e3
         """
-        given = as_coefficients(exp_coords, "exponential coordinates")
-        if not given.shape or given.shape[-1] != 6:
-            raise ValueError(
-                f"exponential coordinates need 6 components in the last axis, got shape {tuple(given.shape)}"
-            )
-        kind = kind_of(given)
-        a, b, c, x, y, z = (kind.divide(given[..., k], -2 if k < 3 else 2) for k in range(6))
-        zero = kind.zeros_like(a)
-        # −½ of the plane of rotation and ½ v∧e4.
-        motor = of_columns(_MOTORS, [zero, a, b, c, x, y, z, zero]).grade(2).exp()
-        return _of_motor(motor, "the rotation of exponential coordinates")
+        return RigidTransform(*_conversions.parts_of_exp_coords(exp_coords))
 
     @staticmethod
     def exp(exp_coords: Any) -> RigidTransform:
@@ -239,15 +220,7 @@ class RigidTransform:
         >>> T.translation
         2 e1 + 4 e2 + 6 e3
         """
-        given = as_coefficients(dual_quat, "dual quaternion")
-        if not given.shape or given.shape[-1] != 8:
-            raise ValueError(f"a dual quaternion needs 8 components, got shape {tuple(given.shape)}")
-        real, dual = ([given[..., k + i] for i in range(4)] for k in (0, 4))
-        if not scalar_first:
-            real, dual = [real[3], *real[:3]], [dual[3], *dual[:3]]
-        (w, i, j, k), (a, b, c, d) = real, dual
-        motor = of_columns(_MOTORS, [w, -i, -j, -k, b, c, d, a])
-        return _of_motor(motor, "the real part of a dual quaternion")
+        return RigidTransform(*_conversions.parts_of_dual_quat(dual_quat, scalar_first))
 
     @staticmethod
     def from_motor(M: Multivector) -> RigidTransform:
@@ -259,11 +232,7 @@ class RigidTransform:
         >>> ph.RigidTransform.from_motor(M * M).translation
         4 e1
         """
-        if not isinstance(M, Multivector) or places(M.algebra) is None:
-            raise TypeError("a motor is an even element of ph.algebra(3, 0, 1)")
-        if not is_motor(M):
-            raise ValueError(f"a motor is an even element, got the grades {M.grades}")
-        return _of_motor(M, "the rotation part of a motor")
+        return RigidTransform(*_conversions.parts_of_motor(M))
 
     @staticmethod
     def from_scipy(transform: ScipyTransform) -> RigidTransform:
@@ -329,24 +298,11 @@ class RigidTransform:
         """
         return self.translation.components, self.rotor
 
-    def as_matrix(self) -> Any:
-        """Return matrices (..., 4, 4) that act on columns (x, y, z, 1).
-
-        Examples
-        --------
-        >>> R = ph.Rotor.from_quaternion([1, 1, 1, 1], order="wxyz")
-        >>> ph.RigidTransform(R, [5, 6, 7]).as_matrix()
-        array([[0., 0., 1., 5.],
-               [1., 0., 0., 6.],
-               [0., 1., 0., 7.],
-               [0., 0., 0., 1.]])
-        """
-        turn, moved = common(self.rotor.to_matrix(), self.translation._data)
-        xp, kind = namespace(turn), kind_of(turn)
-        upper = xp.concat([turn, moved[..., None]], axis=-1)
-        zero = kind.zeros_like(upper[..., :1, :])
-        one = kind.stack([zero[..., 0], zero[..., 0], zero[..., 0], zero[..., 0] + 1])
-        return xp.concat([upper, one], axis=-2)
+    as_matrix = _conversions.as_matrix
+    as_exp_coords = _conversions.as_exp_coords
+    as_dual_quat = _conversions.as_dual_quat
+    to_motor = _conversions.to_motor
+    to_scipy = _conversions.to_scipy
 
     def to_matrix(self) -> Any:
         """Return `as_matrix`, by the name that rotors have for it.
@@ -367,73 +323,6 @@ class RigidTransform:
         array([0., 0., 0., 5., 6., 7.])
         """
         return self.as_exp_coords()
-
-    def as_exp_coords(self) -> Any:
-        """Return exponential coordinates (..., 6): rotation vector of at most π, then the velocity.
-
-        Examples
-        --------
-        >>> ph.RigidTransform.from_exp_coords([0.1, 0.2, 0.3, 4, 5, 6]).as_exp_coords()
-        array([0.1, 0.2, 0.3, 4. , 5. , 6. ])
-        """
-        screw = self._nearer().to_motor().log()
-        _, a, b, c, x, y, z, _ = columns(screw)
-        # Zeros are positive.
-        return kind_of(screw._data).stack([0 - 2 * a, 0 - 2 * b, 0 - 2 * c, 2 * x, 2 * y, 2 * z])
-
-    def as_dual_quat(self, *, scalar_first: bool = False) -> Any:
-        """Return unit dual quaternions (..., 8): see `from_dual_quat`; R and −R give opposite ones.
-
-        Examples
-        --------
-        >>> ph.RigidTransform.from_translation([2, 4, 6]).as_dual_quat(scalar_first=True).round(6) + 0
-        array([1., 0., 0., 0., 0., 1., 2., 3.])
-        """
-        w, yz, zx, xy, x4, y4, z4, xyz4 = columns(self.to_motor())
-        real, dual = [w, -yz, -zx, -xy], [xyz4, x4, y4, z4]
-        if not scalar_first:
-            real, dual = [*real[1:], real[0]], [*dual[1:], dual[0]]
-        return kind_of(w).stack([*real, *dual])
-
-    def to_motor(self, algebra: Algebra = _MOTORS) -> Multivector:
-        """Return the motor ``M = (1 + ½ x0∧e4) R`` of ``ph.algebra(3, 0, 1)``, whose null vector is e4.
-
-        ``M X ~M`` moves planes ``n + d e4``, those with ``n·x + d = 0``, and their intersections.
-        ``M = exp(−½ B + ½ v∧e4)`` is a screw: a rotation vector dual to B, and the velocity v of the origin.
-        `algebra` may be another one of three generators of square 1 and one of square 0, in any order, which
-        then takes the part of e4.
-
-        Examples
-        --------
-        >>> ph.RigidTransform.from_translation([2, 0, 0]).to_motor()
-        1 + e1∧e4
-        """
-        if places(algebra) is None:
-            raise ValueError(f"a motor needs an algebra of the signature (3, 0, 1), got {algebra}")
-        turn, moved = common(self.rotor._data, self.translation._data)
-        kind = kind_of(turn)
-        w, yz, zx, xy = (turn[..., k] for k in range(4))
-        shift = kind.divide(moved, 2)
-        half = [shift[..., k] for k in range(3)]
-        zero = kind.zeros_like(w)
-        rotor = of_columns(algebra, [w, yz, zx, xy, *[zero] * 4])
-        return of_columns(algebra, [zero + 1, *[zero] * 3, *half, zero]) * rotor
-
-    def to_scipy(self) -> ScipyTransform:
-        """Return a ``scipy.spatial.transform.RigidTransform`` (SciPy 1.16 or later).
-
-        Examples
-        --------
-        >>> ph.RigidTransform.from_translation([1, 2, 3]).to_scipy().translation
-        array([1., 2., 3.])
-        """
-        transform = optional("scipy.spatial.transform", "scipy", "to_scipy")
-        if not hasattr(transform, "RigidTransform"):
-            raise ImportError("to_scipy needs SciPy 1.16 or later, which has RigidTransform")
-        result: ScipyTransform = transform.RigidTransform.from_components(
-            self.translation.components, self.rotor.to_scipy()
-        )
-        return result
 
     screw_parameters = screw_parameters
     adjoint = adjoint_matrix
@@ -687,15 +576,18 @@ def _as_rotor(rotation: Any) -> Rotor:
     return rotation if isinstance(rotation, Rotor) else Rotor.from_scipy(rotation)
 
 
-def _of_motor(M: Multivector, part: str) -> RigidTransform:
-    """Return the transform of an even element that need not have norm 1; `part` must not be 0."""
-    w, yz, zx, xy, *_ = columns(M)
-    kind = kind_of(w)
-    turn = of_columns(M.algebra, [w, yz, zx, xy, *[kind.zeros_like(w)] * 4])
-    # M = (1 + ½ x0∧e4) R, with R of any norm.
-    size = turn.norm_squared()
-    if not kind.exact:
-        kind.require(kind.asarray(size) > 0, f"{part} must be finite and not 0")
-    _, _, _, _, x, y, z, _ = columns(M * ~turn / size)
-    rotor = Rotor.from_components(kind.stack([w, yz, zx, xy]))
-    return RigidTransform(rotor, kind.stack([2 * x, 2 * y, 2 * z]))
+def _of_leaves(_: None, leaves: Iterable[Any]) -> RigidTransform:
+    """Return a transform with parts of any kind, unchecked."""
+    self = object.__new__(RigidTransform)
+    self._set(*leaves)
+    return self
+
+
+def _register_pytrees() -> None:
+    """Register transforms, with rotor and translation as children, as pytrees of JAX if it is imported."""
+    if "jax" in sys.modules:
+        register_pytrees()
+        register_pytree(RigidTransform, lambda T: ((T.rotor, T.translation), None), _of_leaves)
+
+
+_register_pytrees()

@@ -50,9 +50,10 @@ if TYPE_CHECKING:
     from polhode._formula.agreement import Agreement
     from polhode._formula.errors import FormulaError
     from polhode._formula.formula import Formula, evaluate, formula
-    from polhode._mechanics.bodies import Body, Inertia
+    from polhode._mechanics.bodies import Body
     from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere
     from polhode._mechanics.free_motion import FlowDerivatives, FreeMotion, SymmetricTop, describe_free
+    from polhode._mechanics.inertia import Inertia
     from polhode._mechanics.result import Certificate, Crossings, Failure
     from polhode._mechanics.robots.read import read_mjcf, read_sdf, read_urdf
     from polhode._mechanics.simulate import simulate, simulate_blocks
@@ -102,8 +103,9 @@ _LATER = {
         "_formula.agreement": "Agreement",
         "_formula.errors": "FormulaError",
         "_formula.formula": "Formula evaluate formula",
-        "_mechanics.bodies": "Body Inertia",
+        "_mechanics.bodies": "Body",
         "_mechanics.free_motion": "FlowDerivatives describe_free",
+        "_mechanics.inertia": "Inertia",
         "_mechanics.result": "Certificate Crossings Failure",
         "_mechanics.robots.read": "read_mjcf read_sdf read_urdf",
         "_mechanics.state": "State",

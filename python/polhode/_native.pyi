@@ -9,7 +9,7 @@ from polhode._algebra.algebra import Algebra as WholeAlgebra
 from polhode._algebra.masking import Errors
 from polhode._algebra.multivector import Multivector as Whole
 from polhode._algebra.rotor import Rotor as WholeRotor
-from polhode._mechanics.bodies import Inertia as WholeInertia
+from polhode._mechanics.inertia import Inertia as WholeInertia
 from polhode._support.arrays import Array, Shape
 
 __version__: str

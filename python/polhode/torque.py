@@ -21,7 +21,9 @@ from polhode import _native
 from polhode._algebra.constructors import as_bivectors, bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body, Inertia, bodies_of, has, inertia_of
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.body_arrays import bodies_of, has, inertia_of
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
 from polhode._mechanics.orbits import DipoleField, KeplerOrbit, dipole_field
 from polhode._mechanics.parameters import (

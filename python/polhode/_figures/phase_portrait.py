@@ -11,7 +11,7 @@ from polhode._figures.camera import View, view_of
 from polhode._figures.palette import AXES, POLHODE
 from polhode._figures.spheres import _EQUAL, Frame, Portrait, family, level_curves, separatrix
 from polhode._figures.style import Axes, Figure, at_rest, drawing, dress, mark
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.smooth import samples
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array

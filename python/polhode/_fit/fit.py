@@ -18,7 +18,7 @@ from polhode._fit.parameters import Layout, Parameters, shape_of
 from polhode._fit.result import Fit
 from polhode._fit.samples import attitudes_of, rates_of
 from polhode._fit.solve import refined, solve
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import angular_velocity
 from polhode._support.calls import explains_calls
 from polhode._support.extras import optional

@@ -7,8 +7,8 @@ import numpy as np
 from polhode._algebra.constructors import bivector, multivector
 from polhode._algebra.rotor import Rotor
 from polhode._fit.parameters import Layout, Parameters
-from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.free_motion import FreeMotion
+from polhode._mechanics.inertia import Inertia
 from polhode._support.arrays import Array
 
 

@@ -13,7 +13,7 @@ from polhode import torque as laws_of_torque
 from polhode._algebra.constructors import bivector, scalar, vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array

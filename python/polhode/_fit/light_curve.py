@@ -9,8 +9,8 @@ import numpy as np
 
 from polhode._algebra.rotor import Rotor
 from polhode._fit.periods import Mode, omega_from_periods
-from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.free_motion import FreeMotion
+from polhode._mechanics.inertia import Inertia
 from polhode._report.summary import number
 from polhode._support.arrays import Array
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.inertia import Inertia
 from polhode._support.arrays import Array
 
 # A second moment of mass is at least e^−25 of another: a flat body or a needle, to rounding.

@@ -9,8 +9,9 @@ import numpy as np
 from polhode._algebra.constructors import bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.bodies import Body
 from polhode._mechanics.free_motion import FreeMotion
+from polhode._mechanics.inertia import Inertia
 from polhode._support.arrays import Array, as_components, as_float, at_index, first_index, power_of_two
 
 Mode = Literal["long", "short"]

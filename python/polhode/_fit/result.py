@@ -11,8 +11,8 @@ import numpy as np
 from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.free_motion import FreeMotion
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State
 from polhode._report.summary import number
 from polhode._support.arrays import Array, as_float, hands_out_copies

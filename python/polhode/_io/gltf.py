@@ -14,7 +14,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._io.history import AttitudeHistory
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array
 from polhode._support.files import write_atomically

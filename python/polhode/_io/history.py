@@ -10,7 +10,8 @@ import numpy as np
 from polhode._algebra.constructors import vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.result import Certificate
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array, as_floats

@@ -16,7 +16,7 @@ import numpy as np
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.rotor import Rotor
 from polhode._io.history import AttitudeHistory, FileError, RowError
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.robots.document import Source
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report import netcdf, table

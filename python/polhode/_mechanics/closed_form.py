@@ -14,7 +14,8 @@ from polhode._algebra.constructors import bivector
 from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor, check_rotor
-from polhode._mechanics.bodies import Inertia, objects_of
+from polhode._mechanics.body_arrays import objects_of
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State, angular_velocity
 from polhode._support.arrays import Array, Shape, as_floats, batch_index
 from polhode._support.memory import require

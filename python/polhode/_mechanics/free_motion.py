@@ -12,8 +12,8 @@ from polhode import _native
 from polhode._algebra.constructors import bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.closed_form import ClosedForm, bivectors, given
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, as_count, as_float, as_floats, frozen, hands_out_copies
 from polhode._support.calls import explains_calls_of

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._mechanics.bodies import Body, Inertia, has, mapped_objects
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.body_arrays import has, mapped_objects
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.parameters import Batch, common, numbers_of, place
 from polhode._support.arrays import Array, first_index
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array
 from polhode.force import Force

@@ -13,8 +13,10 @@ from polhode import force as forces
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import vector
 from polhode._algebra.multivector import Multivector
-from polhode._mechanics.bodies import Body, Inertia, bodies_of, has, inertia_of, mapped_objects
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.body_arrays import bodies_of, has, inertia_of, mapped_objects
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, warn_of
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.parameters import common, numbers_of
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State

@@ -13,8 +13,8 @@ from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.foreign_names import TRAJECTORY
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.result import Certificate, Crossings, Failure
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen, hands_out_copies

@@ -15,7 +15,7 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia, matrices
+from polhode._mechanics.inertia import Inertia, matrices
 from polhode._mechanics.result import Certificate, Crossings
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.summary import QUANTITIES

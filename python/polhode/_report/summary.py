@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.scene import Scene

@@ -10,7 +10,7 @@ from typing import Any
 from polhode import _native
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State
 from polhode._scene.drawn import law_of_bodies
 from polhode._support.arrays import Array

@@ -20,9 +20,11 @@ import numpy as np
 
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.transform import RigidTransform
-from polhode._mechanics.bodies import Body, Inertia, bodies_of
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.body_arrays import bodies_of
 from polhode._mechanics.closed_form import ClosedForm
 from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.laws import finite
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.simulate import as_force, as_torque, simulate

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from polhode._algebra.multivector import Multivector
-from polhode._mechanics.bodies import Inertia
+from polhode._mechanics.inertia import Inertia
 from polhode.jax._components import Four, compose, joined, reverse, split, turned
 from polhode.jax._library import Array, jnp
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from polhode import torque as native
-from polhode._mechanics.bodies import Body, bodies_of, inertia_of
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.body_arrays import bodies_of, inertia_of
 from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
 from polhode.jax._components import Four, Three, joined, normalized, split

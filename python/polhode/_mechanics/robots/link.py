@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.robots import slips
 from polhode._mechanics.robots.document import DocumentError, Node
 from polhode._support.arrays import Array

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.robots.document import Node, read
 from polhode._mechanics.robots.geoms import Defaults, geom_body
 from polhode._mechanics.robots.link import Inertial, Link, link_of

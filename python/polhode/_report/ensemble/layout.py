@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._mechanics.bodies import matrices
+from polhode._mechanics.inertia import matrices
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.netcdf import CF, CONVENTIONS, MOTION, components

@@ -220,6 +220,22 @@ def test_results_have_no_public_constructor(kind, remedy, given):
         kind(*given)
 
 
+@pytest.mark.parametrize("given", [(), (3,), (3, 0, 1)])
+def test_algebras_are_made_by_functions(given):
+    with pytest.raises(TypeError, match=r"PGA has no public constructor; write pga\(n\)"):
+        ph.PGA(*given)
+    with pytest.raises(TypeError, match=r"CGA has no public constructor; write cga\(n\)"):
+        ph.CGA(*given)
+
+
+def test_a_rotor_turns_back_by_its_reverse():
+    R = ph.Rotor.from_axis_angle(ph.e3, 0.5)
+    with pytest.raises(TypeError, match=r"Rotor.apply has no argument 'inverse'; write \(~R\)\(x\)"):
+        R.apply(ph.e1, inverse=True)
+    with pytest.raises(TypeError, match=r"positional arguments .* write \(~R\)\(x\)"):
+        R.apply(ph.e1, True)
+
+
 def test_attitudes_of_a_table_are_interpolated_by_a_spline():
     motion = ph.simulate(BODY, START, [0.0, 0.5, 1.0])
     m = ph.io.AttitudeHistory.of(motion).trajectory(BODY)

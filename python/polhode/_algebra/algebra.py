@@ -22,6 +22,11 @@ from polhode._support.arrays import Shape, batch_shape, normal_numbers
 from polhode._support.calls import explains_calls, takes_components
 
 
+def no_constructor(kind: type, remedy: str) -> TypeError:
+    """Return the error for a call of a class of algebras: values of equal algebras apart do not mix."""
+    return TypeError(f"{kind.__name__} has no public constructor; write {remedy}")
+
+
 @joins(_native.Algebra)
 class Algebra(_native.Algebra):
     """The geometric algebra Cl(p, q, r): p generators square to +1, q to −1, r to 0, in this order.
@@ -52,10 +57,7 @@ class Algebra(_native.Algebra):
     _foreign_names: ClassVar[Mapping[str, str]] = ALGEBRA
 
     def __init__(self, *_signature: Any, **_named: Any) -> None:
-        # Values of equal algebras that are not the same object do not mix.
-        raise TypeError(
-            f"{type(self).__name__} has no public constructor; write algebra(p, q, r), pga(n) or cga(n)"
-        )
+        raise no_constructor(type(self), "algebra(p, q, r), pga(n) or cga(n)")
 
     def __repr__(self) -> str:
         p, q, r = self.signature

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import functools
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
-from polhode._algebra.algebra import Algebra, algebra
+from polhode._algebra.algebra import Algebra, algebra, no_constructor
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.euclidean import (
     columns,
@@ -64,6 +64,10 @@ class CGA(Algebra):
     __slots__ = ()
 
     _foreign_names = CGA_NAMES
+
+    # Not `__init__`, for the native `__new__` requires arguments.
+    def __new__(cls, *_arguments: Any, **_named: Any) -> Self:
+        raise no_constructor(cls, "cga(n)")
 
     def __repr__(self) -> str:
         return f"cga({self._n})"
@@ -496,4 +500,4 @@ def cga(n: int = 3) -> CGA:
 
 @functools.cache
 def _cga(n: int) -> CGA:
-    return CGA.__new__(CGA, n + 1, 1, 0)
+    return Algebra.__new__(CGA, n + 1, 1, 0)

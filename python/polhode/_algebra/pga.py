@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import functools
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
-from polhode._algebra.algebra import Algebra, algebra
+from polhode._algebra.algebra import Algebra, algebra, no_constructor
 from polhode._algebra.coefficients import common, kind_of, number_like
 from polhode._algebra.euclidean import (
     columns,
@@ -65,6 +65,10 @@ class PGA(Algebra):
     __slots__ = ()
 
     _foreign_names = PGA_NAMES
+
+    # Not `__init__`, for the native `__new__` requires arguments.
+    def __new__(cls, *_arguments: Any, **_named: Any) -> Self:
+        raise no_constructor(cls, "pga(n)")
 
     def __repr__(self) -> str:
         return f"pga({self.dimension - 1})"
@@ -356,4 +360,4 @@ def pga(n: int = 3) -> PGA:
 
 @functools.cache
 def _pga(n: int) -> PGA:
-    return PGA.__new__(PGA, n, 0, 1, True)
+    return Algebra.__new__(PGA, n, 0, 1, True)

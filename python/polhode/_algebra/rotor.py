@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -393,6 +393,9 @@ class Rotor(_native.Rotor, Multivector):
     reduce = _groups.reduce
 
     # --- action and algebra
+
+    if not TYPE_CHECKING:
+        apply = explains_calls(inverse="(~R)(x)")(_native.Rotor.apply)
 
     def _turn(self, X: Any, out: Any = None) -> Multivector:
         """``R X ~R``, for values that the native method does not cover."""

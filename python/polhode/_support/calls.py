@@ -142,7 +142,7 @@ def _listed(parameters: list[inspect.Parameter]) -> str:
 
 def _values(function: Callable[..., Any], parameters: list[inspect.Parameter]) -> str:
     """Return the values that required arguments can have, if they are few."""
-    scope = inspect.unwrap(function).__globals__
+    scope = getattr(inspect.unwrap(function), "__globals__", {})
     required = [x for x in parameters if x.default is inspect.Parameter.empty]
     few = {x.name: get_args(scope.get(x.annotation)) for x in required}
     return "".join(f", with {name}={' or '.join(map(repr, x))}" for name, x in few.items() if x)

@@ -71,13 +71,13 @@ class Force(Sum):
     def __add__(self, other: Force | Multivector | Array) -> Force:
         return super().__add__(constant(other) if isinstance(other, _VECTORS) else other)
 
-    def __radd__(self, other: object) -> Force:
+    def __radd__(self, other: int | Multivector | Array) -> Force:
         return constant(other) + self if isinstance(other, _VECTORS) else super().__radd__(other)
 
     def __sub__(self, other: Force | Multivector | Array) -> Force:
         return super().__sub__(constant(other) if isinstance(other, _VECTORS) else other)
 
-    def __rsub__(self, other: object) -> Force:
+    def __rsub__(self, other: int | Multivector | Array) -> Force:
         return constant(other) - self if isinstance(other, _VECTORS) else super().__rsub__(other)
 
     def _multiple(self, law: _native.Force, factor: float) -> _native.Force:

@@ -113,6 +113,55 @@ def test_wrong_arguments_are_still_reported(tmp_path):
     }
 
 
+OPERANDS = """
+from fractions import Fraction
+from typing import assert_type
+
+import numpy as np
+
+import polhode as ph
+from polhode import e1, e2
+
+R, T, x = ph.Rotor.identity(), ph.RigidTransform(), np.ones(3)
+for value in (2 * e1, 2j * e1, Fraction(1, 3) * e1, np.float64(2) * e1, e1 * x, e1 / x, e1 - 1, R + x):
+    assert_type(value, ph.Multivector)
+assert_type(e1.wedge(x, out=np.ones((3, 3))), ph.Multivector)
+assert_type(T * T, ph.RigidTransform)
+law, push = ph.torque.damping(1), ph.force.drag(1)
+for torque in (2 * law, -law, law / 2, law - law, 0 + law):
+    assert_type(torque, ph.torque.Torque)
+for force in (2 * push - e1, e1 - push, e1 + push, push + x):
+    assert_type(force, ph.force.Force)
+assert_type(push.at(ph.Body.sphere(1, mass=1), ph.State(R, x)), ph.Multivector)
+"""
+
+WRONG_OPERANDS = """
+import polhode as ph
+from polhode import e1, e2
+
+R, T, law = ph.Rotor.identity(), ph.RigidTransform(), ph.torque.damping(1)
+e1 - [0, 0, 1]
+[0, 0, 1] ^ e1
+e1.wedge((0, 0, 1))
+e1 * "x"
+e1 / None
+R * T
+T * R
+T @ T
+T * e1
+law * "x"
+law + e1
+e1 + law
+"""
+
+
+def test_operands_that_raise_are_reported(tmp_path):
+    found = mypy(tmp_path, {"operands.py": OPERANDS, "wrong.py": WRONG_OPERANDS})
+    lines = {line.split(": ")[0] for line in found if ": error: " in line}
+    first = WRONG_OPERANDS[: WRONG_OPERANDS.index("e1 - [")].count("\n") + 1
+    assert lines == {f"wrong.py:{k}" for k in range(first, WRONG_OPERANDS.count("\n") + 1)}
+
+
 def test_a_star_import_has_everything_but_helpers(tmp_path):
     code = "from polhode import *\nState(Rotor.identity(), e1 ^ e2)\nAny\nTYPE_CHECKING"
     found = mypy(tmp_path, {"star.py": code})

@@ -193,7 +193,9 @@ def _over_norm(value: Multivector) -> Multivector:
     if not is_float(data) and not is_complex(data):
         if min(signs) > 0:
             return value._like(_generic.functions.normalized(kind_of(data), data))
-        return value / coerced(norm(value), value)
+        divisor = coerced(norm(value), value)
+        assert divisor is not None  # a norm is a coefficient
+        return value / divisor
     # Scaling by the largest component first keeps subnormal values accurate.
     unit, size = _unit_and_size(_real(data), value)
     usable = np.isfinite(data).all(axis=-1) & (size > _cancelled(data.dtype))[..., 0]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, Never, NoReturn
 
 import numpy as np
 
@@ -360,15 +360,16 @@ class RigidTransform:
             _refuse(self, "*", other)
         return RigidTransform(self.rotor * other.rotor, self.apply(other.translation))
 
-    def __rmul__(self, other: object) -> NoReturn:
+    # Nothing but a transform is a factor, for type checkers too.
+    def __rmul__(self, other: Never) -> NoReturn:
         _refuse(other, "*", self)
 
-    def __matmul__(self, other: object) -> Any:
+    def __matmul__(self, other: Never) -> Any:
         if has_reflected(other, "__rmatmul__"):
             return NotImplemented
         return _refuse(self, "@", other)
 
-    def __rmatmul__(self, other: object) -> NoReturn:
+    def __rmatmul__(self, other: Never) -> NoReturn:
         _refuse(other, "@", self)
 
     def inv(self) -> RigidTransform:

@@ -34,7 +34,7 @@ class Sum:
             return type(self)(self.laws + other.laws)
         return self if _is_zero(other) else self._refuse_sum(other, "__radd__")
 
-    def __radd__(self, other: object) -> Self:
+    def __radd__(self, other: int) -> Self:
         """``0 + law``, so that ``sum(laws)`` works."""
         return self if _is_zero(other) else self._refuse_sum(other)
 
@@ -43,7 +43,7 @@ class Sum:
             return self + -other
         return self if _is_zero(other) else self._refuse_sum(other, "__rsub__")
 
-    def __rsub__(self, other: object) -> Self:
+    def __rsub__(self, other: int) -> Self:
         return -self if _is_zero(other) else self._refuse_sum(other)
 
     def __neg__(self) -> Self:

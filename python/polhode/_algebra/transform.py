@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Never, NoReturn
 
 import numpy as np
@@ -24,11 +24,11 @@ from polhode._algebra.euclidean import vector_in
 from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.foreign_tables import TRANSFORM
 from polhode._algebra.foreign_values import has_reflected, remedy_for
-from polhode._algebra.format import first_and_last
 from polhode._algebra.grades import concatenate, stack
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.screws import adjoint_matrix, screw_parameters
+from polhode._algebra.transform_batches import TransformBatch
 from polhode._support.arrays import Array, Shape, is_float, power_of_two
 from polhode._support.calls import explains_calls_of
 from polhode._support.extras import register_pytree
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 @with_foreign_names(TRANSFORM)
 @explains_calls_of
-class RigidTransform:
+class RigidTransform(TransformBatch):
     """A rigid displacement ``y = R x ~R + x0`` (handout eq. 4.1), or a batch of them.
 
     Named and shaped as ``scipy.spatial.transform.RigidTransform``: ``S * T`` moves by T first, `apply` moves
@@ -74,11 +74,8 @@ class RigidTransform:
     True
     """
 
-    __slots__ = ("rotor", "translation")
+    __slots__ = ()
     __array_ufunc__ = None  # NumPy leaves operators to transforms
-
-    rotor: Rotor
-    translation: Multivector
 
     def __init__(self, rotor: Rotor | None = None, translation: Any = (0.0, 0.0, 0.0)) -> None:
         if rotor is None:
@@ -98,15 +95,8 @@ class RigidTransform:
         self._set(_spread(rotor, shape), _spread(moved, shape))
         _register_pytrees()
 
-    def _set(self, rotor: Any, translation: Any) -> None:
-        object.__setattr__(self, "rotor", rotor)
-        object.__setattr__(self, "translation", translation)
-
-    def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError(f"a RigidTransform is immutable; make a new one instead of setting {name!r}")
-
-    def __delattr__(self, name: str) -> None:
-        raise AttributeError("a RigidTransform is immutable")
+    def _like(self, rotor: Rotor, translation: Multivector) -> RigidTransform:
+        return RigidTransform(rotor, translation)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return RigidTransform, (self.rotor, self.translation)
@@ -439,55 +429,6 @@ class RigidTransform:
         w = scalar(namespace(given).broadcast_to(given, self.shape))
         return RigidTransform(turn, (self.translation * w).sum(axis) / w.sum(axis))
 
-    # --- batches
-
-    @property
-    def shape(self) -> Shape:
-        """Shape of the batch; ``()`` for one transform."""
-        return self.rotor.shape
-
-    @property
-    def single(self) -> bool:
-        """Whether this is one transform, not a batch."""
-        return not self.shape
-
-    def __len__(self) -> int:
-        if not self.shape:
-            raise TypeError("a single transform has no length; only batches have")
-        return self.shape[0]
-
-    def __bool__(self) -> NoReturn:
-        raise TypeError("a transform has no truth value; compare it with == or is_close")
-
-    def __getitem__(self, index: Any) -> RigidTransform:
-        if isinstance(index, str):
-            raise TypeError(
-                f"a transform has no component {index!r}; those of its parts are T.rotor[name] and "
-                "T.translation[name]"
-            )
-        if not (self.shape or index is None or index is Ellipsis or isinstance(index, tuple)):
-            raise IndexError(
-                f"a single transform has no batch to index, got [{index!r}]; its parts are .rotor and "
-                ".translation, its matrix .as_matrix()"
-            )
-        return RigidTransform(self.rotor[index], self.translation[index])
-
-    def __setitem__(self, index: Any, value: object) -> NoReturn:
-        raise TypeError("transforms are immutable; join parts with RigidTransform.concatenate")
-
-    def __iter__(self) -> Iterator[RigidTransform]:
-        if not self.shape:
-            raise TypeError("a single transform is not iterable; its parts are .as_components()")
-        return (self[i] for i in range(len(self)))
-
-    def __eq__(self, other: object) -> Any:
-        """Return whether rotors and translations are equal, by element."""
-        if not isinstance(other, RigidTransform):
-            return NotImplemented
-        return (self.rotor == other.rotor) & (self.translation == other.translation)
-
-    __hash__ = None  # type: ignore[assignment]  # equality is by element
-
     def is_close(self, other: RigidTransform, rtol: float = 1e-9, atol: float = 0.0) -> Any:
         """Return whether two transforms are close: angle in rad below `rtol`, translations as vectors are.
 
@@ -500,21 +441,6 @@ class RigidTransform:
         _required(other, "the other transform")
         near = self.rotor.distance(other.rotor) <= rtol
         return near & self.translation.is_close(other.translation, rtol, atol)
-
-    def __repr__(self) -> str:
-        return format(self)
-
-    def __format__(self, spec: str) -> str:
-        """Return the text with each component in this format: ``f"{T:.3f}"``."""
-        if not self.shape:
-            return f"RigidTransform(rotor={self.rotor:{spec}}, translation={self.translation:{spec}})"
-        rows = first_and_last(
-            self._reshaped((-1,)), lambda T: f"rotor={T.rotor:{spec}}, translation={T.translation:{spec}}"
-        )
-        return f"RigidTransform of shape {self.shape}:\n[" + ",\n ".join(rows) + "]"
-
-    def _reshaped(self, shape: Sequence[int]) -> RigidTransform:
-        return RigidTransform(self.rotor.reshape(*shape), self.translation.reshape(*shape))
 
     def _nearer(self) -> RigidTransform:
         """Return the same transform with the rotor of a turn of at most π."""

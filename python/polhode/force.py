@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,13 +20,14 @@ from polhode._algebra.constructors import as_points, vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body
-from polhode._mechanics.force_values import names_of_motion, value_of
 from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
 from polhode._mechanics.parameters import Batch, named_together, numbers, rows, together
 from polhode._mechanics.registry import FORCES
-from polhode._mechanics.state import State
 from polhode._mechanics.sums import Sum, multiple, require_single
 from polhode._support.arrays import Array, as_float
+
+if TYPE_CHECKING:
+    from polhode._mechanics.state import State
 
 __all__ = [
     "Force",
@@ -98,6 +99,9 @@ class Force(Sum):
         >>> (ph.force.constant([0, 0, -5]) + ph.force.drag(0.1)).at(ball, state)
         -0.2 e1 - 5 e3
         """
+        # Here, for simulations need not import formulas.
+        from polhode._mechanics.force_values import names_of_motion, value_of
+
         require_single(self)
         if not isinstance(body, Body):
             raise TypeError(f"a force needs a Body, which has a mass, got {type(body).__name__}")

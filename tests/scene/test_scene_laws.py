@@ -144,6 +144,9 @@ def test_negative_damping_reports_the_time_in_which_the_rate_doubles(tmp_path):
     assert "free motion, sped up exponentially" in page
     assert "doubling time of ω 1.38629 s" in page
     assert "half-life" not in page
+    motion = summary_of(tmp_path / "a.toml")["motion"]
+    assert motion["halved_after"] is None
+    assert motion["doubled_after"] == pytest.approx(np.log(2) / 0.5)
     read(tmp_path, with_tables("[torque]\ndamping = 0"))
     page = polhode("run", tmp_path / "a.toml").stdout
     assert "half-life" not in page

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -394,8 +394,14 @@ class Rotor(_native.Rotor, Multivector):
 
     # --- action and algebra
 
-    if not TYPE_CHECKING:
-        apply = explains_calls(inverse="(~R)(x)")(_native.Rotor.apply)
+    def _misapplied(self, *more: Any, **named: Any) -> NoReturn:
+        """Raise the TypeError for arguments that `apply` does not have."""
+
+        def apply(x: Any, *, out: Any = None) -> None: ...
+
+        apply.__qualname__ = "Rotor.apply"
+        explains_calls(inverse="(~R)(x)")(apply)(None, *more, **named)
+        raise AssertionError("the arguments fit")
 
     def _turn(self, X: Any, out: Any = None) -> Multivector:
         """``R X ~R``, for values that the native method does not cover."""

@@ -217,13 +217,12 @@ def _free(motion: dict[str, Any]) -> Iterator[Row]:
 
 
 def _damped(motion: dict[str, Any]) -> Iterator[Row]:
-    g, after = motion["damping"], motion["halved_after"]
-    if g > 0:
+    if (after := motion["halved_after"]) is not None:
         yield "damping", "free motion, slowed exponentially"
         yield "half-life of ω", time(after)
-    elif g < 0:  # the torque drives the body
+    elif (after := motion["doubled_after"]) is not None:
         yield "damping", "negative: free motion, sped up exponentially"
-        yield "doubling time of ω", time(-after)
+        yield "doubling time of ω", time(after)
     else:
         yield "damping", "none: the rates g add up to 0"
     yield from _free(motion)

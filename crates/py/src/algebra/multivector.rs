@@ -16,7 +16,7 @@ use polhode_ga::product::{Grades, Product};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyInt, PyTuple, PyType};
+use pyo3::types::{PyBool, PyDict, PyInt, PyTuple, PyType};
 
 #[pymethods]
 impl Multivector {
@@ -413,8 +413,17 @@ impl Rotor {
     /// >>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, np.pi / 3)
     /// >>> R.apply(ph.e1)
     /// 0.5 e1 + 0.8660254 e2
-    #[pyo3(signature = (x, *, out=None))]
-    fn apply<'py>(slf: &Bound<'py, Self>, x: Any<'_, 'py>, out: Option<Any<'_, 'py>>) -> Object<'py> {
+    #[pyo3(signature = (x, *more, out=None, **named), text_signature = "($self, x, *, out=None)")]
+    fn apply<'py>(
+        slf: &Bound<'py, Self>,
+        x: Any<'_, 'py>,
+        more: &Bound<'py, PyTuple>,
+        out: Option<Any<'_, 'py>>,
+        named: Option<&Bound<'py, PyDict>>,
+    ) -> Object<'py> {
+        if named.is_some() || !more.is_empty() {
+            return slf.call_method("_misapplied", more, named);
+        }
         let here = if out.is_none() { turned(slf, x) } else { None };
         here.unwrap_or_else(|| slf.call_method1(intern!(slf.py(), "_turn"), (x, out)))
     }

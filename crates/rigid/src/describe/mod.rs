@@ -167,8 +167,9 @@ impl Setup {
     fn describe_damped(&self) -> Facts {
         let each = self.torques.iter().map(|t| if let Torque::Damping(g) = t { *g } else { 0.0 });
         let damping: f64 = each.sum();
-        let half = (damping != 0.0).then_some(LN_2 / damping);
-        [self.describe_start("damped"), facts! { damping: damping, halved_after: half }].concat()
+        let after = |rate: f64| (rate > 0.0).then_some(LN_2 / rate);
+        let facts = facts! { damping: damping, halved_after: after(damping), doubled_after: after(-damping) };
+        [self.describe_start("damped"), facts].concat()
     }
 
     /// The motion of the line from the fixed point to the centre of mass.

@@ -165,6 +165,15 @@ def test_meshes_of_scenes_name_the_key_of_the_unit(unit, amount, parts, tmp_path
     assert len(facts.get("warnings", [])) == bool(parts)
 
 
+def test_a_mass_that_is_not_given_is_not_shown(tmp_path, check):
+    scene = "[body]\nmoments = [1, 2, 2.5]\n{}\n[initial]\nspin.vector = [0, 0, 1]\n[run]\nduration = 1\n"
+    (tmp_path / "free.toml").write_text(scene.format(""))
+    (tmp_path / "heavy.toml").write_text(scene.format("mass = 1"))
+    free, heavy = check("free.toml", "heavy.toml").stdout.splitlines()
+    assert free.startswith("free.toml: ok, Inertia(principal moments 1, 2, 2.5 kg m²) without a mass, ")
+    assert heavy.startswith("heavy.toml: ok, Body(mass 1 kg, centre of mass 0 m, moments 1, 2, 2.5 kg m²), ")
+
+
 def test_bare_angles_beyond_a_turn_are_doubted(tmp_path, check):
     scene = (
         "[body]\nmoments = [1, 2, 2.5]\n[initial]\n"

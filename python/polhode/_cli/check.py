@@ -101,8 +101,10 @@ def _scene(path: str) -> Finding:
         scene = read_scene(path)
     except SceneError as error:
         return Finding({"scene": path, "ok": False, "errors": str(error)}, errors=[str(error)])
-    facts: dict[str, Any] = {"scene": path, "ok": True, "body": repr(scene.body)}
-    words = f"{path}: ok, {scene.body!r}, {counted(len(scene.times), 'output time')}"
+    # The mass of a body to which the scene gives none is 1 kg, and has no meaning.
+    body = repr(scene.body) if scene.has_mass else f"{scene.body.inertia!r} without a mass"
+    facts: dict[str, Any] = {"scene": path, "ok": True, "body": body}
+    words = f"{path}: ok, {body}, {counted(len(scene.times), 'output time')}"
     if scene.ensemble is not None:
         wanted = bytes_of_file(scene) if scene.ensemble.keep else scene.result_bytes
         facts |= {"bodies": scene.ensemble.number, "bytes": wanted}

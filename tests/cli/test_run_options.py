@@ -190,9 +190,17 @@ def test_a_scene_on_standard_input_runs_as_its_file(scene, tmp_path):
     assert checked.stdout.startswith("-: ok, ")
 
 
-@pytest.mark.parametrize("command", ["run", "check"])
+def test_a_figure_of_standard_input_is_that_of_its_file(scene, tmp_path):
+    pytest.importorskip("matplotlib")
+    for name, given in (("a.svg", scene), ("b.svg", "-")):
+        done = polhode("figure", "polhode", given, "-o", name, input=SCENE, cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
+@pytest.mark.parametrize("command", ["run", "check", "film -o a.gif", "figure -o a.svg motion"])
 def test_errors_in_standard_input_have_a_place(command, tmp_path):
-    done = polhode(command, "-", input=SCENE.replace("duration", "durration"), cwd=tmp_path)
+    done = polhode(*command.split(), "-", input=SCENE.replace("duration", "durration"), cwd=tmp_path)
     assert done.returncode == 3
     assert done.stdout == ""
     assert "\n<stdin>:7:1: error: unknown field `durration`" in done.stderr

@@ -6,8 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli.common import add_command, add_force, check_written, file_name, progress
-from polhode._support.file_kinds import require_scene
+from polhode._cli.common import add_command, add_force, check_written, file_name, progress, read_scene
 
 if TYPE_CHECKING:
     from polhode._mechanics.trajectory import Trajectory
@@ -32,7 +31,10 @@ def add(commands: Any) -> None:
     choices = (*_KINDS, *_OF_HANDOUT)
     figure.add_argument("what", metavar="WHAT", choices=choices, help=f"{', '.join(_KINDS)}, 1, 2, 3")
     figure.add_argument(
-        "scene", metavar="SCENE.toml", nargs="?", help="the scene file, except for 1, 2 and 3"
+        "scene",
+        metavar="SCENE.toml",
+        nargs="?",
+        help="the scene file (- is standard input), except for 1, 2 and 3",
     )
     _add_output(figure, "a figure", "FILE.svg, FILE.pdf or FILE.png")
     _add_view(figure)
@@ -49,7 +51,7 @@ def add(commands: Any) -> None:
         description="Film a scene's motion as the viewer draws it. Needs polhode[film] and Chromium, Chrome "
         "or Edge, which runs without a window.",
     )
-    film.add_argument("scene", metavar="SCENE.toml", help="the scene file")
+    film.add_argument("scene", metavar="SCENE.toml", help="the scene file; - is standard input")
     _add_output(film, "a film", "FILE.mp4 or FILE.gif")
     film.add_argument("--seconds", metavar="N", type=float, help="length in s, default that of the motion")
     film.add_argument("--fps", metavar="N", type=float, default=25.0, help="frames per second, default 25")
@@ -96,13 +98,15 @@ def _figure(options: argparse.Namespace) -> int:
 
 def _film(options: argparse.Namespace) -> int:
     from polhode._figures.film import planned
+    from polhode._outputs import film
 
     path = Path(options.output)
     planned(path, options.seconds, options.fps, options.size, options.view)
     check_written([path], options.force)
     trajectory = _motion(options.scene)
     with progress(path.name) as report:
-        trajectory.film(
+        film(
+            trajectory,
             path,
             seconds=options.seconds,
             fps=options.fps,
@@ -115,11 +119,8 @@ def _film(options: argparse.Namespace) -> int:
 
 
 def _motion(name: str) -> Trajectory:
-    """Run the scene of a file; a ValueError for an ensemble."""
-    from polhode import Scene
-
-    require_scene(name)
-    scene = Scene.read(name)
+    """Run the scene of a file or of standard input; a ValueError for an ensemble."""
+    scene = read_scene(name)
     if scene.ensemble is not None:
         raise ValueError(
             f"{name} has {scene.ensemble.number} bodies, and this command draws one: remove its table "

@@ -9,6 +9,7 @@ import pytest
 
 import polhode as ph
 from polhode._cli import main
+from polhode._fit import units
 from polhode._fit.table import read_tables
 
 pytest.importorskip("scipy")
@@ -304,9 +305,9 @@ def test_standard_input_and_long_units(rates, monkeypatch, capsys):
     rows = [[float(x) for x in line.split(",")] for line in text.splitlines()[1:]]
     slow = "\n".join(["t,wx,wy,wz", *(",".join(map(repr, [t / 1000, *w])) for t, *w in rows)])
     found = []
-    for content, units in ((text, UNITS), (slow, ["--time-unit", "d", "--rate-unit", "deg/day"])):
+    for content, own in ((text, UNITS), (slow, ["--time-unit", "d", "--rate-unit", "deg/day"])):
         monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(content.encode())))
-        assert main.main(["fit", "-", *units, "--sigma", "0.5", "--json"]) == 0
+        assert main.main(["fit", "-", *own, "--sigma", "0.5", "--json"]) == 0
         found.append(json.loads(capsys.readouterr().out))
     day = 86400
     np.testing.assert_allclose(found[1]["moments"], found[0]["moments"], rtol=1e-5)
@@ -314,6 +315,92 @@ def test_standard_input_and_long_units(rates, monkeypatch, capsys):
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"t,wx\n")))
     assert main.main(["fit", "-", *UNITS]) == 3
     assert capsys.readouterr().err.startswith("<stdin>:1:1: error: the columns t, wx have neither")
+
+
+@pytest.fixture
+def motion(tmp_path, monkeypatch):
+    """The motion as `Trajectory.save` writes it, and its parts as `ph.io.write` does."""
+    monkeypatch.chdir(tmp_path)
+    times = TIMES * 0.01
+    ph.simulate(BODY, ph.State(ph.Rotor.identity(), [0.3, 4.0, 0.9]), times).save("motion.csv")
+    rotor, omega = (getattr(ph.io.read_csv("motion.csv"), name) for name in ("rotor", "omega_body"))
+    ph.io.write(ph.io.AttitudeHistory(times, rotor), "attitudes.csv")
+    ph.io.write(ph.io.AttitudeHistory(times, rotor, omega), "both.csv")
+    lines = Path("both.csv").read_text().splitlines()
+    own = [0, *range(5, 8)]
+    rows = [",".join(line.split(",")[k] for k in own) for line in lines]
+    Path("rates.csv").write_text("\n".join(rows) + "\n")
+
+
+OF_RATES = ["--columns", "time,omega_body_x,omega_body_y,omega_body_z"]
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("attitudes.csv", []),
+        ("rates.csv", ["--time-unit", "s"]),
+        ("both.csv", ["--sigma", "1e-6", "--sigma-attitude", "1e-6"]),
+        ("motion.csv", ["--sigma", "1e-6", "--sigma-attitude", "1e-6"]),
+        ("motion.csv", OF_RATES),
+    ],
+)
+@pytest.mark.usefixtures("motion")
+def test_tables_that_polhode_wrote(name, options, capsys):
+    """Their names state the units."""
+    assert main.main(["fit", name, *options, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    np.testing.assert_allclose(found["moments"], RATIOS, atol=1e-6)
+    np.testing.assert_allclose(found["omega_body"], [0.3, 4.0, 0.9], atol=1e-6)
+
+
+@pytest.mark.usefixtures("motion")
+def test_a_motion_has_rates_and_attitudes(capsys):
+    with pytest.raises(SystemExit):
+        main.main(["fit", "motion.csv"])
+    assert f"name the columns of one of them, as {' '.join(OF_RATES)}" in capsys.readouterr().err
+
+
+def test_other_units_under_such_names_need_columns(rates, tmp_path, capsys):
+    path = tmp_path / "named.csv"
+    path.write_text(Path(rates).read_text().replace("t,wx,wy,wz", OF_RATES[1]))
+    with pytest.raises(SystemExit):
+        main.main(["fit", str(path), *UNITS])
+    assert "--time-unit is ms, but columns with these names are in s: leave it out" in capsys.readouterr().err
+    found = []
+    for arguments in ([str(path), *OF_RATES], [rates]):
+        assert main.main(["fit", *arguments, *UNITS, "--json"]) == 0
+        found.append(json.loads(capsys.readouterr().out)["moments"])
+    assert found[0] == found[1]
+
+
+def test_files_that_are_not_csv_are_named(tmp_path, capsys):
+    batch = ph.State(ph.Rotor.identity(), ph.bivector([[0.3, 4, 0.9], [0, 1, 2]]))
+    ph.simulate(BODY, batch, [0.0, 1.0, 2.0]).save(tmp_path / "batch.csv")
+    (tmp_path / "m.nc").write_bytes(b"\x89HDF")
+    (tmp_path / "m.dat").write_bytes(b"PAR1")
+    (tmp_path / "s.toml").write_text("[body]\n")
+    (tmp_path / "s.png").write_bytes(b"\x89PNG")
+    for name, message in (
+        ("batch.csv", ":1:1: error: the table has a batch of bodies; write one of them to a file of its own"),
+        ("m.nc", f": error: not a CSV file; write one with `polhode convert {tmp_path / 'm.nc'} FILE.csv`"),
+        ("m.dat", ": error: not a CSV file; write one with `polhode convert"),
+        ("s.toml", ": error: not a CSV file but a scene: `polhode run"),
+        ("s.png", ": error: not a CSV file but a picture"),
+    ):
+        assert main.main(["fit", str(tmp_path / name)]) == 3
+        assert capsys.readouterr().err.startswith(f"{tmp_path / name}{message}")
+
+
+def test_units_are_those_of_the_core():
+    """Each as a definition of the formula language reads it, with the size that the SI brochure gives."""
+    deg, day = np.pi / 180, 86400
+    times = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1, "min": 60, "h": 3600, "d": day, "day": day}
+    rates = {"rad/s": 1, "mrad/s": 1e-3, "deg/s": deg, "deg/h": deg / 3600, "deg/day": deg / day}
+    rates |= {"arcsec/s": deg / 3600, "rev/s": 360 * deg, "rpm": 6 * deg}
+    assert (tuple(times), tuple(rates)) == (units.TIMES, units.RATES)
+    sizes = times | rates
+    np.testing.assert_allclose([units.si(unit) for unit in sizes], list(sizes.values()), rtol=4e-16)
 
 
 def test_a_fit_of_nothing_names_both_kinds_of_data(capsys):
@@ -326,7 +413,7 @@ def test_a_fit_of_nothing_names_both_kinds_of_data(capsys):
     ("options", "message"),
     [
         (["--time-unit", "s"], "rates need their unit: --rate-unit rad/s"),
-        (["--rate-unit", "rpm"], "required: --time-unit"),
+        (["--rate-unit", "rpm"], "times need their unit: --time-unit ns, us"),
         ([*UNITS, "--columns", "t,wx"], "expected 4 names (time and rates), 5"),
         ([*UNITS[:2], "--columns", "t,wx,wy,wz,w"], "needs its order: --order wxyz"),
         ([*UNITS, "--columns", "t,wx,wy,wx"], "each column has one meaning, but 'wx' is named twice"),

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,21 +17,12 @@ from polhode._cli.common import (
     positive,
     read_scene,
 )
+from polhode._fit import units
 from polhode._native import __version__
 
 if TYPE_CHECKING:
     from polhode._fit.result import Fit
-
-_PERIODS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0}
-_TIMES = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, **_PERIODS}
-_DEGREE = math.pi / 180
-_RATES = {
-    "rad/s": 1.0,
-    "deg/s": _DEGREE,
-    "deg/h": _DEGREE / 3600,
-    "deg/day": _DEGREE / 86400,
-    "rpm": math.pi / 30,
-}
+    from polhode._fit.table import Table
 
 
 def add(commands: Any) -> None:
@@ -45,14 +35,14 @@ def add(commands: Any) -> None:
         description="Fit the ratios of the principal moments, the initial state, the bias of a gyroscope, "
         "its axes and torques to rates (columns t,wx,wy,wz in body axes), attitudes (t,qw,qx,qy,qz, from "
         "body axes to space axes) or both. The first line of the file has the names of the columns; in a "
-        "file of both kinds fields of one may be empty. Units are never guessed. With --periods instead of a "
+        "file of both kinds fields of one may be empty. Units are never guessed; a table that polhode wrote "
+        "(time,omega_body_x, …) states them by its names: s and rad/s. With --periods instead of a "
         "file: the rotations of a body that a light curve with these periods leaves possible.",
     )
     fit.add_argument("data", metavar="FILE.csv", nargs="?", help="the measured data; - is standard input")
-    fit.add_argument("--time-unit", metavar="UNIT", choices=_TIMES, help=f"unit of t: {', '.join(_TIMES)}")
-    fit.add_argument(
-        "--rate-unit", metavar="UNIT", choices=_RATES, help=f"unit of the rates: {', '.join(_RATES)}"
-    )
+    for what, of, names in (("time", "t", units.TIMES), ("rate", "the rates", units.RATES)):
+        words = f"unit of {of}: {', '.join(names)}"
+        fit.add_argument(f"--{what}-unit", metavar="UNIT", choices=names, help=words)
     fit.add_argument(
         "--columns",
         metavar="NAMES",
@@ -190,13 +180,11 @@ def _as_json(facts: dict[str, Any]) -> str:
 
 def _fitted(options: argparse.Namespace) -> Fit:
     from polhode import Rotor, fit
-    from polhode._fit.table import RATES, read_tables
+    from polhode._fit.table import BOTH, OF_MOTION, RATES, read_tables
 
     error = options.parser.error
     if options.data is None:
         error("the following arguments are required: FILE.csv, or --periods ROTATION PRECESSION")
-    if options.time_unit is None:
-        error("the following arguments are required: --time-unit")
     if options.data == options.torque == "-":
         error("FILE.csv and --torque cannot both be standard input")
     if options.free and options.torque is None:
@@ -208,21 +196,24 @@ def _fitted(options: argparse.Namespace) -> Fit:
         error(f"--torque needs a scene with torques, and {options.torque} has none")
     tables = read_tables(Path(options.data), options.columns)
     _refuse_unused(options, tables)
+    time_unit, rate_unit = _units(options, tables)
     given: dict[str, Any] = {}
     if "attitude" in tables:
         table = tables["attitude"]
         rotors = Rotor.from_quaternion(table.values, order=options.order or "wxyz")
-        given["attitude"] = table.times * _TIMES[options.time_unit], rotors
+        given["attitude"] = table.times * time_unit, rotors
         given["sigma_attitude"] = options.sigma if options.sigma_attitude is None else options.sigma_attitude
     if "rates" in tables:
-        if options.rate_unit is None:
-            error(f"rates need their unit: --rate-unit {', '.join(_RATES)}")
-        unit, table = _RATES[options.rate_unit], tables["rates"]
-        given["rates"] = table.times * _TIMES[options.time_unit], table.values * unit
-        given["sigma_rates"] = None if options.sigma is None else options.sigma * unit
+        table = tables["rates"]
+        given["rates"] = table.times * time_unit, table.values * rate_unit
+        given["sigma_rates"] = None if options.sigma is None else options.sigma * rate_unit
         given["bias"] = options.bias
     if len(tables) == 2 and (options.sigma is None or options.sigma_attitude is None):
-        error("rates and attitudes together need --sigma, of the rates, and --sigma-attitude, to weigh them")
+        one = ",".join((options.columns or (OF_MOTION[0] if table.of_motion else BOTH))[: len(RATES)])
+        error(
+            "rates and attitudes together need --sigma, of the rates, and --sigma-attitude, to weigh them; "
+            f"or name the columns of one of them, as --columns {one}"
+        )
     return fit(
         **given,
         clock_offset=options.clock_offset,
@@ -230,6 +221,26 @@ def _fitted(options: argparse.Namespace) -> Fit:
         torque=torque,
         free=options.free,
     )
+
+
+def _units(options: argparse.Namespace, tables: Mapping[str, Table]) -> tuple[float, float]:
+    """Return the units of times and rates in s and rad/s, which were given or are those of the columns."""
+    error, found = options.parser.error, []
+    for name, own, choices, is_used in (
+        ("time", "s", units.TIMES, True),
+        ("rate", "rad/s", units.RATES, "rates" in tables),
+    ):
+        given = getattr(options, f"{name}_unit")
+        of_motion = any(table.of_motion for table in tables.values())
+        if of_motion and options.columns is None and given not in (None, own):
+            error(
+                f"--{name}-unit is {given}, but columns with these names are in {own}: leave it out, or "
+                "give the names with --columns if they are not"
+            )
+        if not of_motion and given is None and is_used:
+            error(f"{name}s need their unit: --{name}-unit {', '.join(choices)}")
+        found.append(units.si(given or own))
+    return found[0], found[1]
 
 
 def _refuse_unused(options: argparse.Namespace, tables: Container[str]) -> None:
@@ -269,10 +280,10 @@ def _columns(text: str) -> tuple[str, ...]:
 def _period(text: str) -> float:
     """Return a period in s."""
     text = text.strip()
-    value = text.rstrip("".join(_PERIODS)).rstrip()
-    if (unit := text.removeprefix(value).strip()) not in _PERIODS:
+    value = text.rstrip("".join(units.PERIODS)).rstrip()
+    if (unit := text.removeprefix(value).strip()) not in units.PERIODS:
         raise argparse.ArgumentTypeError(f"expected a number and a unit s, min, h or d, got {text!r}")
-    return positive(value, 'expected a period such as "5.41 d"') * _PERIODS[unit]
+    return positive(value, 'expected a period such as "5.41 d"') * units.si(unit)
 
 
 def _positive(text: str) -> float:

@@ -11,12 +11,19 @@ from pathlib import Path
 
 import numpy as np
 
+from polhode._report.table import columns_of
 from polhode._support.arrays import Array
+from polhode._support.file_kinds import require_csv
 from polhode._support.files import UnreadableError, contents
 from polhode._support.words import counted
 
 RATES, QUATERNION = ("t", "wx", "wy", "wz"), ("t", "qw", "qx", "qy", "qz")
 BOTH = RATES + QUATERNION[1:]
+# Names of the same columns in the tables of motions that Polhode writes: in s and rad/s.
+OF_MOTION = tuple(
+    ("time", *(column for name in names for column in columns_of(name)))
+    for names in (("omega_body", "attitude"), ("omega_body",), ("attitude",))
+)
 # Number of names, of a time and its values, for each kind of data.
 KINDS = {len(RATES): ("rates",), len(QUATERNION): ("attitude",), len(BOTH): ("rates", "attitude")}
 SEPARATORS = (",", ";", "\t")
@@ -30,19 +37,23 @@ _OFF = 0.02
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of a file: times (n,) and values (n, 3) or (n, 4), in the units of the file."""
+    """Columns of a file: times (n,) and values (n, 3) or (n, 4), in the units of the file.
+
+    `of_motion` is whether their names are those of `OF_MOTION`, which mean s and rad/s.
+    """
 
     times: Array
     values: Array
+    of_motion: bool
 
 
 def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     """Return the tables ``"rates"``, ``"attitude"`` or both of a file; ``-`` is standard input.
 
-    Names of the columns are those of `RATES`, `QUATERNION` or `BOTH`, or as many others; None for these. The
-    first line has the names, which may be quoted, separated as the numbers below: by commas, or else by
-    semicolons or tabs. Empty lines and lines that begin with # are skipped. In a file of both kinds a row may
-    have empty fields for one of them.
+    Names of the columns are those of `RATES`, `QUATERNION` or `BOTH`, or as many others; None for these or
+    those of `OF_MOTION`. The first line has the names, which may be quoted, separated as the numbers below:
+    by commas, or else by semicolons or tabs. Empty lines and lines that begin with # are skipped. In a file
+    of both kinds a row may have empty fields for one of them.
 
     Raises
     ------
@@ -55,6 +66,7 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
         if path == Path("-"):
             path, content = Path("<stdin>"), _standard_input()
         else:
+            require_csv(path)
             content = contents(path, copies=4)
         lines = content.decode("utf-8-sig").replace("\r\n", "\n").split("\n")
     except OSError as error:
@@ -111,7 +123,8 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
                 f"{path}:{rows[-1][0]}:1: error: the file ends after {counted(len(numbers), 'row')} of "
                 f"{kind}; a fit needs at least {FEWEST}"
             )
-    return {kind: _table(path, own, len(columns[kind]) + 1) for kind, own in found.items()}
+    of_motion = names in OF_MOTION
+    return {kind: _table(path, own, len(columns[kind]) + 1, of_motion) for kind, own in found.items()}
 
 
 def _standard_input() -> bytes:
@@ -121,13 +134,18 @@ def _standard_input() -> bytes:
 
 
 def _default(path: Path, line: int, header: list[str]) -> tuple[str, ...]:
-    """Return `RATES`, `QUATERNION` or `BOTH`, whichever the file has."""
-    for names in (BOTH, RATES, QUATERNION):
+    """Return `BOTH`, `RATES`, `QUATERNION` or those of `OF_MOTION`, whichever the file has."""
+    for names in (BOTH, RATES, QUATERNION, *OF_MOTION):
         if set(names) <= set(header):
+            if names in OF_MOTION and "body" in header:
+                raise UnreadableError(
+                    f"{path}:{line}:1: error: the table has a batch of bodies; write one of them to a file "
+                    f"of its own with `polhode convert {path} FILE.csv --body N`"
+                )
             return names
     raise UnreadableError(
         f"{path}:{line}:1: error: the columns {', '.join(header)} have neither rates t,wx,wy,wz nor "
-        "t,qw,qx,qy,qz; give the names with --columns"
+        "t,qw,qx,qy,qz, nor those of a motion that polhode wrote; give the names with --columns"
     )
 
 
@@ -173,10 +191,10 @@ def _column(fields: list[str], place: int) -> int:
     return before + len(fields[place]) - len(fields[place].lstrip()) + 1
 
 
-def _table(path: Path, rows: list[tuple[int, list[float]]], width: int) -> Table:
+def _table(path: Path, rows: list[tuple[int, list[float]]], width: int, of_motion: bool) -> Table:
     numbers = np.array([row for _, row in rows]).reshape(-1, width)
     _check_order(path, [line for line, _ in rows], numbers[:, 0])
-    return Table(numbers[:, 0], numbers[:, 1:])
+    return Table(numbers[:, 0], numbers[:, 1:], of_motion)
 
 
 def _check_order(path: Path, lines: list[int], times: Array) -> None:

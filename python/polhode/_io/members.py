@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from polhode._io.history import AttitudeHistory, FileError
-from polhode._io.tables import ALONG_TIME, of_parts
+from polhode._io.tables import of_parts
 from polhode._report import netcdf
 from polhode._report.ensemble.arrays import zarr
 from polhode._report.ensemble.store import EnsembleStore
+from polhode._report.table import ALONG_TIME
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 from polhode._support.words import counted

@@ -21,13 +21,10 @@ from polhode._mechanics.robots.document import Source
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report import netcdf, table
 from polhode._report.output import encoded
+from polhode._report.table import ALONG_TIME, UNITS, columns_of
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 from polhode._support.files import contents, write_atomically
-
-_LABELS = {"quaternion": "wxyz", "axis": "xyz"}
-# Quantities of a motion with a row for each time.
-ALONG_TIME = {name: facts for name, facts in netcdf.MOTION.items() if name != "inertia"}
 
 
 def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
@@ -183,12 +180,6 @@ def _start(source: Source, line: int, k: int) -> int:
     return sum(len(x) + 1 for x in source.lines[line - 1].split(",")[:k])
 
 
-def _names(name: str) -> list[str]:
-    """Return the columns of a quantity."""
-    dims = ALONG_TIME[name][0]
-    return [f"{name}_{label}" for label in _LABELS[dims[0]]] if dims else [name]
-
-
 def _history(columns: dict[str, Array], body: int | None, attributes: dict[str, Any]) -> AttitudeHistory:
     if "body" in columns:
         bodies = columns.pop("body")
@@ -201,20 +192,20 @@ def _history(columns: dict[str, Array], body: int | None, attributes: dict[str, 
     elif body is not None:
         raise ValueError(f"the file holds one body; leave out body={body}")
     wheels = sorted((x for x in columns if x.startswith("wheel_speed_")), key=lambda x: (len(x), x))
-    known = {"time", *wheels, *(column for name in ALONG_TIME for column in _names(name))}
+    known = {"time", *wheels, *UNITS}
     if unknown := [x for x in columns if x not in known]:
         raise ValueError(
             f"column {unknown[0]!r} is not known; rename or remove it. Known are {', '.join(known_columns())}"
         )
-    for needed in ("time", *_names("attitude")):
+    for needed in ("time", *columns_of("attitude")):
         if needed not in columns:
             raise ValueError(f"the file has no column {needed!r}; it needs time and attitude_w, _x, _y, _z")
     parts = {}
     for name in ALONG_TIME:
-        present = [x for x in _names(name) if x in columns]
-        if present and len(present) < len(_names(name)):
+        present = [x for x in columns_of(name) if x in columns]
+        if present and len(present) < len(columns_of(name)):
             raise ValueError(
-                f"the columns of {name} must be {', '.join(_names(name))}, got {', '.join(present)} only"
+                f"the columns of {name} must be {', '.join(columns_of(name))}, got {', '.join(present)} only"
             )
         if present:
             values = np.stack([columns[x] for x in present], axis=-1)
@@ -225,7 +216,7 @@ def _history(columns: dict[str, Array], body: int | None, attributes: dict[str, 
 
 def known_columns() -> list[str]:
     """Return the names of the columns."""
-    return ["time", *(column for name in ALONG_TIME for column in _names(name)), "wheel_speed_0, ..."]
+    return ["time", *UNITS, "wheel_speed_0, ..."]
 
 
 def of_parts(
@@ -274,7 +265,7 @@ def _columns(history: AttitudeHistory) -> dict[str, Array]:
     """Return the columns of the known quantities, without the times."""
     columns: dict[str, Array] = {}
     for name, values in _parts(history).items():
-        names = _names(name)
+        names = columns_of(name)
         columns |= dict(zip(names, values.reshape(len(history), len(names)).T, strict=True))
     if history.wheel_speed is not None:
         columns |= {f"wheel_speed_{k}": x for k, x in enumerate(history.wheel_speed.T)}
@@ -293,7 +284,7 @@ def _parquet(history: AttitudeHistory) -> bytes:
     pd = optional("pandas", "parquet", "a Parquet file")
     columns = _columns(history)
     frame = pd.DataFrame(columns, pd.Index(history.time, name="time"))
-    units = {name: "rad/s" if name.startswith("wheel") else table.UNITS[name] for name in columns}
+    units = {name: "rad/s" if name.startswith("wheel") else UNITS[name] for name in columns}
     plain = {name: table._plain(x) for name, x in _attributes(history).items()}
     frame.attrs |= {**plain, "units": {"time": "s", **units}}
     return bytes(frame.to_parquet(engine="pyarrow"))

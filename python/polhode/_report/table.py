@@ -23,17 +23,18 @@ _LABELS = {"quaternion": "wxyz", "axis": "xyz"}
 _BLOCK = 4096
 
 
-def _units() -> dict[str, str]:
-    units: dict[str, str] = {}
-    for name, (dims, unit, _) in MOTION.items():
-        if name != "inertia":
-            labels = [f"_{label}" for label in _LABELS[dims[0]]] if dims else [""]
-            units |= {name + label: unit for label in labels}
-    return units
+# Quantities with a row for each time.
+ALONG_TIME = {name: facts for name, facts in MOTION.items() if name != "inertia"}
+
+
+def columns_of(name: str) -> tuple[str, ...]:
+    """Return the names of the columns of a quantity."""
+    dims = ALONG_TIME[name][0]
+    return tuple(f"{name}_{label}" for label in _LABELS[dims[0]]) if dims else (name,)
 
 
 # Unit of each column; the index is `time` in s, of a batch `body` and `time`.
-UNITS = _units()
+UNITS = {column: unit for name, (_, unit, _) in ALONG_TIME.items() for column in columns_of(name)}
 
 # Name of the first column of a CSV file without some of the columns. Readers of CSV files drop the quotes;
 # they distinguish a file of Polhode from a table of measured attitudes with the same columns.
@@ -49,11 +50,7 @@ def units_of(trajectory: Trajectory) -> dict[str, str]:
 def values_of(trajectory: Trajectory) -> Array:
     """Return the columns of a motion (rows, columns); of a batch body after body, in C order."""
     shape = (*trajectory.shape, len(trajectory.time))
-    parts = [
-        components(trajectory, name).reshape(*shape, len(_LABELS[dims[0]]) if dims else 1)
-        for name, (dims, _, _) in MOTION.items()
-        if name != "inertia"
-    ]
+    parts = [components(trajectory, name).reshape(*shape, len(columns_of(name))) for name in ALONG_TIME]
     parts.append(trajectory.wheel_speed)
     return np.concatenate(parts, axis=-1).reshape(math.prod(shape), len(units_of(trajectory)))
 

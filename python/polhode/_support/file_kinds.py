@@ -1,4 +1,4 @@
-"""Files given in place of a scene: what they are, and the command that takes them."""
+"""Files given in place of a scene or a CSV file: what they are, and the command that takes them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from polhode._native import SceneError
+from polhode._support.files import UnreadableError
 
 _PICTURE = "a picture, which is written, not read"
 _MESH = "a mesh: `polhode check {0}` checks it, and a scene names it as mesh in its table [body]"
@@ -15,6 +16,7 @@ _TABLE = (
 )
 _NUMBERS = "a table of numbers: meshes are STL, OBJ or PLY files, and `polhode fit` takes CSV files"
 _PAGE = "a page: open it in a browser"
+_SCENE = "a scene: `polhode run {0}` computes its motion; as --torque it gives the torques of a fit"
 _KINDS = {
     ".nc": "a motion in netCDF: `polhode view {0}` shows it, `polhode convert {0} FILE` converts it",
     ".zarr": "a store: `polhode run --status {0}` verifies it, `polhode convert {0} FILE.nc --body N` reads "
@@ -27,7 +29,14 @@ _KINDS = {
     **dict.fromkeys((".html", ".htm"), _PAGE),
     ".md": "a lesson: `polhode view {0}` shows it",
 }
-# First bytes of files with other names.
+# Motions that are converted to CSV, and the arguments of the command.
+_MOTIONS = {
+    **dict.fromkeys((".nc", ".parquet", ".aem"), "{0} FILE.csv"),
+    ".bc": "{0} FILE.csv --kernel FILE …",
+    ".zarr": "{0} FILE.csv --body N",
+}
+# Number of first bytes by which a file is recognised; those of files with other names.
+_HEAD = 200
 _HEADS = {
     b"\x89HDF": ".nc",
     b"PAR1": ".parquet",
@@ -50,12 +59,33 @@ def require_scene(path: str | os.PathLike[str]) -> None:
         raise SceneError(f"{name}: error: not a scene but {kind.format(name)}")
 
 
-def _kind_by_content(path: str | os.PathLike[str]) -> str | None:
+def require_csv(path: str | os.PathLike[str]) -> None:
+    """Raise an UnreadableError that says what an existing file is if it is not a CSV file."""
+    name, suffix = os.fsdecode(path), Path(path).suffix.lower()
+    if suffix == ".csv" or not os.path.exists(path):
+        return
+    if suffix not in _KINDS and os.path.isfile(path):
+        suffix = _suffix_by_content(path) or suffix
+    if suffix in _MOTIONS:
+        words = _MOTIONS[suffix].format(name)
+        raise UnreadableError(f"{name}: error: not a CSV file; write one with `polhode convert {words}`")
+    kind = _SCENE if suffix == ".toml" else _KINDS.get(suffix)
+    if kind is not None:
+        raise UnreadableError(f"{name}: error: not a CSV file but {kind.format(name)}")
+
+
+def _suffix_by_content(path: str | os.PathLike[str]) -> str | None:
+    """Return the suffix that files with such first bytes have."""
     with open(path, "rb") as file:
-        head = file.read(200)
-    for start, suffix in _HEADS.items():
-        if head.startswith(start):
-            return _KINDS[suffix]
+        head = file.read(_HEAD)
+    return next((suffix for start, suffix in _HEADS.items() if head.startswith(start)), None)
+
+
+def _kind_by_content(path: str | os.PathLike[str]) -> str | None:
+    if suffix := _suffix_by_content(path):
+        return _KINDS[suffix]
+    with open(path, "rb") as file:
+        head = file.read(_HEAD)
     first = head.lstrip().partition(b"\n")[0].replace(b",", b" ").replace(b";", b" ").split()
     if first and all(_is_number(x) for x in first):
         return _NUMBERS

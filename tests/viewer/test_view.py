@@ -220,7 +220,7 @@ def test_a_file_of_a_run_is_shown(tmp_path):
 def test_files_that_cannot_be_shown_are_bad_input(tmp_path, capsys):
     (tmp_path / "bad.toml").write_text(SCENE.replace("duration", "durration"))
     (tmp_path / "bad.nc").write_bytes(b"noise")
-    (tmp_path / "a.csv").write_text("time")
+    (tmp_path / "a.csv").write_text("time,attitude_w")
     (tmp_path / "a.stl").write_text("solid")
     for name, part in (
         ("a.csv", f"ph.io.read({str(tmp_path / 'a.csv')!r}).trajectory(body).save('FILE.nc')"),
@@ -254,6 +254,21 @@ def test_the_remedy_for_a_table_of_attitudes_is_shown(form, tmp_path, monkeypatc
     remedy = re.search(r"ph\.io\.read.*'FILE\.nc'\)", message)[0]
     eval(remedy, {"ph": ph, "body": body})
     assert set(_view.Source(tmp_path / "FILE.nc").document()) >= {"format", "recorded"}
+
+
+@pytest.mark.usefixtures("bundle")
+def test_a_table_of_rates_is_for_a_fit(tmp_path, capsys):
+    (tmp_path / "gyro.csv").write_text("t,wx,wy,wz\n0,1,2,3\n")
+    assert main.main(["view", str(tmp_path / "gyro.csv"), "--no-browser"]) == 3
+    message = capsys.readouterr().err
+    assert "gyro.csv: error: not a motion; `polhode fit` fits a body to measured rates" in message
+
+
+@pytest.mark.usefixtures("bundle")
+def test_standard_input_is_not_viewed(capsys):
+    with pytest.raises(SystemExit):
+        main.main(["view", "-", "--no-browser"])
+    assert "reads its file again when it is reloaded: give a path, not -" in capsys.readouterr().err
 
 
 @pytest.mark.usefixtures("bundle")

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from polhode._mechanics.trajectory import Trajectory
+from polhode._report.table import columns_of
 from polhode._scene.scene import Scene
 from polhode._support.file_kinds import require_scene
 from polhode._support.files import UnreadableError, check_target
@@ -64,18 +65,17 @@ Bar = Callable[[str], AbstractContextManager[Callable[[int, float], object] | No
 
 # Suffixes of files that are shown; a scene may have any other that is not known.
 _SHOWN = (".nc", ".md")
-# Suffixes of tables of attitudes, which have no inertia.
-_TABLES = (".csv", ".parquet", ".aem", ".bc")
+# Suffixes of tables, which have no inertia; the length of a first line that may have names of columns.
+_TABLES, _LINE = (".csv", ".parquet", ".aem", ".bc"), 10_000
 
 
 def run(options: argparse.Namespace, bar: Bar) -> int:
     """Serve a file until Ctrl-C, which ends it with a KeyboardInterrupt."""
     path = Path(options.file)
+    if options.file == "-":
+        options.parser.error("the page reads its file again when it is reloaded: give a path, not -")
     if path.suffix.lower() in _TABLES and path.exists():
-        raise UnreadableError(
-            f"{path}: error: a table of attitudes has no inertia, which a motion that is shown needs; "
-            f"in Python, ph.io.read({str(path)!r}).trajectory(body).save('FILE.nc') writes a motion of a body"
-        )
+        raise UnreadableError(f"{path}: error: {_about_table(path)}")
     if path.suffix.lower() not in _SHOWN:
         require_scene(path)
     script = bundle_path().read_bytes()
@@ -92,6 +92,18 @@ def run(options: argparse.Namespace, bar: Bar) -> int:
         except KeyboardInterrupt:
             raise KeyboardInterrupt("the viewer was closed") from None
     return 0
+
+
+def _about_table(path: Path) -> str:
+    """Return why a table is not shown, and what to do with it."""
+    if path.suffix.lower() == ".csv" and path.is_file():
+        with path.open(encoding="utf-8", errors="replace") as file:
+            if columns_of("attitude")[0] not in file.readline(_LINE):
+                return "not a motion; `polhode fit` fits a body to measured rates and attitudes"
+    return (
+        "a table of a motion has no inertia, which a motion that is shown needs; "
+        f"in Python, ph.io.read({str(path)!r}).trajectory(body).save('FILE.nc') writes a motion of a body"
+    )
 
 
 class Source:

@@ -226,7 +226,26 @@ def test_a_history_becomes_a_trajectory_of_a_body(tmp_path):
             {},
             "18:1: error: '2026-02",
         ),
-        (message([QUARTER, QUARTER]).replace("2026-001", "2025-001"), {}, "19:1: error: times must increase"),
+        (
+            message([QUARTER, QUARTER]).replace("\n2026-001T00:00:01.5", "\n2026-01-01T00:00:00.0"),
+            {},
+            "19:1: error: times must increase",
+        ),
+        (
+            message([QUARTER]).replace("START_TIME = 2026-01-01", "START_TIME = 2026-01-02"),
+            {},
+            "18:1: error: 2026-01-01T00:00:00 is before the segment's START_TIME, 2026-01-02T00:00:00",
+        ),
+        (
+            message([QUARTER, QUARTER]).replace("001T00:00:01.5\nATT", "001T00:00:01\nATT"),
+            {},
+            "19:1: error: 2026-001T00:00:01.5 is after the segment's STOP_TIME, 2026-001T00:00:01 in line 14",
+        ),
+        (
+            message([QUARTER]).replace("STOP_TIME = 2026-001T00:00:01.5", "STOP_TIME = never"),
+            {},
+            "14:13: error: an epoch must be YYYY-MM-DDThh:mm:ss",
+        ),
         (message([QUARTER]).replace("DATA_STOP", ""), {}, "has no DATA_STOP; the file may be cut off"),
         (
             message([QUARTER]) + message([QUARTER]).partition("\n\n")[2],

@@ -107,7 +107,8 @@ def read_aem(
     Raises
     ------
     ValueError
-        With file, line and column: if the file is not an AEM, has another attitude type, or lacks a keyword.
+        With file, line and column: if the file is not an AEM, has another attitude type, lacks a keyword, or
+        has a time outside of START_TIME to STOP_TIME.
     FileNotFoundError
         If there is no such file.
 
@@ -284,15 +285,20 @@ def _times(segment: _Segment, given: str | None) -> tuple[str, Array, Epoch]:
     if system.text not in TIME_SYSTEMS:
         raise system.error(f"TIME_SYSTEM must be one of {', '.join(TIME_SYSTEMS)}, got {system.text!r}")
     start = _epoch(_required(segment, "START_TIME"), system.text)
+    stop = _epoch(segment.values["STOP_TIME"], system.text) if "STOP_TIME" in segment.values else None
     origin = start if given is None else parse_epoch(given, system.text)
     times: list[float] = []
     for line in segment.lines:
         word = line.text.split(maxsplit=1)[0]
-        times.append(
-            elapsed(
-                origin, _epoch(_Place(line.source, word, line.line, line.column), system.text), system.text
+        epoch = _epoch(_Place(line.source, word, line.line, line.column), system.text)
+        times.append(elapsed(origin, epoch, system.text))
+        if epoch < start or (stop is not None and epoch > stop):
+            key, side = ("START_TIME", "before") if epoch < start else ("STOP_TIME", "after")
+            place = segment.values[key]
+            raise line.error(
+                f"{word} is {side} the segment's {key}, {place.text} in line {place.line}; correct one of "
+                "them, or remove the row"
             )
-        )
         if len(times) > 1 and times[-1] <= times[-2]:
             raise line.error("times must increase from line to line")
     return system.text, np.array(times), origin

@@ -27,7 +27,7 @@ _PATTERN = re.compile(
 _DECIMALS = Decimal(1).scaleb(-18)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class Epoch:
     """A day, as a proleptic ordinal, and the seconds since it began."""
 

@@ -337,6 +337,11 @@ def test_all_mistakes_are_reported(tmp_path):
         (tensor(2e-5, 3e-5, 4e-5, mass=1000), ["denser than osmium", "mass in g"]),
         (tensor(2e3, 3e3, 4e3, mass=1), ["67.1 m", "kg mm²"]),
         (tensor(1, 1, 1.5, mass=1, origin='<origin xyz="150 0 0"/>'), ["150 m", "mm instead of m"]),
+        (tensor(1, 1, 1.5, mass=1, origin='<origin rpy="3 -6.28 6.28"/>'), []),
+        (
+            tensor(1, 1, 1.5, mass=1, origin='<origin rpy="0 -90 45"/>'),
+            ["warning: rpy has -90 rad, more than a turn; if it is in degrees, convert it", "<origin rpy"],
+        ),
     ],
 )
 def test_improbable_inertias_are_questioned(text, parts, tmp_path):
@@ -347,6 +352,18 @@ def test_improbable_inertias_are_questioned(text, parts, tmp_path):
     assert len(link.warnings) == bool(parts)
     for part in parts:
         assert part in link.warnings[0]
+
+
+@pytest.mark.parametrize(("options", "is_doubted"), [("", True), (" degrees='true'", False)])
+def test_angles_of_sdf_beyond_a_turn_are_questioned(options, is_doubted, tmp_path):
+    inertia = "<ixx>0.3</ixx><ixy>0</ixy><ixz>0</ixz><iyy>0.4</iyy><iyz>0</iyz><izz>0.5</izz>"
+    pose = f"<pose{options}>0 0 0 90 0 0</pose>"
+    link = f"<link name='arm'><inertial>{pose}<mass>2</mass><inertia>{inertia}</inertia></inertial></link>"
+    path = tmp_path / "arm.sdf"
+    path.write_text(f"<sdf version='1.9'><model name='robot'>{link}</model></sdf>")
+    (found,) = read_links(path)[1]
+    assert len(found.warnings) == is_doubted
+    assert all("warning: the pose has 90 rad, more than a turn" in x for x in found.warnings)
 
 
 def test_a_ball_of_osmium_is_as_dense_as_a_body_can_be(tmp_path):
@@ -371,11 +388,23 @@ def test_a_ball_of_osmium_is_as_dense_as_a_body_can_be(tmp_path):
         ),
         (
             tensor("1_0", 1, 1),
-            "4:1: error: attribute 'ixx' of <inertia> must have numbers below 1e+100, got '1_0'",
+            "4:1: error: attribute 'ixx' of <inertia> has '1_0', which is not a number",
         ),
         (
             tensor("nan", 1, 1),
-            "4:1: error: attribute 'ixx' of <inertia> must have numbers below 1e+100, got 'nan'",
+            "4:1: error: attribute 'ixx' of <inertia> has 'nan', which is not a number",
+        ),
+        (
+            tensor("0,02", 1, 1),
+            "4:1: error: attribute 'ixx' of <inertia> has '0,02', which is not a number; write decimals",
+        ),
+        (
+            tensor("1e200", 1, 1),
+            "4:1: error: attribute 'ixx' of <inertia> must have numbers below 1e+100, got '1e200'",
+        ),
+        (
+            tensor(1, 1, 1).replace("<mass", '<origin xyz="0,0,0"/><mass'),
+            "attribute 'xyz' of <origin> must have 3 numbers, got '0,0,0'; write decimals with a point",
         ),
         (tensor("1 2", 1, 1), "4:1: error: attribute 'ixx' of <inertia> must have 1 number, got '1 2'"),
         (tensor("${m}", 1, 1), "expand the file with xacro first"),

@@ -16,6 +16,8 @@ _LARGEST, _DEEPEST = 50_000_000, 200
 # Products of three numbers below this do not overflow.
 _GREATEST = 1e100
 
+_NO_COMMA = "write decimals with a point, and spaces between numbers"
+
 
 class DocumentError(ValueError):
     """A mistake in an XML file, with its place."""
@@ -98,7 +100,8 @@ class Node:
         if len(words) not in allowed:
             number = " or ".join(map(str, allowed))
             noun = "number" if allowed == (1,) else "numbers"
-            raise self.error(f"{what} must have {number} {noun}, got {text.strip()!r}")
+            remedy = f"; {_NO_COMMA}" if "," in text else ""
+            raise self.error(f"{what} must have {number} {noun}, got {text.strip()!r}{remedy}")
         return [self._number(word, what) for word in words]
 
     def _number(self, word: str, what: str) -> float:
@@ -109,6 +112,9 @@ class Node:
             value = float(word) if word.isascii() and "_" not in word else math.nan
         except ValueError:
             value = math.nan
+        if math.isnan(value):
+            remedy = f"; {_NO_COMMA}" if "," in word else ""
+            raise self.error(f"{what} has {word!r}, which is not a number{remedy}")
         if not abs(value) < _GREATEST:
             raise self.error(f"{what} must have numbers below {_GREATEST:g}, got {word!r}")
         return value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -23,7 +24,8 @@ class Inertial:
     """An inertial element: mass (kg), and inertia (kg m²) about the centre of mass in axes of its own.
 
     `center` (m) and `rotor` place these axes in those of the link. `entries` are the inertia's xx, yy, zz,
-    xy, xz and yz as in the file. `node` and `mass_node` are the elements of the inertia and of the mass.
+    xy, xz and yz as in the file. `node` and `mass_node` are the elements of the inertia and of the mass;
+    `doubts` are warnings about others, with their places.
     """
 
     node: Node
@@ -34,6 +36,7 @@ class Inertial:
     rotor: Rotor
     texts: list[str]
     in_rows: bool = False
+    doubts: tuple[str, ...] = ()
 
     @property
     def matrix(self) -> Array:
@@ -96,10 +99,22 @@ def link_of(name: str, node: Node, make: Callable[[], Inertial | Body | None]) -
             link.note = MASSLESS
         else:
             link.body = found.body()
-            link.warnings = [found.node.message(w, "warning") for w in slips.doubts(found.case())]
+            link.warnings = [
+                *found.doubts,
+                *(found.node.message(w, "warning") for w in slips.doubts(found.case())),
+            ]
     except DocumentError as error:
         link.errors.append(str(error))
     return link
+
+
+def doubts_of_angles(node: Node, what: str, angles: list[float]) -> tuple[str, ...]:
+    """Return the warning of an element with an angle in rad beyond a turn, which is probably in degrees."""
+    wrong = [angle for angle in angles if abs(angle) > 2 * math.pi]
+    if not wrong:
+        return ()
+    words = f"{what} has {wrong[0]:g} rad, more than a turn; if it is in degrees, convert it to radians"
+    return (node.message(words, "warning"),)
 
 
 def name_of(node: Node) -> str:

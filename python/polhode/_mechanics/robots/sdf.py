@@ -8,7 +8,7 @@ from functools import partial
 
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.robots.document import Node
-from polhode._mechanics.robots.link import Inertial, Link, link_of, name_of
+from polhode._mechanics.robots.link import Inertial, Link, doubts_of_angles, link_of, name_of
 from polhode._mechanics.robots.urdf import ENTRIES
 
 
@@ -50,14 +50,14 @@ def _inertial(link: Node) -> Inertial | None:
         raise inertial.error(
             'auto="true", an inertia from collisions, is not supported; give mass and inertia'
         )
-    center, rotor = _pose(inertial.only("pose"))
+    center, rotor, doubts = _pose(inertial.only("pose"))
     mass, inertia = inertial.required("mass"), inertial.required("inertia")
     for name in ENTRIES[:3]:
         inertia.required(name)
     found = [inertia.only(name) for name in ENTRIES]
     entries = [_number(node) if node else 0.0 for node in found]
     texts = [node.text.strip() if node else "" for node in found]
-    return Inertial(inertia, mass, _number(mass), entries, center, rotor, texts)
+    return Inertial(inertia, mass, _number(mass), entries, center, rotor, texts, doubts=doubts)
 
 
 def _number(node: Node) -> float:
@@ -65,10 +65,10 @@ def _number(node: Node) -> float:
     return value
 
 
-def _pose(node: Node | None) -> tuple[list[float], Rotor]:
-    """Return position and attitude of a pose element; roll, pitch and yaw are about fixed axes."""
+def _pose(node: Node | None) -> tuple[list[float], Rotor, tuple[str, ...]]:
+    """Return position, attitude and doubts of a pose element; roll, pitch and yaw are about fixed axes."""
     if node is None or not node.text.strip():
-        return [0.0] * 3, Rotor.identity()
+        return [0.0] * 3, Rotor.identity(), ()
     if node.attributes.get("relative_to"):
         raise node.error(
             "attribute 'relative_to' of an inertial <pose> is not supported; express it in the link"
@@ -79,9 +79,10 @@ def _pose(node: Node | None) -> tuple[list[float], Rotor]:
     values = node.numbers(None, 6 if form == "euler_rpy" else 7) or []
     center, rest = values[:3], values[3:]
     if form == "quat_xyzw":
-        return center, unit_quaternion(node, rest, "xyzw")
+        return center, unit_quaternion(node, rest, "xyzw"), ()
     degrees = node.attributes.get("degrees", "false").strip() in ("true", "1")
-    return center, Rotor.from_euler("xyz", rest, degrees=degrees)
+    doubts = () if degrees else doubts_of_angles(node, "the pose", rest)
+    return center, Rotor.from_euler("xyz", rest, degrees=degrees), doubts
 
 
 def unit_quaternion(node: Node, components: list[float], order: str) -> Rotor:

@@ -6,7 +6,7 @@ from functools import partial
 
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.robots.document import Node
-from polhode._mechanics.robots.link import Inertial, Link, link_of, name_of
+from polhode._mechanics.robots.link import Inertial, Link, doubts_of_angles, link_of, name_of
 
 ENTRIES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
@@ -25,13 +25,16 @@ def _inertial(link: Node) -> Inertial | None:
         return None
     origin, mass, inertia = inertial.only("origin"), inertial.required("mass"), inertial.required("inertia")
     center, angles = [0.0] * 3, [0.0] * 3
+    doubts: tuple[str, ...] = ()
     if origin is not None:
         center, angles = origin.numbers("xyz", 3) or center, origin.numbers("rpy", 3) or angles
+        doubts = doubts_of_angles(origin, "rpy", angles)
     entries = [required_number(inertia, name) for name in ENTRIES]
     texts = [inertia.attributes[name].strip() for name in ENTRIES]
     # Roll, pitch and yaw about axes of the link, in this order.
     rotor = Rotor.from_euler("xyz", angles)
-    return Inertial(inertia, mass, required_number(mass, "value"), entries, center, rotor, texts)
+    amount = required_number(mass, "value")
+    return Inertial(inertia, mass, amount, entries, center, rotor, texts, doubts=doubts)
 
 
 def required_number(node: Node, attribute: str) -> float:

@@ -128,8 +128,16 @@ def test_rates_are_those_of_the_motion():
         errors.append((found - state.omega_body).norm().max())
     assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 2.8)
     assert errors[-1] < 1e-5
-    with pytest.raises(ValueError, match=r"rotors of shape \(n,\), n >= 2"):
-        ph.rates_from_attitude([0], Rotor.identity(1))
+
+
+def test_rates_need_two_attitudes():
+    for R in (Rotor.identity(1), Rotor.identity(), Rotor.identity((2, 2))):
+        with pytest.raises(ValueError, match=r"rates need at least 2 attitudes, .*, got \("):
+            ph.rates_from_attitude([0], R)
+    with pytest.raises(ValueError, match=r"a spline needs .* of shape \(n,\), n >= 2, got shape \(1,\)"):
+        ph.RotorSpline([0], Rotor.identity(1))
+    with pytest.raises(TypeError, match=r"come first: rates_from_attitude\(times, R\)"):
+        ph.rates_from_attitude(Rotor.identity(2), [0, 1])
 
 
 def test_there_and_back():

@@ -125,7 +125,8 @@ class RotorSpline:
         if not isinstance(rotors, Multivector) and isinstance(rotors, list | tuple) and rotors:
             rotors = stack(rotors)
         if not isinstance(rotors, Rotor) or len(rotors.shape) != 1 or rotors.shape[0] < 2:
-            raise ValueError(f"a spline needs a batch of rotors of shape (n,), n >= 2, got {rotors!r}")
+            found = f"shape {rotors.shape}" if isinstance(rotors, Rotor) else f"{rotors!r:.80}"
+            raise ValueError(f"a spline needs a batch of rotors of shape (n,), n >= 2, got {found}")
         if not is_float(rotors._data) or foreign_kind(times) is not None:
             raise TypeError(
                 "a spline needs NumPy floats; convert exact numbers with .astype(float), the arrays of other "

@@ -127,5 +127,11 @@ def rates_from_attitude(times: Any, R: Rotor) -> Multivector:
     >>> ph.rates_from_attitude(times, R)["e12"][:3].round(4)
     array([0.5, 0.5, 0.5])
     """
+    if isinstance(times, Rotor):
+        raise TypeError("the times of attitudes come first: rates_from_attitude(times, R)")
+    if isinstance(R, Rotor) and (len(R.shape) != 1 or R.shape[0] < 2):
+        raise ValueError(
+            f"rates need at least 2 attitudes, as rotors (n,) at increasing times, got {R.shape}"
+        )
     spline = RotorSpline(times, R)
     return spline.omega_body(spline.times)

@@ -100,6 +100,10 @@ def test_what_is_missing_is_asked_for_by_option(convert, tmp_path):
         (("none.zarr", "b.csv"), 3, "none.zarr: no such store"),
         (("none.urdf", "b.xml"), 3, "none.urdf: no such file"),
         (("none.stl", "b.urdf", "--mass", "1"), 3, "none.stl: no such file"),
+        (("bad.obj", "b.urdf"), 2, "a mesh needs --density in kg/m³ or --mass in kg, and not both"),
+        (("bad.obj", "b.urdf", "--mass", "1"), 3, "bad.obj: error: the mesh has no triangles"),
+        (("bad.obj", "b.stl"), 3, "bad.obj: error: the mesh has no triangles"),
+        (("a.nc", "bad.csv/b.csv"), 1, "bad.csv is not a directory"),
         (("bad.csv", "b.nc"), 3, "bad.csv:1:1: error: column 'q' is not known"),
         (("mine.zarr", "b.csv"), 3, "mine.zarr: error: a file, and a Zarr store is a folder"),
         (("a.nc", "b.glb", "--scene", "a.toml"), 1, "a.toml gives no mesh, solid or mass; add one to its"),
@@ -110,6 +114,7 @@ def test_what_is_missing_is_asked_for_by_option(convert, tmp_path):
 def test_wrong_uses(arguments, code, expected, convert, tmp_path):
     MOTION.save("a.nc")
     (tmp_path / "bad.csv").write_text("time,q\n0,1\n")
+    (tmp_path / "bad.obj").write_text("v 0 0 0\n")
     (tmp_path / "foreign.csv").write_text("mine")
     (tmp_path / "mine.zarr").write_text("mine")
     (tmp_path / "a.toml").write_text(SCENE)
@@ -118,3 +123,25 @@ def test_wrong_uses(arguments, code, expected, convert, tmp_path):
     assert expected in done.stderr
     assert (tmp_path / "foreign.csv").read_text() == "mine"
     assert convert("a.nc", "foreign.csv", "--force").returncode == 0
+
+
+def test_a_body_of_an_ensemble_becomes_a_motion(convert, command, tmp_path):
+    """As the error of `polhode view` for a file of many bodies says."""
+    (tmp_path / "many.toml").write_text(SCENE + "[ensemble]\nnumber = 3\nattitude = 'uniform'\n")
+    assert command("run", "many.toml", "-o", "many.nc", "--no-figures", "--quiet").returncode == 0
+    done = command("view", "many.nc", "--no-browser")
+    remedy = done.stderr.partition("polhode convert ")[2].split()
+    assert convert(*remedy).returncode == 0
+    motion, member = ph.Trajectory.read("one.nc"), ph.io.read("many.nc", body=0)
+    assert np.array_equal(motion.rotor.components, member.rotor.components)
+    assert np.array_equal(motion.energy, member.energy)
+    assert not motion.position.components.any()
+
+
+def test_a_scene_gives_a_table_its_inertia(convert, tmp_path):
+    MOTION.save("a.csv")
+    (tmp_path / "a.toml").write_text(SCENE.replace("[initial]", "mass = 6\n[initial]"))
+    assert convert("a.csv", "a.glb", "--scene", "a.toml").returncode == 0
+    motion = ph.io.read("a.csv").trajectory(ph.Inertia.from_principal_moments(1, 2, 3))
+    ph.io.write_gltf(motion, "b.glb", mass=6)
+    assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()

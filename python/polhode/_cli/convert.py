@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import argparse
 import re
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode._cli import common
 from polhode._cli.common import add_command, add_force, check_written, positive, whole_number
 from polhode._support.files import UnreadableError, words_of
+
+if TYPE_CHECKING:
+    from polhode._io.history import AttitudeHistory
+    from polhode._mechanics.bodies import Inertia
+    from polhode._mechanics.trajectory import Trajectory
 
 # Options that a reader takes, and those of the written file; each is given to the format that has it.
 _READING = (
@@ -99,7 +105,7 @@ def _convert(options: argparse.Namespace) -> int:
 def _convert_motion(options: argparse.Namespace) -> int:
     from polhode._io import bodies
     from polhode._io.convert import OPTIONS, READ, WRITTEN, form_of, load, write
-    from polhode._io.history import FileError
+    from polhode._io.history import AttitudeHistory, FileError
 
     try:
         of_target = form_of(options.target, (*WRITTEN, *bodies.WRITTEN), "written")
@@ -126,6 +132,9 @@ def _convert_motion(options: argparse.Namespace) -> int:
         raise _unreadable(error) from None
     except ValueError as error:
         raise _refused(options, error) from None
+    inertia = shape.pop("inertia", None)
+    if isinstance(motion, AttitudeHistory):
+        motion = _completed(motion, inertia, of_target)
     try:
         write(motion, target, **shape, **{name: x for name, x in given.items() if name in takes["write"]})
     except FileNotFoundError as error:  # a kernel
@@ -134,6 +143,20 @@ def _convert_motion(options: argparse.Namespace) -> int:
         raise _refused(options, error) from None
     print(f"Written\n  {target}")
     return common.OK
+
+
+def _completed(history: AttitudeHistory, inertia: Inertia | None, form: str) -> AttitudeHistory | Trajectory:
+    """Return a history with the inertia of a scene if it has none; for netCDF a motion that can be shown.
+
+    That of a body of an ensemble has all quantities of a motion, but no position where this is the origin.
+    """
+    if history.inertia is None and inertia is not None:
+        history = replace(history, inertia=inertia)
+    known = history.inertia, history.omega_body, history.momentum_space, history.energy
+    if form == "nc" and history.wheel_speed is None and all(x is not None for x in known):
+        assert history.inertia is not None
+        return history.trajectory(history.inertia)
+    return history
 
 
 def _convert_bodies(options: argparse.Namespace) -> int:
@@ -157,6 +180,9 @@ def _convert_bodies(options: argparse.Namespace) -> int:
     except (DocumentError, FileNotFoundError, IsADirectoryError) as error:
         raise _unreadable(error) from None
     except ValueError as error:
+        place, colon, words = str(error).partition(f"{options.source}: ")
+        if colon and not place:  # a mesh that encloses no body
+            raise UnreadableError(f"{options.source}: error: {words}") from None
         raise _refused(options, error) from None
     print("\n".join(["Written", f"  {target}", *lines]))
     return common.OK
@@ -195,7 +221,7 @@ def _target(options: argparse.Namespace) -> Path:
 
 
 def _shape(name: str) -> dict[str, Any]:
-    """Return the surface of a scene's body about the point whose position a motion has, or its mass."""
+    """Return the surface of a scene's body about the point of a motion's position, or mass and inertia."""
     scene = common.read_scene(name)
     found = scene.surface() if name != "-" else None
     if found is not None:
@@ -204,7 +230,7 @@ def _shape(name: str) -> dict[str, Any]:
             vertices = vertices - np.asarray(scene.body.center_of_mass.components)
         return {"surface": (vertices, triangles)}
     if scene.has_mass:
-        return {"mass": scene.body.mass}
+        return {"mass": scene.body.mass, "inertia": scene.body.inertia}
     raise ValueError(f"{name} gives no mesh, solid or mass; add one to its table [body]")
 
 
@@ -213,7 +239,7 @@ def _with_flags(message: str) -> str:
     message = message.replace("surface=(vertices, triangles)", "--scene=FILE.toml")
     message = message.replace("kernels=[FILE, ...]", "--kernel FILE for each")
     names = "|".join({*_READING, *_WRITING, *_OF_BODIES})
-    return re.sub(rf"\b({names})=", lambda found: f"{_flag(found[1])}=", message)
+    return re.sub(rf"\b({names})=( ?)", lambda x: _flag(x[1]) + (x[2] or "="), message)
 
 
 def _flag(name: str) -> str:

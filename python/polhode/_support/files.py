@@ -89,6 +89,8 @@ def form_of(path: str | os.PathLike[str], what: str) -> str:
 def check_target(target: Path) -> None:
     """Raise an OSError that names the path if a file cannot be written there."""
     with _naming(target):
+        if target.parent.exists() and not target.parent.is_dir():
+            raise OSError(f"{target.parent} is not a directory")
         if not target.parent.is_dir():
             raise OSError(f"no such directory: {target.parent}; create it first")
         if target.exists() and not target.is_file():

@@ -167,6 +167,42 @@ def test_a_scene_may_have_any_name(tmp_path, command):
     assert command("check", "small").returncode == 0
 
 
+# --- usage
+
+
+def test_options_may_stand_between_arguments(tmp_path, command):
+    (tmp_path / "a.toml").write_text(SCENE)
+    (tmp_path / "b.toml").write_text(SCENE)
+    done = command("check", "a.toml", "--mass", "2", "b.toml")
+    assert (done.returncode, done.stdout.count(": ok, ")) == (0, 2)
+    done = command("eval", "--let", "a=2", "a", "--json", "a a")
+    assert [one["repr"] for one in json.loads(done.stdout)] == ["2", "4"]
+    done = command("figure", "polhode", "-o", "a.jpg", "a.toml")
+    assert (done.returncode, "not 'a.jpg'" in done.stderr) == (2, True)
+    done = command("figure", "polhode", "--view", "1,2", "absent.toml", "-o", "a.svg")
+    assert done.stderr == "absent.toml: error: no such file\n"
+    for arguments in (("run", "a.toml", "--quiet", "b.toml"), ("figure", "1", "-o", "a.svg", "a", "b")):
+        done = command(*arguments)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert "unrecognized arguments: b" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("first", "remedy"),
+    [
+        ("a.toml", "'a.toml' is not a command; try `polhode run a.toml`"),
+        ("a.nc", "'a.nc' is not a command; try `polhode view a.nc`"),
+        ("chekc", "'chekc' is not a command; did you mean `polhode check`?"),
+        ("zzz", "invalid choice: 'zzz' (choose from"),
+        ("--rum", "the following arguments are required: COMMAND"),
+    ],
+)
+def test_a_first_argument_that_is_not_a_command(first, remedy, command):
+    done = command(first)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert remedy in done.stderr
+
+
 # --- runs that fail
 
 

@@ -567,8 +567,9 @@ def test_the_command_draws_figures(scene, tmp_path):
         (["pohlode", "small.toml", "-o", "a.svg"], 2, "invalid choice: 'pohlode'"),
         (["locus", "small.toml", "-o", "a.svg"], 1, "kind 'locus' is for a body held at a fixed point"),
         # Before the scene is read and run.
-        (["drift", "none.toml", "-o", "a.svg", "--view", "1,2"], 1, "not for 'drift'"),
-        (["scene", "none.toml", "-o", "a.svg", "--view", "nan,2"], 1, "view is (nan, 2.0); it must be"),
+        (["drift", "none.toml", "-o", "a.svg", "--view", "1,2"], 2, "not for 'drift'"),
+        (["drift", "none.toml", "-o", "a.svg", "--width", "big"], 2, "width is 'big'; it must be a length"),
+        (["scene", "none.toml", "-o", "a.svg", "--view", "nan,2"], 2, "view is (nan, 2.0); it must be"),
         (["scene", "small.toml", "-o", "a.svg", "--view", "-30,-20", "--time", "-1"], 1, "time is -1 s"),
         (["polhode", "none.toml", "-o", "a.svg"], 3, "none.toml"),
         (["polhode", "small.toml", "-o", "none/a.svg"], 1, "no such directory: none"),

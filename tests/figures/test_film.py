@@ -275,7 +275,7 @@ def test_the_command_keeps_films_of_others(name, scene):
             2,
             "expected WIDTHxHEIGHT in pixels, such as 1280x720",
         ),
-        (["small.toml", "-o", "a.gif", "--fps", "-1"], 1, "fps is -1.0"),
+        (["small.toml", "-o", "a.gif", "--fps", "-1"], 2, "fps is -1.0"),
         (["small.toml"], 2, "required: -o"),
         (["-o", "a.gif"], 2, "required: SCENE.toml"),
         ([str(EXAMPLES / "toutatis-uncertain.toml"), "-o", "a.gif"], 1, "has 100000 bodies"),

@@ -25,6 +25,24 @@ Report = Callable[[int, float], object]
 _STDIN, _LARGEST = "<stdin>", 10_000_001
 
 
+class CommandParser(argparse.ArgumentParser):
+    """Parser of a command whose options may also stand between its arguments."""
+
+    _is_retry = False
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse as argparse does, and once more if it leaves arguments that follow an option."""
+        found = super().parse_known_args(args, namespace)
+        extras = found[1]
+        if self._is_retry or not extras or any(x.startswith("-") and x != "-" for x in extras):
+            return found
+        self._is_retry = True
+        try:
+            return self.parse_known_intermixed_args(args, namespace)
+        finally:
+            self._is_retry = False
+
+
 def add_command(
     commands: Any, name: str, run: Callable[[argparse.Namespace], int], **words: str
 ) -> argparse.ArgumentParser:

@@ -85,11 +85,15 @@ def _figure(options: argparse.Namespace) -> int:
     from polhode._figures.registry import check, figure, write
     from polhode._figures.style import Sheet, width_of
 
-    sheet = Sheet(caption=options.caption, width=width_of(options.width))
+    try:
+        sheet = Sheet(caption=options.caption, width=width_of(options.width))
+        if not of_handout:
+            check(options.what, options.view, options.time)
+    except ValueError as mistake:
+        error(str(mistake))
     if of_handout:
         drawn = handout_figure(int(options.what), sheet)
     else:
-        check(options.what, options.view, options.time)
         drawn = figure(_motion(options.scene), options.what, sheet, options.view, options.time)
     write(drawn, path)
     print(f"Written\n  {path}")
@@ -101,7 +105,10 @@ def _film(options: argparse.Namespace) -> int:
     from polhode._outputs import film
 
     path = Path(options.output)
-    planned(path, options.seconds, options.fps, options.size, options.view)
+    try:
+        planned(path, options.seconds, options.fps, options.size, options.view)
+    except ValueError as mistake:
+        options.parser.error(str(mistake))
     check_written([path], options.force)
     trajectory = _motion(options.scene)
     with progress(path.name) as report:

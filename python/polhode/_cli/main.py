@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import io
 import json
 import os
@@ -10,7 +11,7 @@ import re
 import signal
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -42,7 +43,8 @@ def main(arguments: list[str] | None = None) -> int:
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
     try:
         _restore_ctrl_c()
-        options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
+        given = _with_values(sys.argv[1:] if arguments is None else arguments)
+        options = _parser(given).parse_args(given)
         with _printed_warnings():
             code = int(options.command(options))
         print(end="", flush=True)
@@ -94,7 +96,8 @@ def _complain(message: str, code: int) -> int:
     return code
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(given: Sequence[str] = ()) -> argparse.ArgumentParser:
+    """Return the parser; a usage error if what was given begins with a file or a misspelt command."""
     parser = argparse.ArgumentParser(
         prog="polhode",
         description="Rigid-body motion in the language of geometric algebra.",
@@ -107,7 +110,7 @@ def _parser() -> argparse.ArgumentParser:
     from polhode._cli import completion, convert, examples, figure, fit, schema
 
     completion.add(parser)
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=common.CommandParser)
     _add_scenes(commands)
     _add_formulas(commands)
     figure.add(commands)
@@ -115,7 +118,19 @@ def _parser() -> argparse.ArgumentParser:
     convert.add(commands)
     schema.add(commands)
     examples.add(commands)
+    if given and given[0] not in commands.choices and (remedy := _remedy(given[0], commands.choices)):
+        parser.error(f"{given[0]!r} is not a command; {remedy}")
     return parser
+
+
+def _remedy(first: str, commands: Iterable[str]) -> str | None:
+    """Return what to type for a first argument that is not a command, if this is known."""
+    if first.startswith("-"):
+        return None
+    if command := {".toml": "run", ".nc": "view", ".md": "view"}.get(Path(first).suffix.lower()):
+        return f"try `polhode {command} {first}`"
+    close = difflib.get_close_matches(first, commands, n=1)
+    return f"did you mean `polhode {close[0]}`?" if close else None
 
 
 def _add_scenes(commands: Any) -> None:

@@ -64,7 +64,8 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     """
     try:
         if path == Path("-"):
-            path, content = Path("<stdin>"), _standard_input()
+            path = Path("<stdin>")
+            content = _standard_input()
         else:
             require_csv(path)
             content = contents(path, copies=4)

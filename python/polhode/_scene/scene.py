@@ -186,7 +186,9 @@ class Scene:
             if os.path.lexists(path):
                 raise
             named = Path(f"{os.fsdecode(path)}.toml")
-            raise SceneNotFoundError(f"{error}; use {named}" if named.is_file() else str(error)) from None
+            raise SceneNotFoundError(
+                f"{error}; use {named}" if os.path.isfile(named) else str(error)
+            ) from None
         return Scene(Path(path), core.fields()["times"], EnsembleSpec._of(core, table.sha256), core)
 
     def __post_init__(self) -> None:

@@ -76,20 +76,27 @@ def require_csv(path: str | os.PathLike[str]) -> None:
 
 def _suffix_by_content(path: str | os.PathLike[str]) -> str | None:
     """Return the suffix that files with such first bytes have."""
-    with open(path, "rb") as file:
-        head = file.read(_HEAD)
+    head = _head(path)
     return next((suffix for start, suffix in _HEADS.items() if head.startswith(start)), None)
 
 
 def _kind_by_content(path: str | os.PathLike[str]) -> str | None:
     if suffix := _suffix_by_content(path):
         return _KINDS[suffix]
-    with open(path, "rb") as file:
-        head = file.read(_HEAD)
+    head = _head(path)
     first = head.lstrip().partition(b"\n")[0].replace(b",", b" ").replace(b";", b" ").split()
     if first and all(_is_number(x) for x in first):
         return _NUMBERS
     return None
+
+
+def _head(path: str | os.PathLike[str]) -> bytes:
+    """Return the first bytes of a file; none if they cannot be read, which its reader reports."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(_HEAD)
+    except OSError:
+        return b""
 
 
 def _is_number(text: bytes) -> bool:

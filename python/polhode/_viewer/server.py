@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import secrets
 import sys
 import threading
@@ -96,7 +97,7 @@ def run(options: argparse.Namespace, bar: Bar) -> int:
 
 def _about_table(path: Path) -> str:
     """Return why a table is not shown, and what to do with it."""
-    if path.suffix.lower() == ".csv" and path.is_file():
+    if path.suffix.lower() == ".csv" and os.access(path, os.R_OK) and path.is_file():
         with path.open(encoding="utf-8", errors="replace") as file:
             if columns_of("attitude")[0] not in file.readline(_LINE):
                 return "not a motion; `polhode fit` fits a body to measured rates and attitudes"

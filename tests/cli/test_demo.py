@@ -91,12 +91,6 @@ def test_the_demo_keeps_files_of_others(name, bundle, tmp_path, capsys):
     assert (tmp_path / name).read_bytes() != b"mine"
 
 
-def test_the_demo_in_a_folder_that_is_a_file(tmp_path, capsys):
-    (tmp_path / "taken").touch()
-    assert main.main(["demo", "-o", str(tmp_path / "taken")]) == 1
-    assert f"{tmp_path / 'taken'}: file exists" in capsys.readouterr().err
-
-
 # --- examples
 
 
@@ -156,7 +150,6 @@ def test_no_file_is_replaced(tmp_path):
         (["t-handel"], 2, "unknown example 't-handel'; did you mean t-handle?"),
         (["scenes/earth"], 2, "unknown example 'scenes/earth'"),
         (["zzz"], 2, "unknown example 'zzz'; `polhode examples` lists them"),
-        (["earth", "-o", "absent"], 1, "no such directory: absent; create it first"),
     ],
 )
 def test_examples_that_cannot_be_copied(arguments, code, message, tmp_path):
@@ -164,6 +157,16 @@ def test_examples_that_cannot_be_copied(arguments, code, message, tmp_path):
     assert done.returncode == code
     assert message in done.stderr
     assert names(tmp_path) == set()
+
+
+def test_a_folder_is_created_or_is_an_error(tmp_path):
+    assert polhode("examples", "earth", "-o", "a/b", cwd=tmp_path).returncode == 0
+    assert names(tmp_path / "a" / "b") == {"earth.toml"}
+    (tmp_path / "file").write_text("mine")
+    for command in (("examples", "earth"), ("demo",)):
+        done = polhode(*command, "-o", "file", cwd=tmp_path)
+        assert done.returncode == 1
+        assert done.stderr == "polhode: error: file is not a folder; choose another one with -o\n"
 
 
 def test_examples_that_are_missing(tmp_path, monkeypatch, capsys):

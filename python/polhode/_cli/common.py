@@ -54,8 +54,16 @@ def add_command(
 
 def add_folder(parser: argparse.ArgumentParser, what: str) -> None:
     """Add the option of a folder to write to."""
-    words = f"folder for the {what}, default the current one"
+    words = f"folder for the {what}, created if missing, default the current one"
     parser.add_argument("-o", "--output", metavar="FOLDER", default=".", help=words)
+
+
+def made_folder(path: Path) -> Path:
+    """Return a folder to write to, created if it is missing; an OSError if this is not possible."""
+    if path.exists() and not path.is_dir():
+        raise NotADirectoryError(f"{path} is not a folder; choose another one with -o")
+    path.mkdir(parents=True, exist_ok=True)
+    return path
 
 
 def file_name(what: str) -> Callable[[str], str]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode._cli.common import DRIFTED, OK, add_command, add_folder, add_force, check_written
+from polhode._cli.common import DRIFTED, OK, add_command, add_folder, add_force, check_written, made_folder
 from polhode._support.arrays import Array
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def add(commands: Any) -> None:
         description="Run a T-handle in free flight: print its summary and a sketch, and write "
         "t-handle.html, a page that shows it in a browser. With matplotlib it also writes figures.",
     )
-    add_folder(demo, "files, created if missing")
+    add_folder(demo, "files")
     add_force(demo)
 
     words = "List the example scenes and lessons, or copy the named ones. Existing files are not replaced."
@@ -101,11 +101,10 @@ def _files(scene: Path) -> list[Path]:
 def _copy(files: list[Path], folder: Path) -> list[Path]:
     """Copy files into a folder, all or none, and return the copies; an OSError if one exists."""
     targets = {folder / file.name: file.read_bytes() for file in files}
-    if not folder.is_dir():
-        raise FileNotFoundError(f"no such directory: {folder}; create it first")
     for path in targets:
         if path.exists() or path.is_symlink():
             raise FileExistsError(f"{path} exists; move it, or choose another folder with -o")
+    made_folder(folder)
     for path, content in targets.items():
         with path.open("xb") as file:
             file.write(content)
@@ -120,8 +119,7 @@ def _demo(options: argparse.Namespace) -> int:
     from polhode._scene.scene import Scene
     from polhode._support.files import write_atomically
 
-    folder = Path(options.output)
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = made_folder(Path(options.output))
     check_written([folder / name for name in (_PAGE, *_FIGURES)], options.force)
     scene = Scene.read(examples()[NAME])
     trajectory = scene.run()

@@ -71,7 +71,8 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
             content = contents(path, copies=4)
         lines = content.decode("utf-8-sig").replace("\r\n", "\n").split("\n")
     except OSError as error:
-        raise UnreadableError(f"{path}: error: {(error.strerror or str(error)).lower()}") from None
+        remedy = "; give the path of a CSV file" if path.is_dir() else ""
+        raise UnreadableError(f"{path}: error: {(error.strerror or str(error)).lower()}{remedy}") from None
     except UnicodeDecodeError as error:
         raise UnreadableError(
             f"{path}: error: not UTF-8 text from byte {error.start} on; save the data as CSV in UTF-8"

@@ -114,7 +114,7 @@ def test_the_command_converts_scenes_and_robots(tmp_path, capsys, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "code", "expected"),
     [
-        (("a.stl", "b.urdf"), 2, "a mesh needs --density= in kg/m³ or --mass= in kg"),
+        (("a.stl", "b.urdf"), 2, "a mesh needs --density in kg/m³ or --mass in kg"),
         (("a.urdf", "b.stl"), 2, "a .urdf file has inertias, and no mesh for a .stl file"),
         (("a.nc", "b.urdf"), 2, "files that can be converted to .urdf end in .toml, .stl"),
         (("a.urdf", "b.xml", "--mass", "2"), 2, "--mass does not apply from .urdf to .xml"),

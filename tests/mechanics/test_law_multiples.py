@@ -89,8 +89,8 @@ def test_a_multiple_exerts_a_multiple(name):
 @pytest.mark.parametrize("name", LAWS)
 def test_a_law_minus_itself_exerts_nothing(name):
     law = LAWS[name]
-    not_negative = ("viscous_damping", "quadratic_damping", "quadratic_drag", "pd_control", "radiation_pressure")
-    if name in not_negative:
+    quadratic = ("quadratic_damping", "quadratic_drag")
+    if name in ("viscous_damping", "pd_control", "radiation_pressure", *quadratic):
         with pytest.raises(
             ValueError, match=rf"{name} cannot be multiplied by -1: .* formula takes any sign"
         ):

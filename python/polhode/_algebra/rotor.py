@@ -397,10 +397,10 @@ class Rotor(_native.Rotor, Multivector):
     def _misapplied(self, *more: Any, **named: Any) -> NoReturn:
         """Raise the TypeError for arguments that `apply` does not have."""
 
-        def apply(x: Any, *, out: Any = None) -> None: ...
+        def apply(self: Rotor, x: Any, *, out: Any = None) -> None: ...
 
         apply.__qualname__ = "Rotor.apply"
-        explains_calls(inverse="(~R)(x)")(apply)(None, *more, **named)
+        explains_calls(inverse="(~R)(x)")(apply)(self, None, *more, **named)
         raise AssertionError("the arguments fit")
 
     def _turn(self, X: Any, out: Any = None) -> Multivector:

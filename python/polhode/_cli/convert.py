@@ -17,7 +17,7 @@ from polhode._support.files import UnreadableError, words_of
 
 if TYPE_CHECKING:
     from polhode._io.history import AttitudeHistory
-    from polhode._mechanics.bodies import Inertia
+    from polhode._mechanics.inertia import Inertia
     from polhode._mechanics.trajectory import Trajectory
 
 # Options that a reader takes, and those of the written file; each is given to the format that has it.

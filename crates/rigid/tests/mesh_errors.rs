@@ -77,6 +77,12 @@ fn corrupt_obj() {
     let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     let face = |f: &str| obj(&format!("{vertices}{f}\n"));
     assert_eq!(obj("v 0 0 0\nv 1 zero 0\n"), format!("rock: line 2: 'zero' is not a number{end}"));
+    assert_eq!(
+        obj("# made by hand\nsolid rock\nendsolid\n"),
+        format!(
+            "rock: line 2: 'solid' begins neither a vertex, `v x y z`, nor a face, `f 1 2 3`, and no line does{end}"
+        )
+    );
     assert_eq!(obj("v 0 0 0 red\n"), format!("rock: line 1: 'red' is not a number{end}"));
     // Lines may end in a carriage return alone.
     assert_eq!(obj("v 0 0 0\rv 1 zero 0\r"), format!("rock: line 2: 'zero' is not a number{end}"));

@@ -2,34 +2,63 @@
 
 use super::member::{Member, Outcome};
 use super::scheduler::Scheduler;
-use crate::exact::free::FreeMotion;
+use crate::exact::free::{FreeBody, FreeMotions};
+use crate::exact::many::TIMES_IN_LANES;
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
 use crate::run::closed_form::{ClosedForm, ElapsedTime, check_kept};
 use crate::state::carried::Carried;
 use crate::state::checks::check_horizons;
 use crate::state::phase::Phase;
+use polhode_ga::rows::curve::TOGETHER;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use std::borrow::Cow;
+use std::array;
 
 /// The name of the method in certificates.
 const METHOD: &str = "exact";
 
 impl<'a> Scheduler<'a> {
-    /// Writes the motion of a free body, with the times in lanes; its momentum and energy are those of the start.
-    pub fn free(&self, mut member: Member<'a>) {
+    /// Writes the motions of free bodies, at most as many as there are lanes, and leaves none.
+    pub fn free(&self, motions: &mut FreeMotions<TOGETHER>, members: &mut Vec<Member<'a>>) {
+        let Some(last) = members.last() else { return };
+        let bodies: [FreeBody; TOGETHER] = array::from_fn(|l| {
+            let Member { frame, gyrostat, start, omega, .. } = members.get(l).unwrap_or(last);
+            FreeBody::in_frame(*frame, gyrostat.moments, start.rotor, *omega)
+        });
+        motions.set_up(&bodies);
+        let mut since = [0.0; TOGETHER];
+        for (since, member) in since.iter_mut().zip(&*members) {
+            *since = member.start.time;
+        }
+        if self.times.len() < TIMES_IN_LANES {
+            let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
+            for (index, &time) in self.times.iter().enumerate() {
+                motions.at(&since.map(|start| time - start), &mut rotors, &mut omegas);
+                for (l, Member { own, .. }) in members.iter_mut().enumerate() {
+                    own.rotors.as_chunks_mut().0[index] = rotors[l];
+                    own.omegas.as_chunks_mut().0[index] = omegas[l];
+                }
+            }
+        } else {
+            for (l, Member { own, .. }) in members.iter_mut().enumerate() {
+                let elapsed: Vec<f64> = self.times.iter().map(|time| time - since[l]).collect();
+                motions.flow(l).at_many(Threads::ONE, &elapsed, own.rotors, own.omegas);
+            }
+        }
+        for (l, member) in members.drain(..).enumerate() {
+            self.finish_free(member, motions.horizon(l, &bodies[l]));
+        }
+    }
+
+    /// Completes the motion of a free body from its rotors and angular velocities at the rounded times since the start;
+    /// momentum and energy are those of the start.
+    fn finish_free(&self, mut member: Member<'a>, horizon: f64) {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
-        let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);
         let center = self.center(body);
-        if let Err(error) = check_horizons(start.time, self.times, [motion.horizon(); 2]) {
+        if let Err(error) = check_horizons(start.time, self.times, [horizon; 2]) {
             return self.fail(body, own, METHOD, error);
         }
         let since = ElapsedTime::new(start.time, gyrostat, &[]);
-        let elapsed: Cow<'_, [f64]> = match start.time {
-            0.0 => self.times.into(),
-            _ => self.times.iter().map(|&time| since.elapsed(time).hi).collect(),
-        };
-        motion.at_many(Threads::ONE, &elapsed, own.rotors, own.omegas);
         let momentum = start.rotor.apply_bivector(start.momentum);
         own.momenta.as_chunks_mut::<3>().0.fill(momentum.0);
         own.energies.fill(gyrostat.kinetic(start.momentum));

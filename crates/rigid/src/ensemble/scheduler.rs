@@ -5,6 +5,7 @@ use super::columns::{Columns, lock};
 use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy, WIDE};
 use super::output::{Outputs, Share};
 use crate::error::SimulateError;
+use crate::exact::free::FreeMotions;
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::Method;
 use crate::methods::splitting::turns::Kind;
@@ -15,6 +16,7 @@ use crate::run::limits::{Samples, StepBounds, samples};
 use crate::run::output::BodyOutput;
 use crate::run::{Options, Progress, check_body};
 use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::rows::curve::TOGETHER;
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex, OnceLock};
@@ -101,10 +103,13 @@ impl<'a> Scheduler<'a> {
         if self.is_stopped() { None } else { lock(&self.queue).next() }
     }
 
-    /// The next body for adaptive steps in lanes. Bodies before it that lanes do not support are solved at once.
+    /// The next body for adaptive steps in lanes. Bodies before it that lanes do not support are solved at once, free
+    /// ones as many at a time as there are lanes.
     pub fn next_member(&self, progress: &mut dyn FnMut(Progress) -> bool) -> Option<Member<'a>> {
         let method = self.options.method.unwrap_or(METHOD);
         let adapts = method == METHOD && self.ensemble.in_lanes(false);
+        let (mut free, mut motions) = (Vec::new(), FreeMotions::default());
+        let mut next = None;
         while let Some((body, own)) = self.next_body() {
             if !adapts {
                 self.run_single(body, own, progress);
@@ -112,10 +117,16 @@ impl<'a> Scheduler<'a> {
             }
             let member = self.member(body, own);
             match self.strategy(&member) {
-                Strategy::Lanes => return Some(member),
+                Strategy::Lanes => {
+                    next = Some(member);
+                    break;
+                }
                 Strategy::Free => {
-                    self.free(member);
-                    self.report(progress);
+                    free.push(member);
+                    if free.len() == TOGETHER {
+                        self.free(&mut motions, &mut free);
+                        self.report(progress);
+                    }
                 }
                 Strategy::Exact(closed) => {
                     self.exact(member, &closed);
@@ -124,7 +135,8 @@ impl<'a> Scheduler<'a> {
                 Strategy::Single => self.run_single(body, member.own, progress),
             }
         }
-        None
+        self.free(&mut motions, &mut free);
+        next
     }
 
     /// The plan of a body for equal steps in lanes, if they are supported.

@@ -25,7 +25,7 @@ use std::ops::Range;
 pub const TILE: usize = 1024;
 
 /// Number of times from which lanes of times are faster than lanes of motions.
-const TIMES_IN_LANES: usize = 48;
+pub(crate) const TIMES_IN_LANES: usize = 48;
 
 /// Number of states from which another thread pays.
 const SHARED: usize = 2048;

@@ -26,6 +26,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, String> {
     if let Some((line, statement)) = begun {
         file.statement(&statement, line)?;
     }
+    if let (true, Some((line, word))) = (file.vertices.is_empty() && file.faces.is_empty(), &file.skipped) {
+        let what =
+            format!("{word} begins neither a vertex, `v x y z`, nor a face, `f 1 2 3`, and no line does");
+        return Err(Place::Line(*line).corrupt(what));
+    }
     // Faces may come before their vertices.
     for (face, &line) in file.faces.iter().zip(&file.lines) {
         if let Some(&i) = face.iter().find(|&&i| i as usize >= file.vertices.len()) {
@@ -41,6 +46,8 @@ struct File {
     faces: Vec<[u32; 3]>,
     /// The line of each face, for errors.
     lines: Vec<usize>,
+    /// The first other statement: its line and its first word.
+    skipped: Option<(usize, String)>,
 }
 
 impl File {
@@ -60,6 +67,7 @@ impl File {
                 self.faces.extend(fan(corners, place)?);
                 self.lines.resize(self.faces.len(), line);
             }
+            [word, ..] if self.skipped.is_none() => self.skipped = Some((line, quoted(word))),
             _ => {}
         }
         Ok(())

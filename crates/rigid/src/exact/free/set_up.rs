@@ -12,6 +12,7 @@ use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
 use crate::numerics::lanes::Phase;
 use crate::state::checks::check_moments;
+use polhode_ga::rows::curve::{TOGETHER, together};
 use polhode_ga::simd::lanes::{Work, fastest};
 use polhode_ga::{Bivector, Rotor};
 use std::f64::consts::PI;
@@ -34,6 +35,11 @@ impl FreeBody {
         let (frame, moments) = (inertia.principal_frame(), inertia.principal_moments());
         check_moments(moments)?;
         Ok(FreeBody { moments, frame, rotor: rotor * frame, omega: frame.reverse().apply_bivector(omega) })
+    }
+
+    /// From principal axes to space, and with the frame from principal axes to those of the body; positive moments.
+    pub(crate) fn in_frame(frame: Rotor, moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeBody {
+        FreeBody { moments, frame, rotor, omega }
     }
 
     /// Its motion.
@@ -83,6 +89,14 @@ impl<const W: usize> FreeMotions<W> {
         horizon(self.orbits[l].as_ref(), self.scales[l], body.omega)
     }
 
+    /// The states of one at any times.
+    pub fn flow(&self, l: usize) -> flow::Flow {
+        flow::Flow(match &self.hyperbolic {
+            Some(flow) if !self.is_circular[l] => Form::FreeHyperbolic(flow.take(l)),
+            _ => Form::FreeCircular(self.circular.take(l)),
+        })
+    }
+
     /// The lanes of the first `count` motions: the circular and the hyperbolic ones.
     pub fn lanes(&self, count: usize) -> [Vec<usize>; 2] {
         let (circular, hyperbolic) = (0..count).partition(|&l| self.is_circular[l]);
@@ -92,6 +106,25 @@ impl<const W: usize> FreeMotions<W> {
     /// Replaces the motions by those of other bodies. Each has the bits that it has alone.
     pub fn set_up(&mut self, bodies: &[FreeBody; W]) {
         fastest(SetUp { bodies, motions: self });
+    }
+}
+
+impl FreeMotions<TOGETHER> {
+    /// States of all at times of their own: rows of four rotor components and of three of the angular velocity.
+    pub fn at(
+        &self,
+        times: &[f64; TOGETHER],
+        rotors: &mut [[f64; 4]; TOGETHER],
+        omegas: &mut [[f64; 3]; TOGETHER],
+    ) {
+        together(&self.circular, times, rotors, omegas);
+        if let Some(hyperbolic) = &self.hyperbolic {
+            let (mut r, mut w) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
+            together(hyperbolic, times, &mut r, &mut w);
+            for l in (0..TOGETHER).filter(|&l| !self.is_circular[l]) {
+                (rotors[l], omegas[l]) = (r[l], w[l]);
+            }
+        }
     }
 }
 

@@ -133,6 +133,7 @@ impl<'a> BodyRun<'a> {
     ) -> Result<(), SimulateError> {
         self.sweep.steps += 1;
         self.sweep.longest = self.sweep.longest.max(h.abs());
+        self.sweep.is_sharp |= self.controller.is_sharp;
         if !next.is_finite(l) {
             return Err(SimulateError::Diverged { time: next.time.0[l] });
         }

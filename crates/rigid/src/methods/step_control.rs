@@ -14,6 +14,10 @@ const STIFF_TURN: f64 = 0.02;
 /// Runs of fewer steps than this are completed even if stiff.
 const MANY: f64 = 1e5;
 
+/// A step no longer than twice the one before it, whose error is this many tolerances, has met a sharp change of the laws:
+/// where they are smooth, the error grows by less than 2⁸.
+const SHARP: f64 = 1e3;
+
 /// Chooses the lengths of adaptive steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepController {
@@ -21,17 +25,31 @@ pub(crate) struct StepController {
     next: f64,
     /// The length of the current step, in s.
     cut: f64,
+    /// Whether it ends at a stop.
+    stops: bool,
     /// The longest allowed, in s.
     longest: f64,
     /// Whether the previous step was rejected.
     refused: bool,
+    /// The length of the last accepted step, in s; 0 at the start and where it ended at a stop.
+    accepted: f64,
+    /// Whether a step has met a sharp change of the laws.
+    pub is_sharp: bool,
 }
 
 impl StepController {
     /// With a guess of the first step and the longest allowed, in s.
     pub fn new(first: f64, longest: f64) -> StepController {
         let first = first.min(longest);
-        StepController { next: first, cut: first, longest, refused: false }
+        StepController {
+            next: first,
+            cut: first,
+            stops: false,
+            longest,
+            refused: false,
+            accepted: 0.0,
+            is_sharp: false,
+        }
     }
 
     /// Where a step ends on the way from one time to another.
@@ -44,7 +62,7 @@ impl StepController {
         if to == from || self.refused && cut < 1e-14 * from.abs() {
             return Err(SimulateError::StepTooSmall { time: from, step: cut });
         }
-        self.cut = cut;
+        (self.cut, self.stops) = (cut, to == time);
         Ok(to)
     }
 
@@ -54,6 +72,7 @@ impl StepController {
         let h = h.abs();
         // NaN too.
         if error.is_nan() || error > 1.0 {
+            self.is_sharp |= h <= 2.0 * self.accepted && !(error <= SHARP);
             self.next = h * if error.is_finite() { (0.9 * error.powf(-0.125)).max(0.2) } else { 0.2 };
             self.refused = true;
             return false;
@@ -62,7 +81,7 @@ impl StepController {
         // A step cut short by a stop says little about the possible length.
         self.next = if self.cut < self.next { self.next.max(h * growth) } else { h * growth };
         self.next = self.next.min(self.longest);
-        self.refused = false;
+        (self.refused, self.accepted) = (false, if self.stops { 0.0 } else { h });
         true
     }
 }

@@ -38,6 +38,13 @@ const LEAP: f64 = 6.0;
 /// A difference that falls faster than this multiple of the order is small by chance.
 const FASTEST_FALL: f64 = 1.25;
 
+/// Two sweeps over a sharp change of the laws may agree by chance: a third one is compared too, and of the difference of
+/// the first two this fraction counts.
+const LUCKY: f64 = 0.1;
+
+/// The order of any method where a law has kinks.
+const ORDER_AT_KINKS: f64 = 2.0;
+
 /// Below this, the error estimate of a step is rounding.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-16;
 
@@ -280,7 +287,7 @@ impl Convergence {
             if error <= self.accuracy.acceptable && self.magnification.is_some() {
                 return Ok(Some(self.converged(fine, error)));
             }
-            let least = if stuck { error } else { self.floor(error / rounding, fine.steps) };
+            let least = if stuck { error } else { self.floor(error.min(1.0) / rounding, fine.steps) };
             let reached = least.max(if rounding > LINEAR { 1.0 } else { 0.0 });
             return Err(SimulateError::NotConverged {
                 rtol: self.accuracy.goal,
@@ -320,18 +327,26 @@ impl Convergence {
                 let sum = if tolerance == LEAST_TOLERANCE { 0.0 } else { sum };
                 return (difference.max(sum), None);
             }
-        }
-        if !self.scales.is_smooth {
-            return (difference, Some(shorter));
+            if !self.scales.is_smooth || coarse.is_sharp || fine.is_sharp {
+                // Steps cannot be shorter than this, so there is no third sweep.
+                let found = self.last.is_some() || tolerance == LEAST_TOLERANCE;
+                let before = self.last.map_or(0.0, |(before, _)| before * LUCKY);
+                return (if found { difference.max(before) } else { f64::INFINITY }, Some(shorter));
+            }
         }
         let order = f64::from(self.accuracy.order);
+        // Sweeps with steps of s differ by less than the error if s^q < 2.
+        let least = |order: f64| (shorter.powf(TRUSTED * order) - 1.0).min(1.0);
+        if !self.scales.is_smooth {
+            return (difference / least(order.min(ORDER_AT_KINKS)), Some(shorter));
+        }
         let last = self.last.filter(|&(before, _)| before <= RESOLVED);
         let lucky = last.map_or(0.0, |(before, _)| before * shorter.powf(-FASTEST_FALL * order));
         let difference = difference.max(lucky);
         let exponent = last.map_or(ASSUMED * order, |(before, by)| {
             TRUSTED * ((before / difference).ln() / by.ln()).clamp(0.0, order)
         });
-        (difference / (shorter.powf(exponent) - 1.0).max(1.0), Some(shorter))
+        (difference / (shorter.powf(exponent) - 1.0).max(least(order)), Some(shorter))
     }
 
     fn converged(&self, sweep: Sweep, error: f64) -> Converged {

@@ -92,6 +92,8 @@ pub(crate) struct Sweep {
     pub errors: f64,
     /// The longest step.
     pub longest: f64,
+    /// Whether an adaptive step has met a sharp change of the laws.
+    pub is_sharp: bool,
     pub steps: u64,
     /// Number of pieces of steps in which events of a centre of mass in closed form were sought.
     pub pieces: u64,
@@ -267,6 +269,7 @@ impl Integrator<'_> {
             if cursor.controller.judge(to - from, error / tolerance) {
                 sweep.longest = sweep.longest.max((to - from).abs());
                 sweep.errors += error;
+                sweep.is_sharp |= cursor.controller.is_sharp;
                 self.arrive(cursor, next, sweep, done)?;
                 let turn = self.body.omega(next.phase.momentum).norm() * (to - from);
                 self.bounds.limit.check(sweep.steps, to - from, turn, || done(to))?;

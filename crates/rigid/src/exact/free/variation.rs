@@ -120,8 +120,10 @@ struct Functions {
     cn: f64,
     sn: f64,
     dn: f64,
+    /// Less their values after `halves` half periods, which are so large near the separatrix that the rest would be lost.
     s: f64,
     d: f64,
+    halves: f64,
 }
 
 impl Tumbling {
@@ -199,22 +201,26 @@ impl Tumbling {
         let halves = 2.0 * (0.5 * (u / (2.0 * self.quarter) - odd)).round() + odd;
         let sine = if cn < 0.0 { -sn } else { sn };
         let cube = sine * sine * sine / 3.0;
-        let rest = [cube * r_d(cn * cn, 1.0, dn * dn), cube * r_d(cn * cn, dn * dn, 1.0)];
-        let [s, d] = if halves == 0.0 { rest } else { from_fn(|k| 2.0 * halves * self.whole[k] + rest[k]) };
-        Functions { cn, sn, dn, s, d }
+        let (s, d) = (cube * r_d(cn * cn, 1.0, dn * dn), cube * r_d(cn * cn, dn * dn, 1.0));
+        Functions { cn, sn, dn, s, d, halves }
     }
 
     /// The changes of the functions from the start to time t, where they are `now`.
     fn changes(&self, t: f64, now: Functions) -> Functions {
-        let Functions { cn, sn, dn, s, d } = self.first;
+        let Functions { cn, sn, dn, s, d, halves } = self.first;
         let y = 0.5 * self.orbit.lambda.hi * t;
         if y.abs() > 0.5 * NEAR {
+            let halves = now.halves - halves;
+            // Infinite on the separatrix, where there are no half periods.
+            let [more_s, more_d] =
+                if halves == 0.0 { [0.0; 2] } else { self.whole.map(|x| 2.0 * halves * x) };
             return Functions {
                 cn: now.cn - cn,
                 sn: now.sn - sn,
                 dn: now.dn - dn,
-                s: now.s - s,
-                d: now.d - d,
+                s: more_s + (now.s - s),
+                d: more_d + (now.d - d),
+                halves,
             };
         }
         let m = self.orbit.k2;
@@ -230,6 +236,8 @@ impl Tumbling {
             dn: -twice * m * x.sn * x.cn * y.cn,
             s: 2.0 * (y.s + tangent * tangent * y.sn * y.cn / (y.dn * y.dn * y.dn) / (1.0 + m * part * part)),
             d: 2.0 * y.d + twice * x.sn * x.sn * y.cn * y.dn,
+            // A time this short is less than half of a half period.
+            halves: 0.0,
         }
     }
 

@@ -234,6 +234,8 @@ def test_a_rotor_turns_back_by_its_reverse():
         R.apply(ph.e1, inverse=True)
     with pytest.raises(TypeError, match=r"positional arguments .* write \(~R\)\(x\)"):
         R.apply(ph.e1, True)
+    with pytest.raises(TypeError, match=r"3 were given; its arguments are \(x, \*, out=None\)"):
+        R.apply(ph.e1, ph.e2)
 
 
 def test_attitudes_of_a_table_are_interpolated_by_a_spline():

@@ -400,7 +400,10 @@ class Rotor(_native.Rotor, Multivector):
         def apply(self: Rotor, x: Any, *, out: Any = None) -> None: ...
 
         apply.__qualname__ = "Rotor.apply"
-        explains_calls(inverse="(~R)(x)")(apply)(self, None, *more, **named)
+        # Of SciPy's arguments, `inverse` is the second.
+        inverts = "inverse" in named or (more and isinstance(more[0], bool))
+        explained = explains_calls(inverse="(~R)(x)")(apply) if inverts else explains_calls(apply)
+        explained(self, None, *more, **named)
         raise AssertionError("the arguments fit")
 
     def _turn(self, X: Any, out: Any = None) -> Multivector:

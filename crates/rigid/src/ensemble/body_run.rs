@@ -53,7 +53,7 @@ impl<'a> BodyRun<'a> {
             is_smooth: bounds.is_smooth,
         };
         BodyRun {
-            controller: StepController::new(first, bounds.longest),
+            controller: StepController::new(first, bounds.longest, accuracy.goal),
             member,
             bounds,
             first,
@@ -80,7 +80,7 @@ impl<'a> BodyRun<'a> {
     }
 
     fn first_steps(&self) -> StepController {
-        StepController::new(self.first, self.bounds.longest)
+        StepController::new(self.first, self.bounds.longest, self.tolerance)
     }
 
     /// The magnitude of the angular velocity, bounded below by its scale, in rad/s.

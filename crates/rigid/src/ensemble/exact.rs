@@ -3,7 +3,7 @@
 use super::member::{Member, Outcome};
 use super::scheduler::Scheduler;
 use crate::exact::free::{FreeBody, FreeMotions};
-use crate::exact::many::TIMES_IN_LANES;
+use crate::run::Progress;
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
 use crate::run::closed_form::{ClosedForm, ElapsedTime, check_kept};
 use crate::state::carried::Carried;
@@ -19,35 +19,38 @@ const METHOD: &str = "exact";
 
 impl<'a> Scheduler<'a> {
     /// Writes the motions of free bodies, at most as many as there are lanes, and leaves none.
-    pub fn free(&self, motions: &mut FreeMotions<TOGETHER>, members: &mut Vec<Member<'a>>) {
-        let Some(last) = members.last() else { return };
-        let bodies: [FreeBody; TOGETHER] = array::from_fn(|l| {
-            let Member { frame, gyrostat, start, omega, .. } = members.get(l).unwrap_or(last);
-            FreeBody::in_frame(*frame, gyrostat.moments, start.rotor, *omega)
-        });
-        motions.set_up(&bodies);
-        let mut since = [0.0; TOGETHER];
-        for (since, member) in since.iter_mut().zip(&*members) {
-            *since = member.start.time;
+    pub fn free(
+        &self,
+        motions: &mut FreeMotions<TOGETHER>,
+        members: &mut Vec<Member<'a>>,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) {
+        if members.is_empty() {
+            return;
         }
-        if self.times.len() < TIMES_IN_LANES {
+        if members.len() == TOGETHER {
+            let bodies: [FreeBody; TOGETHER] = array::from_fn(|l| free_body(&members[l]));
+            motions.set_up(&bodies);
             let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
             for (index, &time) in self.times.iter().enumerate() {
-                motions.at(&since.map(|start| time - start), &mut rotors, &mut omegas);
+                let elapsed = array::from_fn(|l| time - members[l].start.time);
+                motions.at(&elapsed, &mut rotors, &mut omegas);
                 for (l, Member { own, .. }) in members.iter_mut().enumerate() {
                     own.rotors.as_chunks_mut().0[index] = rotors[l];
                     own.omegas.as_chunks_mut().0[index] = omegas[l];
                 }
             }
-        } else {
-            for (l, Member { own, .. }) in members.iter_mut().enumerate() {
-                let elapsed: Vec<f64> = self.times.iter().map(|time| time - since[l]).collect();
-                motions.flow(l).at_many(Threads::ONE, &elapsed, own.rotors, own.omegas);
+            for (l, member) in members.drain(..).enumerate() {
+                self.finish_free(member, motions.horizon(l, &bodies[l]));
             }
         }
-        for (l, member) in members.drain(..).enumerate() {
-            self.finish_free(member, motions.horizon(l, &bodies[l]));
+        for member in members.drain(..) {
+            let (motion, start) = (free_body(&member).motion(), member.start.time);
+            let elapsed: Vec<f64> = self.times.iter().map(|time| time - start).collect();
+            motion.at_many(Threads::ONE, &elapsed, member.own.rotors, member.own.omegas);
+            self.finish_free(member, motion.horizon());
         }
+        self.report(progress);
     }
 
     /// Completes the motion of a free body from its rotors and angular velocities at the rounded times since the start;
@@ -113,4 +116,8 @@ impl<'a> Scheduler<'a> {
         self.count(&mut 0, 1.0, 1);
         self.record([Outcome { body, certificate, failure: None }]);
     }
+}
+
+fn free_body(Member { frame, gyrostat, start, omega, .. }: &Member<'_>) -> FreeBody {
+    FreeBody::in_frame(*frame, gyrostat.moments, start.rotor, *omega)
 }

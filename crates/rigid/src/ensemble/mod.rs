@@ -142,7 +142,7 @@ impl Ensemble {
         assert!(rows.into_iter().all(|n| n == 1 || n == self.starts.len()), "one for all, or one for each");
         let shared = self.shared_laws();
         let shared = Shared { laws: shared.as_deref(), start: extremes[0] == extremes[1] };
-        Scheduler::new(self, shared, times, options, outputs).work(threads, progress)
+        Scheduler::new(self, shared, times, options, outputs, threads).work(progress)
     }
 
     /// The laws in principal axes, if all bodies share them and an inertia.

@@ -6,6 +6,7 @@ use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy, WIDE}
 use super::output::{Outputs, Share};
 use crate::error::SimulateError;
 use crate::exact::free::FreeMotions;
+use crate::exact::many::TIMES_IN_LANES;
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::Method;
 use crate::methods::splitting::turns::Kind;
@@ -17,6 +18,7 @@ use crate::run::output::BodyOutput;
 use crate::run::{Options, Progress, check_body};
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::rows::curve::TOGETHER;
+use polhode_ga::simd::threads::Threads;
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex, OnceLock};
@@ -37,6 +39,8 @@ pub(super) struct Scheduler<'a> {
     pub ensemble: &'a Ensemble,
     pub times: &'a [f64],
     pub options: &'a Options,
+    /// Number of threads, at most one for each body.
+    pub(super) threads: usize,
     /// Unassigned bodies.
     queue: Mutex<Share<'a>>,
     pub(super) columns: Columns,
@@ -59,12 +63,14 @@ impl<'a> Scheduler<'a> {
         times: &'a [f64],
         options: &'a Options,
         outputs: Outputs<'a>,
+        threads: Threads,
     ) -> Scheduler<'a> {
         let all = Share::all(outputs, times.len());
         Scheduler {
             ensemble,
             times,
             options,
+            threads: threads.count().min(ensemble.starts.len()).max(1),
             columns: Columns::new(all.len()),
             queue: Mutex::new(all),
             stopped: AtomicBool::new(false),
@@ -91,6 +97,13 @@ impl<'a> Scheduler<'a> {
     pub fn together(&self, plan: &Plan) -> usize {
         let wide = plan.method == Method::Classical && !self.ensemble.laws.is_empty();
         if wide { WIDE } else { SIDE_BY_SIDE }
+    }
+
+    /// The number of free bodies that a thread computes together: as many as there are lanes; one if motions are long, or if
+    /// some threads would have none.
+    fn free_together(&self) -> usize {
+        let enough = self.ensemble.starts.len() >= self.threads * TOGETHER;
+        if enough && self.times.len() < TIMES_IN_LANES { TOGETHER } else { 1 }
     }
 
     /// Whether the run was stopped.
@@ -123,9 +136,8 @@ impl<'a> Scheduler<'a> {
                 }
                 Strategy::Free => {
                     free.push(member);
-                    if free.len() == TOGETHER {
-                        self.free(&mut motions, &mut free);
-                        self.report(progress);
+                    if free.len() == self.free_together() {
+                        self.free(&mut motions, &mut free, progress);
                     }
                 }
                 Strategy::Exact(closed) => {
@@ -135,7 +147,7 @@ impl<'a> Scheduler<'a> {
                 Strategy::Single => self.run_single(body, member.own, progress),
             }
         }
-        self.free(&mut motions, &mut free);
+        self.free(&mut motions, &mut free, progress);
         next
     }
 

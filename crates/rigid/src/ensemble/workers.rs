@@ -9,7 +9,6 @@ use super::scheduler::Scheduler;
 use crate::error::SimulateError;
 use crate::run::Progress;
 use polhode_ga::simd::lanes::fastest;
-use polhode_ga::simd::threads::Threads;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 use std::{iter, thread};
@@ -36,12 +35,8 @@ impl Drop for Running<'_, '_> {
 
 impl<'a> Scheduler<'a> {
     /// Solves all bodies.
-    pub fn work(
-        self,
-        threads: Threads,
-        progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Summary, SimulateError> {
-        let count = threads.count().min(self.ensemble.starts.len()).max(1);
+    pub fn work(self, progress: &mut dyn FnMut(Progress) -> bool) -> Result<Summary, SimulateError> {
+        let count = self.threads;
         thread::scope(|scope| {
             for _ in 1..count {
                 *lock(&self.running) += 1;

@@ -53,7 +53,7 @@ impl Flow {
     ///
     /// # Panics
     /// If the numbers of rows and times differ.
-    pub(crate) fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
+    pub(super) fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
         with_coefficients!(&self.0, coefficients => sample(coefficients, threads, times, rotors, omegas));
     }
 

@@ -1,4 +1,4 @@
-//! Coefficients of motions in closed form, one motion in each lane, and the sums that end every form.
+//! Coefficients of motions in closed form, one motion in each lane, the sums that end every form, and products of rotors.
 
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::{Phase, in_lane};

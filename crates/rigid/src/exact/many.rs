@@ -171,14 +171,26 @@ impl Tile {
         let (mut tile, mut all) = (Tile::default(), all.take(TILE));
         let mut group = Vec::with_capacity(TOGETHER);
         loop {
-            let first = tile.horizons.len();
+            let (first, mut failed) = (tile.horizons.len(), None);
             group.clear();
-            for (place, one) in (first..).zip(all.by_ref().take(TOGETHER)) {
-                group.push(one.map_err(|error| (place, error))?);
+            for one in all.by_ref().take(TOGETHER) {
+                match one {
+                    Ok(one) => group.push(one),
+                    Err(error) => {
+                        failed = Some((first + group.len(), error));
+                        break;
+                    }
+                }
             }
-            let Some(last) = group.last() else { return Ok(tile) };
-            let lanes = array::from_fn(|l| *group.get(l).unwrap_or(last));
-            take(&mut tile, &lanes, group.len()).map_err(|(l, error)| (first + l, error))?;
+            if let Some(last) = group.last() {
+                let lanes = array::from_fn(|l| *group.get(l).unwrap_or(last));
+                take(&mut tile, &lanes, group.len()).map_err(|(l, error)| (first + l, error))?;
+            }
+            match failed {
+                Some(error) => return Err(error),
+                None if group.is_empty() => return Ok(tile),
+                None => {}
+            }
         }
     }
 

@@ -35,12 +35,20 @@ pub(crate) struct StepController {
     accepted: f64,
     /// Whether a step has met a sharp change of the laws.
     pub is_sharp: bool,
+    /// The first of two steps to a stop.
+    part: f64,
 }
 
 impl StepController {
-    /// With a guess of the first step and the longest allowed, in s.
-    pub fn new(first: f64, longest: f64) -> StepController {
-        let first = first.min(longest);
+    /// With a guess of the first step and the longest allowed, in s, for steps of this tolerance.
+    ///
+    /// Sweeps of other tolerances begin with another step and divide the way to a stop otherwise: with the same steps they
+    /// would also meet a sharp change of the laws alike, and their difference would not show the error.
+    pub fn new(first: f64, longest: f64, tolerance: f64) -> StepController {
+        /// The golden ratio, whose multiples are evenly spread.
+        const SPREAD: f64 = 0.618_033_988_749_894_9;
+        let share = (tolerance.ln() * SPREAD).rem_euclid(1.0);
+        let first = (first * (0.8 + 0.4 * share)).min(longest);
         StepController {
             next: first,
             cut: first,
@@ -49,14 +57,15 @@ impl StepController {
             refused: false,
             accepted: 0.0,
             is_sharp: false,
+            part: 0.4 + 0.2 * share,
         }
     }
 
     /// Where a step ends on the way from one time to another.
     pub fn end(&mut self, from: f64, time: f64) -> Result<f64, SimulateError> {
         let rest = (time - from).abs();
-        // Two steps of half the way avoid a tiny last one.
-        let cut = if self.next >= rest { rest } else { self.next.min(0.5 * rest.max(self.next)) };
+        // Two steps of about half the way avoid a tiny last one.
+        let cut = if self.next >= rest { rest } else { self.next.min(self.part * rest.max(self.next)) };
         let to = if cut >= rest { time } else { from + (time - from).signum() * cut };
         // Output times may be adjacent floats.
         if to == from || self.refused && cut < 1e-14 * from.abs() {

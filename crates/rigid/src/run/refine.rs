@@ -32,6 +32,9 @@ const RESOLVED: f64 = 0.05;
 const ASSUMED: f64 = 0.5;
 const TRUSTED: f64 = 0.75;
 
+/// The next sweep is to have an error smaller by at least this factor.
+const LEAST_GAIN: f64 = 2.2;
+
 /// Maximum refinement factor of the next sweep.
 const LEAP: f64 = 6.0;
 
@@ -302,9 +305,12 @@ impl Convergence {
             Some(_) if difference >= 0.1 => 2.0,
             Some(_) => {
                 let order = f64::from(self.accuracy.order);
-                let likely = difference * self.by.powf(-0.9 * order);
+                // The truncation is more than the difference where a low order falls little from sweep to sweep.
+                let more = truncation > difference && truncation.is_finite();
+                let likely = if more { truncation } else { difference * self.by.powf(-0.9 * order) };
                 let wanted = (goal - rounding).max(0.3 * goal);
-                (1.1 * (likely / wanted).powf(1.0 / (TRUSTED * order))).clamp(1.3, LEAP)
+                let by = 1.1 * (likely / wanted).powf(1.0 / (TRUSTED * order));
+                by.clamp(LEAST_GAIN.powf(1.0 / order).max(1.3), LEAP)
             }
         };
         self.refine(fine)

@@ -74,6 +74,11 @@ impl StepRule {
     pub fn equal(step: f64) -> StepRule {
         StepRule::Step(EqualSteps { step, first: step, parts: 1.0 })
     }
+
+    /// The tolerance of a step; 1 for equal steps, which have none.
+    fn tolerance(self) -> f64 {
+        if let StepRule::Tolerance(tolerance) = self { tolerance } else { 1.0 }
+    }
 }
 
 /// The result of one integration over all output times.
@@ -188,7 +193,7 @@ impl Integrator<'_> {
         let values = self.values(&start)?;
         let mut cursor = Cursor {
             at: start,
-            controller: StepController::new(self.first, self.bounds.longest),
+            controller: StepController::new(self.first, self.bounds.longest, self.rule.tolerance()),
             fastest,
             values,
             ended: false,

@@ -89,14 +89,6 @@ impl<const W: usize> FreeMotions<W> {
         horizon(self.orbits[l].as_ref(), self.scales[l], body.omega)
     }
 
-    /// The states of one at any times.
-    pub fn flow(&self, l: usize) -> flow::Flow {
-        flow::Flow(match &self.hyperbolic {
-            Some(flow) if !self.is_circular[l] => Form::FreeHyperbolic(flow.take(l)),
-            _ => Form::FreeCircular(self.circular.take(l)),
-        })
-    }
-
     /// The lanes of the first `count` motions: the circular and the hyperbolic ones.
     pub fn lanes(&self, count: usize) -> [Vec<usize>; 2] {
         let (circular, hyperbolic) = (0..count).partition(|&l| self.is_circular[l]);

@@ -219,7 +219,7 @@ impl<const W: usize, const FMA: bool> Modulus<W, FMA> {
         (Modulus { kc, k2, lambda, gaps }, resolved)
     }
 
-    /// μ(−1), by whichever of the two parameters the means take well.
+    /// μ(−1), by the parameter for which the sum converges quickly.
     #[inline(always)]
     fn rate_below(
         &self,

@@ -59,9 +59,9 @@ pub(in crate::exact) struct LagrangeTops<const W: usize> {
     pub is_circular: [bool; W],
     /// Tops without a torque, whose motions are of free bodies.
     pub steady: [bool; W],
-    /// Whether the motion of another top is resolved.
+    /// Whether the motion of a top that is not steady is resolved.
     pub resolved: [bool; W],
-    /// [`LagrangeTop::horizon`] of each.
+    /// [`LagrangeTop::horizon`] of each; arbitrary for steady tops.
     pub horizons: [f64; W],
 }
 

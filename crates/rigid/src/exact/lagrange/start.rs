@@ -44,7 +44,7 @@ pub struct HeavyTop {
 }
 
 impl HeavyTop {
-    /// As of [`super::LagrangeTop::new`].
+    /// Takes the arguments of [`super::LagrangeTop::new`].
     ///
     /// # Errors
     /// For a body that is not such a top, and for numbers that are not finite or out of range.

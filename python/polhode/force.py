@@ -67,7 +67,7 @@ class Force(Sum):
     """
 
     laws: tuple[_native.Force, ...]
-    _constant = "a constant force is constant(F), or a vector"
+    _constant = "for a constant force write constant(F) or a vector"
 
     def __add__(self, other: Force | Multivector | Array) -> Force:
         return super().__add__(constant(other) if isinstance(other, _VECTORS) else other)
@@ -81,13 +81,13 @@ class Force(Sum):
     def __rsub__(self, other: int | Multivector | Array) -> Force:
         return constant(other) - self if isinstance(other, _VECTORS) else super().__rsub__(other)
 
-    def _multiple(self, law: _native.Force, factor: float) -> _native.Force:
-        return multiple(law, factor, (0,))
+    def _multiple(self, law: _native.Force, factor: float, done: str) -> _native.Force:
+        return multiple(law, factor, (0,), done)
 
     def at(self, body: Body, state: State, t: float | None = None) -> Multivector:
         """Return the force at a single state and time, a vector in space in N.
 
-        L of a formula is then without the wheels of a `gyrostat`. The time t is in s, by default that of the
+        In formulas, L excludes the momentum of `gyrostat` wheels. The time t is in s, by default that of the
         state.
 
         Examples
@@ -101,12 +101,12 @@ class Force(Sum):
         """
         # Here, for simulations need not import formulas.
         from polhode._mechanics.force_values import names_of_motion, value_of
+        from polhode._mechanics.state import require_single_state
 
         require_single(self)
         if not isinstance(body, Body):
             raise TypeError(f"a force needs a Body, which has a mass, got {type(body).__name__}")
-        if state.shape:
-            raise ValueError(f"the state must be a single one, got batch {state.shape}")
+        require_single_state(state)
         motion = names_of_motion(body, state, finite(as_float(state.time if t is None else t, "t"), "t"))
         return sum((value_of(law, motion) for law in self.laws), vector([0.0, 0.0, 0.0]))
 
@@ -178,9 +178,7 @@ def drag(k: Any) -> Force:
 
 
 def quadratic_drag(k: Any) -> Force:
-    """Return ``−k |v| v``, k (...) in N s²/m².
-
-    A negative k drives the body: alone, its speed is infinite at the time ``m/(−k |v|)``.
+    """Return ``−k |v| v``, k (...) in N s²/m², ``k >= 0``.
 
     Examples
     --------

@@ -112,10 +112,10 @@ class Torque(Sum):
     """
 
     laws: tuple[_native.Law, ...]
-    _constant = "a constant torque is constant_body(N) or constant_space(N)"
+    _constant = "for a constant torque write constant_body(N) or constant_space(N)"
 
-    def _multiple(self, law: _native.Law, factor: float) -> _native.Law:
-        return multiple(law, factor, _LINEAR.get(law.name, (0,)))
+    def _multiple(self, law: _native.Law, factor: float, done: str) -> _native.Law:
+        return multiple(law, factor, _LINEAR.get(law.name, (0,)), done)
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Torque(())"
@@ -143,11 +143,12 @@ class Torque(Sum):
         >>> ph.torque.damping(0.5).at(inertia, state)
         -6 e1∧e2
         """
+        from polhode._mechanics.state import require_single_state
+
         require_single(self)
         if not isinstance(inertia, Inertia | Body):
             raise TypeError(f"inertia must be an Inertia or a Body, got {type(inertia).__name__}")
-        if state.shape:
-            raise ValueError(f"the state must be a single one, got batch {state.shape}")
+        require_single_state(state)
         bodies, laws = about_pivot(bodies_of(inertia), self.laws)
         body = inertia_of(bodies[()], self.holds)
         rotor, omega = state.rotor._data, state.omega_body._data

@@ -346,6 +346,20 @@ def test_invalid_torques_raise(torque, message):
         ph.jax.simulate(MOMENTS, R0, OMEGA, [1.0], torque, step=0.1)
 
 
+@pytest.mark.parametrize(
+    ("operation", "message"),
+    [
+        (lambda law: law + 1, r"got int; for a constant torque write constant_body\(N\) or constant_space"),
+        (lambda law: law - law, r"polhode.jax.torque.Torque cannot be subtracted; change its parameters"),
+        (lambda law: 2 * law, r"polhode.jax.torque.Torque cannot be multiplied by 2; change its param"),
+        (lambda law: law + ph.torque.damping(1), r"cannot add a polhode.jax.torque.Torque and a polhode.tor"),
+    ],
+)
+def test_operations_of_laws_name_what_to_write(operation, message):
+    with pytest.raises(TypeError, match=message):
+        operation(ph.jax.torque.damping(1.0))
+
+
 def test_formulas_are_checked_at_construction():
     orbit = ph.torque.KeplerOrbit(7e6)
     with pytest.raises(TypeError, match="JAX has no law magnetic with orbit; give a function"):

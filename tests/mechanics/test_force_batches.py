@@ -160,7 +160,7 @@ def test_errors_name_the_body():
             ph.simulate(BODY, START, TIMES, force=force)
     with pytest.raises(TypeError, match=r"torque must be a law .* got Force; give a force as force="):
         ph.simulate(BODY, START, TIMES, F.drag(1))
-    with pytest.raises(TypeError, match=r"a Torque adds to another one, got ndarray; a constant torque is"):
+    with pytest.raises(TypeError, match=r"a Torque can only be added to a Torque, got ndarray; for a"):
         VECTORS + ph.torque.damping(1)
     with pytest.raises(TypeError, match=r"a force needs a Body"):
         ph.simulate(BODY.inertia, START, TIMES, force=F.drag(NUMBERS))

@@ -2,6 +2,7 @@
 
 import math
 import pickle
+from array import array
 from fractions import Fraction
 
 import numpy as np
@@ -91,9 +92,7 @@ def test_a_law_minus_itself_exerts_nothing(name):
     law = LAWS[name]
     quadratic = ("quadratic_damping", "quadratic_drag")
     if name in ("viscous_damping", "pd_control", "radiation_pressure", *quadratic):
-        with pytest.raises(
-            ValueError, match=rf"{name} cannot be multiplied by -1: .* formula takes any sign"
-        ):
+        with pytest.raises(ValueError, match=rf"{name} cannot be subtracted: .* formula takes any sign"):
             law - law
         return
     none = value(law - law)
@@ -120,7 +119,10 @@ def test_the_multiple_of_a_gyrostat_is_that_of_its_wheel():
 @pytest.mark.parametrize(
     ("operation", "message"),
     [
-        (lambda: 2 * T.gravity_gradient(1.0), r"gravity_gradient cannot be multiplied by 2, .* as a formula"),
+        (
+            lambda: 2 * T.gravity_gradient(1.0),
+            r"gravity_gradient cannot be multiplied by 2: it is not .* formula",
+        ),
         (lambda: -T.reaction_wheels([[0, 0, 1]], 1.0), r"reaction_wheels cannot be multiplied by -1"),
         (lambda: T.damping(1) * T.damping(1), r"is multiplied by one number, got Torque; join laws by \+"),
         (
@@ -130,10 +132,16 @@ def test_the_multiple_of_a_gyrostat_is_that_of_its_wheel():
         (lambda: ph.e1 * F.drag(1), r"a Force is multiplied by one number, got Multivector"),
         (lambda: T.damping(1) / "2", r"a Torque is divided by one number, got str"),
         (lambda: T.damping(1) @ T.damping(1), r"write law1 \+ law2"),
-        (lambda: T.damping(1) + ph.e1, r"got Multivector; a constant torque is constant_body\(N\) or"),
-        (lambda: 1 - T.damping(1), r"a Torque adds to another one, got int"),
-        (lambda: F.drag(1) + turn, r"a Force adds to another one, got function; write function\(f\)"),
-        (lambda: F.drag(1) - T.damping(1), r"Force and a polhode.torque.Torque do not add up; give torque="),
+        (lambda: T.damping(1) + ph.e1, r"got Multivector; for a constant torque write constant_body\(N\)"),
+        (lambda: 1 - T.damping(1), r"a Torque can only be added to a Torque, got int; for a constant"),
+        (
+            lambda: F.drag(1) + turn,
+            r"a Force can only be added to a Force, got function; write function\(f\)",
+        ),
+        (
+            lambda: F.drag(1) - T.damping(1),
+            r"cannot add a torque and a force; pass them as torque= and force=",
+        ),
     ],
 )
 def test_other_operations_name_what_to_write(operation, message):
@@ -146,6 +154,56 @@ def test_a_factor_must_be_finite():
         math.nan * T.damping(1)
     with pytest.raises(ZeroDivisionError, match=r"a Force cannot be divided by 0"):
         F.drag(1) / 0
+    with pytest.raises(ValueError, match=r"a Torque cannot be multiplied by inf; give a finite number"):
+        10**400 * T.damping(1)
+    with pytest.raises(ValueError, match=r"a Force cannot be divided by 3e-320, whose reciprocal is not fin"):
+        F.drag(1) / 3e-320
+
+
+def test_errors_name_what_was_done_to_a_law():
+    with pytest.raises(
+        ValueError, match=r"viscous_damping cannot be subtracted: .*; a formula takes any sign"
+    ):
+        T.viscous_damping(2) - T.viscous_damping(1)
+    with pytest.raises(
+        ValueError, match=r"viscous_damping cannot be divided by -2: .* formula takes any sign"
+    ):
+        T.viscous_damping(2) / -2
+    with pytest.raises(ValueError, match=r"viscous_damping cannot be multiplied by 1e\+308: ") as error:
+        1e308 * T.viscous_damping(1e10)
+    assert "any sign" not in str(error.value)
+
+
+class Exerted:
+    """A value of three numbers as other libraries have them."""
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array([1.0, 2.0, 3.0])
+
+
+@pytest.mark.parametrize(
+    "given",
+    [array("d", [1, 2, 3]), Exerted(), [1, 2, 3], np.array([1, 2, 3], dtype=object), np.float32([1, 2, 3])],
+    ids=lambda x: type(x).__name__,
+)
+def test_values_of_functions_of_any_type_are_multiplied(given):
+    turned, pushed = 0.1 * T.function(lambda *_: given), 0.1 * F.function(lambda *_: given)
+    for law in (turned, pushed):
+        np.testing.assert_array_equal(value(law).components, 0.1 * np.array([1.0, 2.0, 3.0]))
+    both = (2 * F.function(lambda *_: given), F.constant([2, 4, 6]))
+    found, wanted = (ph.simulate(BODY, STATE, [1.0], force=force).velocity[0] for force in both)
+    assert found.is_close(wanted)
+
+
+def test_multiples_report_other_values_as_the_law_does():
+    for given in ([True, False, True], [1j, 0, 0], ["1", "2", "3"], None, [[1], [2, 3]]):
+        for law in (T.function(lambda *_, given=given: given), F.function(lambda *_, given=given: given)):
+            messages = []
+            for one in (law, 2 * law):
+                with pytest.raises(TypeError) as error:
+                    value(one)
+                messages.append(str(error.value))
+            assert messages[0] == messages[1]
 
 
 def test_operators_of_other_classes_are_theirs():
@@ -190,6 +248,11 @@ def test_a_force_without_a_value_is_an_error():
         F.function(lambda t, x, v, R: [1, np.nan, 0]).at(BODY, STATE)
     with pytest.raises(ValueError, match=r"that the function returned .* 3"):
         F.function(lambda t, x, v, R: [1, 2]).at(BODY, STATE)
+    with pytest.raises(ValueError, match=r"function returned must be a single vector, got shape \(2, 3\)"):
+        F.function(lambda t, x, v, R: np.ones((2, 3))).at(BODY, STATE)
+    for law in (F.drag(1), T.damping(1)):
+        with pytest.raises(TypeError, match=r"state must be a State, got int"):
+            law.at(BODY, 3)
     with pytest.raises(TypeError, match=r"a force needs a Body, which has a mass, got Inertia"):
         F.drag(1).at(BODY.inertia, STATE)
     with pytest.raises(ValueError, match=r"that of a single body, got batch shape \(2,\)"):

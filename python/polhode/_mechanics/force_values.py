@@ -28,7 +28,12 @@ def value_of(law: _native.Force, motion: dict[str, Any]) -> Multivector:
     """Return the force of a law at a state, a vector in space, given the names of the motion."""
     if law.name == "function":
         found = law.arguments[0](*(motion[name] for name in ("t", "x", "v", "R")))
-        return _finite(vector(as_vectors(found, "the force that the function returned")), law)
+        components = as_vectors(found, "the force that the function returned")
+        if components.shape != (3,):
+            raise ValueError(
+                f"the force that the function returned must be a single vector, got shape {components.shape}"
+            )
+        return _finite(vector(components), law)
     if law.name == "formula":
         text, values = law.arguments
         return _finite(evaluate(text, {**motion, **dict(values)}), law)

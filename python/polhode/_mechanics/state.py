@@ -188,6 +188,14 @@ class State:
         }
 
 
+def require_single_state(state: State) -> None:
+    """Raise a TypeError for anything but a state, a ValueError for a batch of them."""
+    if not isinstance(state, State):
+        raise TypeError(f"state must be a State, got {type(state).__name__}")
+    if state.shape:
+        raise ValueError(f"the state must be a single one, got batch {state.shape}")
+
+
 def angular_velocity(value: Any) -> Multivector:
     """Return bivectors from bivectors, or from an array (..., 3)."""
     return bivector(as_bivectors(value, "the angular velocity"))

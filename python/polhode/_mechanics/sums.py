@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
 from typing import Any, ClassVar, NoReturn, Self, TypeVar
 
-import numpy as np
-
 from polhode import _native
 from polhode._algebra.foreign_values import has_reflected
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.parameters import Batch, common
-from polhode._support.arrays import Shape
+from polhode._support.arrays import Shape, as_components
 
 L = TypeVar("L", _native.Law, _native.Force)
 
@@ -26,7 +25,7 @@ class Sum:
     laws: tuple[Any, ...]
     # An array does not add a law to each of its elements.
     __array_ufunc__ = None
-    # What to write for a constant.
+    # Remedy for other summands: what to write for a constant.
     _constant: ClassVar[str] = ""
 
     def __add__(self, other: Self) -> Self:
@@ -40,7 +39,7 @@ class Sum:
 
     def __sub__(self, other: Self) -> Self:
         if isinstance(other, type(self)):
-            return self + -other
+            return self + other._scaled(-1.0, "subtracted")
         return self if _is_zero(other) else self._refuse_sum(other, "__rsub__")
 
     def __rsub__(self, other: int) -> Self:
@@ -51,7 +50,7 @@ class Sum:
 
     def __mul__(self, factor: float) -> Self:
         number = self._number(factor, "multiplied")
-        return type(self)(tuple(self._multiple(law, number) for law in self.laws))
+        return self._scaled(number, f"multiplied by {number:g}")
 
     def __rmul__(self, factor: float) -> Self:
         return self * factor
@@ -60,7 +59,11 @@ class Sum:
         number = self._number(divisor, "divided")
         if number == 0:
             raise ZeroDivisionError(f"a {type(self).__name__} cannot be divided by 0")
-        return self * (1.0 / number)
+        if not math.isfinite(1.0 / number):
+            raise ValueError(
+                f"a {type(self).__name__} cannot be divided by {number}, whose reciprocal is not finite"
+            )
+        return self._scaled(1.0 / number, f"divided by {number:g}")
 
     def __matmul__(self, other: object) -> NoReturn:
         raise TypeError("laws are joined by +; write law1 + law2")
@@ -76,9 +79,13 @@ class Sum:
             shapes[law.name if number == 1 else f"{law.name} ({number})"] = law.shape
         return common(shapes, "the laws")
 
-    def _multiple(self, law: Any, factor: float) -> Any:
+    def _scaled(self, factor: float, done: str) -> Self:
+        """Return the laws multiplied by a number; `done` is what an error says cannot be done to them."""
+        return type(self)(tuple(self._multiple(law, factor, done) for law in self.laws))
+
+    def _multiple(self, law: Any, factor: float, done: str) -> Any:
         """Return a law multiplied by a number."""
-        raise TypeError(f"a {self._name()} cannot be multiplied; multiply parameters, as in damping(2 * g)")
+        raise TypeError(f"a {self._name()} cannot be {done}; change its parameters, as in damping(2 * g)")
 
     def _number(self, value: Any, done: str) -> float:
         """Return a finite factor or divisor; a TypeError for anything but a real number."""
@@ -90,21 +97,29 @@ class Sum:
             )
             name = type(self).__name__
             raise TypeError(f"a {name} is {done} by one number, got {type(value).__name__}; {remedy}")
-        if not np.isfinite(float(value)):
-            raise ValueError(f"a {type(self).__name__} cannot be {done} by {value}; give a finite number")
-        return float(value)
+        try:
+            number = float(value)
+        except OverflowError:  # an integer or a fraction
+            number = math.inf
+        if not math.isfinite(number):
+            raise ValueError(f"a {type(self).__name__} cannot be {done} by {number}; give a finite number")
+        return number
 
     def _refuse_sum(self, other: Any, reflected: str = "") -> Any:
         """Raise a TypeError for another summand, unless its class defines the `reflected` operator."""
         if reflected and has_reflected(other, reflected):
             return NotImplemented
         if isinstance(other, Sum):
-            remedy = "" if type(other).__name__ == type(self).__name__ else "; give torque= and force= apart"
-            raise TypeError(f"a {self._name()} and a {other._name()} do not add up{remedy}")
-        remedy = (
-            "write function(f)" if callable(other) and not isinstance(other, Multivector) else self._constant
+            if type(other).__name__ == type(self).__name__:
+                raise TypeError(
+                    f"cannot add a {self._name()} and a {other._name()}; use the laws of one of these modules"
+                )
+            raise TypeError("cannot add a torque and a force; pass them as torque= and force=")
+        is_function = callable(other) and not isinstance(other, Multivector)
+        name, remedy = type(self).__name__, "write function(f)" if is_function else self._constant
+        raise TypeError(
+            f"a {name} can only be added to a {name}, got {type(other).__name__}{remedy and f'; {remedy}'}"
         )
-        raise TypeError(f"a {type(self).__name__} adds to another one, got {type(other).__name__}; {remedy}")
 
     def _name(self) -> str:
         """Return the name of the class, with that of its public module."""
@@ -112,7 +127,7 @@ class Sum:
 
 
 def require_single(law: Sum) -> None:
-    """Raise a ValueError for laws of a batch of bodies, with the parameter that makes them one."""
+    """Raise a ValueError for laws of a batch of bodies, naming the parameter that is a batch."""
     if law.shape:
         first = next(one for one in law.laws if one.shape)
         raise ValueError(
@@ -125,8 +140,11 @@ def _is_zero(value: object) -> bool:
     return isinstance(value, int) and value == 0
 
 
-def multiple(law: L, factor: float, linear: tuple[int, ...]) -> L:
-    """Return a law of the core that exerts `factor` times as much; it is `linear` in these arguments."""
+def multiple(law: L, factor: float, linear: tuple[int, ...], done: str) -> L:
+    """Return a law of the core that exerts `factor` times as much; it is `linear` in these arguments.
+
+    `done` is what an error says cannot be done to the law, such as ``"multiplied by 2"``.
+    """
     if law.name == "formula":
         text, *rest = law.arguments
         sign = "-" if factor == -1 else f"{factor!r} "
@@ -135,8 +153,8 @@ def multiple(law: L, factor: float, linear: tuple[int, ...]) -> L:
         return type(law)("function", Multiple.of(law.arguments[0], factor))
     if not linear:
         raise TypeError(
-            f"{law.name} cannot be multiplied by {factor:g}, for none of its parameters is a factor of it; "
-            "change its parameters, or write the law as a formula"
+            f"{law.name} cannot be {done}: it is not proportional to any of its parameters; change them, or "
+            "write the law as a formula"
         )
     arguments = list(law.arguments)
     for k in linear:
@@ -144,9 +162,8 @@ def multiple(law: L, factor: float, linear: tuple[int, ...]) -> L:
     try:
         return type(law)(law.name, *arguments)
     except ValueError as error:
-        raise ValueError(
-            f"{law.name} cannot be multiplied by {factor:g}: {error}; a formula takes any sign"
-        ) from None
+        remedy = "; a formula takes any sign" if factor < 0 else ""
+        raise ValueError(f"{law.name} cannot be {done}: {error}{remedy}") from None
 
 
 def _times(argument: Any, factor: float) -> Any:
@@ -172,10 +189,12 @@ class Multiple:
 
     def __call__(self, *arguments: Any) -> Any:
         value = self.f(*arguments)
-        if isinstance(value, list | tuple):
-            value = np.asarray(value)
-        # The core reports values of other types.
-        return self.factor * value if isinstance(value, Multivector | np.ndarray) else value
+        if isinstance(value, Multivector):
+            return self.factor * value
+        try:
+            return self.factor * as_components(value, 3, "the value")
+        except (TypeError, ValueError):
+            return value  # which the core reports
 
     def __repr__(self) -> str:
         return f"{self.factor!r} * {getattr(self.f, '__name__', self.f)}"

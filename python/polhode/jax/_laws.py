@@ -306,6 +306,7 @@ class Torque(Sum):
     """A sum of laws, returned by the functions of `polhode.jax.torque`: a pytree of their parameters."""
 
     laws: tuple[Any, ...]
+    _constant = "for a constant torque write constant_body(N) or constant_space(N)"
 
     @property
     def depends_on_rate(self) -> bool:

@@ -333,6 +333,7 @@ def motion(tmp_path, monkeypatch):
 
 
 OF_RATES = ["--columns", "time,omega_body_x,omega_body_y,omega_body_z"]
+OF_ATTITUDES = ["--columns", "time,attitude_w,attitude_x,attitude_y,attitude_z"]
 
 
 @pytest.mark.parametrize(
@@ -343,6 +344,7 @@ OF_RATES = ["--columns", "time,omega_body_x,omega_body_y,omega_body_z"]
         ("both.csv", ["--sigma", "1e-6", "--sigma-attitude", "1e-6"]),
         ("motion.csv", ["--sigma", "1e-6", "--sigma-attitude", "1e-6"]),
         ("motion.csv", OF_RATES),
+        ("motion.csv", OF_ATTITUDES),
     ],
 )
 @pytest.mark.usefixtures("motion")
@@ -384,7 +386,11 @@ def test_files_that_are_not_csv_are_named(tmp_path, capsys):
     for name, message in (
         ("batch.csv", ":1:1: error: the table has a batch of bodies; write one of them to a file of its own"),
         ("m.nc", f": error: not a CSV file; write one with `polhode convert {tmp_path / 'm.nc'} FILE.csv`"),
-        ("m.dat", ": error: not a CSV file; write one with `polhode convert"),
+        (
+            "m.dat",
+            f": error: not a CSV file; rename it to {tmp_path / 'm.parquet'}, "
+            f"then `polhode convert {tmp_path / 'm.parquet'} FILE.csv`",
+        ),
         ("s.toml", ": error: not a CSV file but a scene: `polhode run"),
         ("s.png", ": error: not a CSV file but a picture"),
     ):
@@ -416,6 +422,7 @@ def test_a_fit_of_nothing_names_both_kinds_of_data(capsys):
         (["--rate-unit", "rpm"], "times need their unit: --time-unit ns, us"),
         ([*UNITS, "--columns", "t,wx"], "expected 4 names (time and rates), 5"),
         ([*UNITS[:2], "--columns", "t,wx,wy,wz,w"], "needs its order: --order wxyz"),
+        ([*OF_ATTITUDES, "--order", "xyzw"], "--order is xyzw, but the names of --columns state wxyz"),
         ([*UNITS, "--columns", "t,wx,wy,wx"], "each column has one meaning, but 'wx' is named twice"),
         ([*UNITS, "--sigma", "0"], "expected a positive number, got '0'"),
         ([*UNITS, "-o", "fit.csv"], "a fit is saved as FILE.json, not 'fit.csv'"),

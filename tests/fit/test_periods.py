@@ -135,11 +135,11 @@ def test_the_command_reports_the_bodies_of_two_periods(capsys):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--periods", "5.41", "7.35 d"], "expected a number and a unit s, min, h or d, got '5.41'"),
+        (["--periods", "5.41", "7.35 d"], "a unit s, min, h, d or day, got '5.41'"),
         (["--periods", "-1 d", "7.35 d"], "expected a period such as"),
         (["a.csv", "--periods", "1 d", "7 d"], "--periods takes neither a file of data nor --plot"),
         (["--moments", "1", "2", "3"], "--moments needs --periods"),
-        (["--periods", "5.41d", "7 x"], "expected a number and a unit s, min, h or d, got '7 x'"),
+        (["--periods", "5.41d", "7 x"], "a unit s, min, h, d or day, got '7 x'"),
     ],
 )
 def test_wrong_usage_of_periods(options, message, capsys):

@@ -189,8 +189,10 @@ def _fitted(options: argparse.Namespace) -> Fit:
         error("FILE.csv and --torque cannot both be standard input")
     if options.free and options.torque is None:
         error("--free names parameters of torques; give them with --torque SCENE.toml")
-    if options.columns is not None and len(options.columns) > len(RATES) and options.order is None:
+    if options.order is None and len(options.columns or ()) > len(RATES) and options.columns not in OF_MOTION:
         error("a quaternion of --columns needs its order: --order wxyz or --order xyzw")
+    if options.order == "xyzw" and options.columns in OF_MOTION:
+        error("--order is xyzw, but the names of --columns state wxyz: leave it out")
     torque = None if options.torque is None else read_scene(options.torque).torque
     if options.torque is not None and torque is None:
         error(f"--torque needs a scene with torques, and {options.torque} has none")
@@ -282,7 +284,9 @@ def _period(text: str) -> float:
     text = text.strip()
     value = text.rstrip("".join(units.PERIODS)).rstrip()
     if (unit := text.removeprefix(value).strip()) not in units.PERIODS:
-        raise argparse.ArgumentTypeError(f"expected a number and a unit s, min, h or d, got {text!r}")
+        raise argparse.ArgumentTypeError(
+            f"expected a number and a unit {units.PERIODS_IN_WORDS}, got {text!r}"
+        )
     return positive(value, 'expected a period such as "5.41 d"') * units.si(unit)
 
 

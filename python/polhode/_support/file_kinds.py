@@ -64,11 +64,13 @@ def require_csv(path: str | os.PathLike[str]) -> None:
     name, suffix = os.fsdecode(path), Path(path).suffix.lower()
     if suffix == ".csv" or not os.path.exists(path):
         return
-    if suffix not in _KINDS and os.path.isfile(path):
-        suffix = _suffix_by_content(path) or suffix
+    renamed = ""
+    if suffix not in _KINDS and os.path.isfile(path) and (own := _suffix_by_content(path)):
+        renamed, suffix = os.fsdecode(Path(path).with_suffix(own)), own
     if suffix in _MOTIONS:
-        words = _MOTIONS[suffix].format(name)
-        raise UnreadableError(f"{name}: error: not a CSV file; write one with `polhode convert {words}`")
+        command = f"`polhode convert {_MOTIONS[suffix].format(renamed or name)}`"
+        remedy = f"rename it to {renamed}, then {command}" if renamed else f"write one with {command}"
+        raise UnreadableError(f"{name}: error: not a CSV file; {remedy}")
     kind = _SCENE if suffix == ".toml" else _KINDS.get(suffix)
     if kind is not None:
         raise UnreadableError(f"{name}: error: not a CSV file but {kind.format(name)}")

@@ -134,6 +134,8 @@ def test_rates_need_two_attitudes():
     for R in (Rotor.identity(1), Rotor.identity(), Rotor.identity((2, 2))):
         with pytest.raises(ValueError, match=r"rates need at least 2 attitudes, .*, got \("):
             ph.rates_from_attitude([0], R)
+    with pytest.raises(ValueError, match=r"rates need at least 2 attitudes, .*, got \(1,\)"):
+        ph.rates_from_attitude([0.0], [Rotor.identity()])
     with pytest.raises(ValueError, match=r"a spline needs .* of shape \(n,\), n >= 2, got shape \(1,\)"):
         ph.RotorSpline([0], Rotor.identity(1))
     with pytest.raises(TypeError, match=r"come first: rates_from_attitude\(times, R\)"):

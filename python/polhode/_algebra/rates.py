@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from polhode._algebra.constructors import as_bivectors, bivector
+from polhode._algebra.grades import stack
 from polhode._algebra.interpolation import RotorSpline, increasing_times, spline_slopes
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
@@ -105,7 +107,7 @@ def _running(steps: Array) -> Array:
 
 
 @explains_calls
-def rates_from_attitude(times: Any, R: Rotor) -> Multivector:
+def rates_from_attitude(times: Any, R: Rotor | Sequence[Rotor]) -> Multivector:
     """Return the angular velocities in body axes at sampled attitudes: the rates of their `RotorSpline`.
 
     Parameters
@@ -129,6 +131,8 @@ def rates_from_attitude(times: Any, R: Rotor) -> Multivector:
     """
     if isinstance(times, Rotor):
         raise TypeError("the times of attitudes come first: rates_from_attitude(times, R)")
+    if not isinstance(R, Multivector) and isinstance(R, list | tuple) and R:
+        R = stack(R)
     if isinstance(R, Rotor) and (len(R.shape) != 1 or R.shape[0] < 2):
         raise ValueError(
             f"rates need at least 2 attitudes, as rotors (n,) at increasing times, got {R.shape}"

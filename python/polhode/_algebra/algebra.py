@@ -23,7 +23,10 @@ from polhode._support.calls import explains_calls, takes_components
 
 
 def no_constructor(kind: type, remedy: str) -> TypeError:
-    """Return the error for a call of a class of algebras: values of equal algebras apart do not mix."""
+    """Return the error for a call of a class of algebras.
+
+    Each algebra exists once, because values of two equal Algebra objects would not mix.
+    """
     return TypeError(f"{kind.__name__} has no public constructor; write {remedy}")
 
 

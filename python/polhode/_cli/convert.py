@@ -148,7 +148,7 @@ def _convert_motion(options: argparse.Namespace) -> int:
 def _completed(history: AttitudeHistory, inertia: Inertia | None, form: str) -> AttitudeHistory | Trajectory:
     """Return a history with the inertia of a scene if it has none; for netCDF a motion that can be shown.
 
-    That of a body of an ensemble has all quantities of a motion, but no position where this is the origin.
+    A body of an ensemble has all quantities; its file omits the position if that is always the origin.
     """
     if history.inertia is None and inertia is not None:
         history = replace(history, inertia=inertia)

@@ -122,7 +122,7 @@ def normalized(r: Four) -> Four:
 def renormalized(r: Four) -> Four:
     """``R/|R|`` to third order in ``|R|² − 1``.
 
-    Adding a small part rounds shrinking and growing alike; a factor near 1 would not.
+    The correction is added: factors just below and above 1 round differently, so that |R| would drift.
     """
     excess = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]) - 1.0
     missing = excess * (excess * 0.375 - 0.5)

@@ -18,6 +18,7 @@ from polhode.jax._library import Array, jax, jnp, lax
 MultiplyAdd = Callable[[Array, Array, Array, tuple[str, str]], Array]
 
 _TYPES = {"float32": "f", "float64": "d"}
+_CALLS = ("jit", "pjit", "closed_call", "custom_jvp_call", "custom_vjp_call")
 
 
 def fused(function: Callable[..., Any], multiply_add: MultiplyAdd | None = None) -> Callable[..., Any]:
@@ -96,22 +97,27 @@ def _joined(equation: Any, products: Any, value: Callable[[Any], Any], join: Mul
 def _found(equation: Any, given: list[Any], join: MultiplyAdd) -> list[Any]:
     """Evaluate an equation; loops and calls by the equations inside."""
     name, options = equation.primitive.name, equation.params
-    if name in ("jit", "pjit", "closed_call", "custom_jvp_call"):
-        inner = options["call_jaxpr" if name == "custom_jvp_call" else "jaxpr"]
-        return _evaluated(inner.jaxpr, inner.consts, given, join)
-    if (
-        name == "scan"
-        and options["num_carry"] + options["num_consts"] == len(given)
-        and not options["reverse"]
-    ):
+    if name in _CALLS:
+        inner = options["call_jaxpr"] if "call_jaxpr" in options else options["jaxpr"]
+        return _evaluated(getattr(inner, "jaxpr", inner), getattr(inner, "consts", ()), given, join)
+    if name == "scan" and _is_loop(equation):
         inner, fixed = options["jaxpr"], options["num_consts"]
 
         def one(carry: Any, _: None) -> tuple[Any, None]:
             return tuple(_evaluated(inner.jaxpr, inner.consts, [*given[:fixed], *carry], join)), None
 
         return list(lax.scan(one, tuple(given[fixed:]), None, length=options["length"])[0])
-    found = equation.primitive.bind(*given, **options)
+    bound = equation.primitive.get_bind_params(options)
+    # Older versions of JAX return functions beside the options.
+    functions, options = bound if isinstance(bound, tuple) else ((), bound)
+    found = equation.primitive.bind(*functions, *given, **options)
     return list(found) if equation.primitive.multiple_results else [found]
+
+
+def _is_loop(scan: Any) -> bool:
+    """Return whether a scan has a state only, as that of ``fori_loop``."""
+    fixed, carried = scan.params["num_consts"], scan.params["num_carry"]
+    return fixed + carried == len(scan.invars) and carried == len(scan.outvars) and not scan.params["reverse"]
 
 
 def _is_variable(x: Any) -> bool:

@@ -23,6 +23,7 @@ from polhode.jax._components import (
     dot,
     exponential,
     minus,
+    normalized,
     plus,
     renormalized,
     reverse,
@@ -293,8 +294,9 @@ class Point(NamedTuple):
 class RungeKutta:
     """A body and its laws, stepped by the classical method on the rotor and the angular velocity.
 
-    ``R' = −½ R Ω_B`` and Euler's equations (handout eq. 4.13, 4.21); after each step R is divided by its
-    norm, which is all that the step does to stay on the group: it needs no sine, no root and no branch.
+    ``R' = −½ R Ω_B`` and Euler's equations (handout eq. 4.13, 4.21). After each step R is corrected to norm
+    1, to third order in ``|R|² − 1``, which is all that the step does to stay on the group: it needs no sine,
+    no root and no branch. Rotors of the result have norm 1.
     """
 
     def __init__(self, body: Gyrostat, torque: Torque) -> None:
@@ -305,8 +307,8 @@ class RungeKutta:
         return Point(rotor, omega, time)
 
     def rotor(self, point: Point) -> Four:
-        """Return the rotor."""
-        return point.rotor
+        """Return the rotor, which a step too long leaves beside norm 1."""
+        return normalized(point.rotor)
 
     def omega(self, point: Point) -> Three:
         """Return the angular velocity."""

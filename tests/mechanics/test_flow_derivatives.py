@@ -233,6 +233,27 @@ def test_derivatives_obey_the_chain_rule(i, w):
         assert np.abs(rotor - whole.d_rotor_d_omega).max() <= bound
 
 
+@pytest.mark.parametrize("turned", [(1, 2), (0, 2), (0, 1)])
+@pytest.mark.parametrize(
+    ("i", "w"),
+    [
+        (
+            (1.4637715882484015, 1.1773640572056574, 1.824610388517695),
+            (-2.8763559918879677, -0.6010803642492871, -0.4301683540051395),
+        ),
+        ((1, 2, 2.25), (0.375, 0.5, 0.5000000000009095)),
+        ((1, 2, 3), (0.25, -0.5, 1.0)),
+    ],
+)
+def test_a_half_turn_turns_the_derivatives(i, w, turned):
+    """A motion from behind the saddle, where cn < 0, is the same near the separatrix as from before it."""
+    signs = np.array([-1.0 if k in turned else 1.0 for k in range(3)])
+    for t in (0.3, 1.7, 20.0):
+        one, other = (motion_of(i, x).derivatives(t).d_omega_d_omega for x in (w, signs * w))
+        # Rounding of the start changes the motion by this near the separatrix.
+        assert np.abs(signs[:, None] * one * signs - other).max() < 1e-9 * np.abs(one).max()
+
+
 def test_body_axes_need_not_be_principal():
     """Rotating the body axes rotates rows and columns of the angular velocity only."""
     turn, omega = ph.Rotor.random(rng=5), [0.25, -0.5, 1.0]

@@ -384,7 +384,10 @@ class CGA(Algebra):
             ok = square != 0
         else:
             ok = kind.xp.abs(square) > 64 * kind.eps * kind.xp.sum(X._data * X._data, axis=-1)
-        require(ok, X, "the value is flat, without a center; see point_and_direction and normal_and_distance")
+        message = (
+            "the value is flat, or a round too small beside its distance from the origin: it has no center"
+        )
+        require(ok, X, f"{message}; for flats see point_and_direction and normal_and_distance")
         return X
 
     # --- versors

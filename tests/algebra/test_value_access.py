@@ -346,7 +346,7 @@ def test_names_of_other_libraries_are_errors_that_name_ours(use, remedy):
 @pytest.mark.parametrize("kind", [ph.Algebra, ph.PGA, ph.CGA])
 @pytest.mark.parametrize("signature", [(3,), (3, 0, 1)])
 def test_algebras_have_no_public_constructor(kind, signature):
-    with pytest.raises(TypeError, match=r"write algebra\(p, q, r\), pga\(n\) or cga\(n\)"):
+    with pytest.raises(TypeError, match=r"has no public constructor; write (algebra|pga|cga)\("):
         kind(*signature)
 
 

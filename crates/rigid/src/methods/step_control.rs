@@ -15,7 +15,8 @@ const STIFF_TURN: f64 = 0.02;
 const MANY: f64 = 1e5;
 
 /// A step no longer than twice the one before it, whose error is this many tolerances, has met a sharp change of the laws:
-/// where they are smooth, the error grows by less than 2⁸.
+/// where they are smooth, the error grows by 2⁸ and, where that of the step before happened to be small, by some hundred
+/// more.
 const SHARP: f64 = 1e3;
 
 /// Chooses the lengths of adaptive steps.
@@ -81,7 +82,8 @@ impl StepController {
         let h = h.abs();
         // NaN too.
         if error.is_nan() || error > 1.0 {
-            self.is_sharp |= h <= 2.0 * self.accepted && !(error <= SHARP);
+            // NaN is the error of a turn that is too long.
+            self.is_sharp |= h <= 2.0 * self.accepted && error > SHARP;
             self.next = h * if error.is_finite() { (0.9 * error.powf(-0.125)).max(0.2) } else { 0.2 };
             self.refused = true;
             return false;

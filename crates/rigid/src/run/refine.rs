@@ -305,9 +305,9 @@ impl Convergence {
             Some(_) if difference >= 0.1 => 2.0,
             Some(_) => {
                 let order = f64::from(self.accuracy.order);
-                // The truncation is more than the difference where a low order falls little from sweep to sweep.
-                let more = truncation > difference && truncation.is_finite();
-                let likely = if more { truncation } else { difference * self.by.powf(-0.9 * order) };
+                // Errors of a low order fall little from sweep to sweep.
+                let slow = self.by.powf(TRUSTED * order) < 2.0 && truncation.is_finite();
+                let likely = if slow { truncation } else { difference * self.by.powf(-0.9 * order) };
                 let wanted = (goal - rounding).max(0.3 * goal);
                 let by = 1.1 * (likely / wanted).powf(1.0 / (TRUSTED * order));
                 by.clamp(LEAST_GAIN.powf(1.0 / order).max(1.3), LEAP)
@@ -333,11 +333,14 @@ impl Convergence {
                 let sum = if tolerance == LEAST_TOLERANCE { 0.0 } else { sum };
                 return (difference.max(sum), None);
             }
-            if !self.scales.is_smooth || coarse.is_sharp || fine.is_sharp {
+            if coarse.is_sharp || fine.is_sharp {
                 // Steps cannot be shorter than this, so there is no third sweep.
                 let found = self.last.is_some() || tolerance == LEAST_TOLERANCE;
                 let before = self.last.map_or(0.0, |(before, _)| before * LUCKY);
                 return (if found { difference.max(before) } else { f64::INFINITY }, Some(shorter));
+            }
+            if !self.scales.is_smooth {
+                return (difference, Some(shorter));
             }
         }
         let order = f64::from(self.accuracy.order);

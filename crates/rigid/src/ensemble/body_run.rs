@@ -53,7 +53,7 @@ impl<'a> BodyRun<'a> {
             is_smooth: bounds.is_smooth,
         };
         BodyRun {
-            controller: StepController::new(first, bounds.longest, accuracy.goal),
+            controller: StepController::new(first, bounds.longest),
             member,
             bounds,
             first,
@@ -80,7 +80,7 @@ impl<'a> BodyRun<'a> {
     }
 
     fn first_steps(&self) -> StepController {
-        StepController::new(self.first, self.bounds.longest, self.tolerance)
+        StepController::new(self.first, self.bounds.longest)
     }
 
     /// The magnitude of the angular velocity, bounded below by its scale, in rad/s.
@@ -133,7 +133,6 @@ impl<'a> BodyRun<'a> {
     ) -> Result<(), SimulateError> {
         self.sweep.steps += 1;
         self.sweep.longest = self.sweep.longest.max(h.abs());
-        self.sweep.is_sharp |= self.controller.is_sharp;
         if !next.is_finite(l) {
             return Err(SimulateError::Diverged { time: next.time.0[l] });
         }

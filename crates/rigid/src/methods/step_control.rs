@@ -14,11 +14,6 @@ const STIFF_TURN: f64 = 0.02;
 /// Runs of fewer steps than this are completed even if stiff.
 const MANY: f64 = 1e5;
 
-/// A step no longer than twice the one before it, whose error is this many tolerances, has met a sharp change of the laws:
-/// where they are smooth, the error grows by 2⁸ and, where that of the step before happened to be small, by some hundred
-/// more.
-const SHARP: f64 = 1e3;
-
 /// Chooses the lengths of adaptive steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepController {
@@ -26,53 +21,30 @@ pub(crate) struct StepController {
     next: f64,
     /// The length of the current step, in s.
     cut: f64,
-    /// Whether it ends at a stop.
-    stops: bool,
     /// The longest allowed, in s.
     longest: f64,
     /// Whether the previous step was rejected.
     refused: bool,
-    /// The length of the last accepted step, in s; 0 at the start and where it ended at a stop.
-    accepted: f64,
-    /// Whether a step has met a sharp change of the laws.
-    pub is_sharp: bool,
-    /// The first of two steps to a stop.
-    part: f64,
 }
 
 impl StepController {
-    /// With a guess of the first step and the longest allowed, in s, for steps of this tolerance.
-    ///
-    /// Sweeps of other tolerances begin with another step and divide the way to a stop otherwise: with the same steps they
-    /// would also meet a sharp change of the laws alike, and their difference would not show the error.
-    pub fn new(first: f64, longest: f64, tolerance: f64) -> StepController {
-        /// The golden ratio, whose multiples are evenly spread.
-        const SPREAD: f64 = 0.618_033_988_749_894_9;
-        let share = (tolerance.ln() * SPREAD).rem_euclid(1.0);
-        let first = (first * (0.8 + 0.4 * share)).min(longest);
-        StepController {
-            next: first,
-            cut: first,
-            stops: false,
-            longest,
-            refused: false,
-            accepted: 0.0,
-            is_sharp: false,
-            part: 0.4 + 0.2 * share,
-        }
+    /// With a guess of the first step and the longest allowed, in s.
+    pub fn new(first: f64, longest: f64) -> StepController {
+        let first = first.min(longest);
+        StepController { next: first, cut: first, longest, refused: false }
     }
 
     /// Where a step ends on the way from one time to another.
     pub fn end(&mut self, from: f64, time: f64) -> Result<f64, SimulateError> {
         let rest = (time - from).abs();
-        // Two steps of about half the way avoid a tiny last one.
-        let cut = if self.next >= rest { rest } else { self.next.min(self.part * rest.max(self.next)) };
+        // Two steps of half the way avoid a tiny last one.
+        let cut = if self.next >= rest { rest } else { self.next.min(0.5 * rest.max(self.next)) };
         let to = if cut >= rest { time } else { from + (time - from).signum() * cut };
         // Output times may be adjacent floats.
         if to == from || self.refused && cut < 1e-14 * from.abs() {
             return Err(SimulateError::StepTooSmall { time: from, step: cut });
         }
-        (self.cut, self.stops) = (cut, to == time);
+        self.cut = cut;
         Ok(to)
     }
 
@@ -82,8 +54,6 @@ impl StepController {
         let h = h.abs();
         // NaN too.
         if error.is_nan() || error > 1.0 {
-            // NaN is the error of a turn that is too long.
-            self.is_sharp |= h <= 2.0 * self.accepted && error > SHARP;
             self.next = h * if error.is_finite() { (0.9 * error.powf(-0.125)).max(0.2) } else { 0.2 };
             self.refused = true;
             return false;
@@ -92,7 +62,7 @@ impl StepController {
         // A step cut short by a stop says little about the possible length.
         self.next = if self.cut < self.next { self.next.max(h * growth) } else { h * growth };
         self.next = self.next.min(self.longest);
-        (self.refused, self.accepted) = (false, if self.stops { 0.0 } else { h });
+        self.refused = false;
         true
     }
 }

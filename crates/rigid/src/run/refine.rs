@@ -41,10 +41,6 @@ const LEAP: f64 = 6.0;
 /// A difference that falls faster than this multiple of the order is small by chance.
 const FASTEST_FALL: f64 = 1.25;
 
-/// Two sweeps over a sharp change of the laws may agree by chance: a third one is compared too, and of the difference of
-/// the first two this fraction counts.
-const LUCKY: f64 = 0.1;
-
 /// The order of any method where a law has kinks.
 const ORDER_AT_KINKS: f64 = 2.0;
 
@@ -290,7 +286,7 @@ impl Convergence {
             if error <= self.accuracy.acceptable && self.magnification.is_some() {
                 return Ok(Some(self.converged(fine, error)));
             }
-            let least = if stuck { error } else { self.floor(error.min(1.0) / rounding, fine.steps) };
+            let least = if stuck { error } else { self.floor(error / rounding, fine.steps) };
             let reached = least.max(if rounding > LINEAR { 1.0 } else { 0.0 });
             return Err(SimulateError::NotConverged {
                 rtol: self.accuracy.goal,
@@ -306,7 +302,7 @@ impl Convergence {
             Some(_) => {
                 let order = f64::from(self.accuracy.order);
                 // Errors of a low order fall little from sweep to sweep.
-                let slow = self.by.powf(TRUSTED * order) < 2.0 && truncation.is_finite();
+                let slow = self.by.powf(TRUSTED * order) < 2.0;
                 let likely = if slow { truncation } else { difference * self.by.powf(-0.9 * order) };
                 let wanted = (goal - rounding).max(0.3 * goal);
                 let by = 1.1 * (likely / wanted).powf(1.0 / (TRUSTED * order));
@@ -332,12 +328,6 @@ impl Convergence {
                 // Steps cannot meet a smaller tolerance; the difference is used.
                 let sum = if tolerance == LEAST_TOLERANCE { 0.0 } else { sum };
                 return (difference.max(sum), None);
-            }
-            if coarse.is_sharp || fine.is_sharp {
-                // Steps cannot be shorter than this, so there is no third sweep.
-                let found = self.last.is_some() || tolerance == LEAST_TOLERANCE;
-                let before = self.last.map_or(0.0, |(before, _)| before * LUCKY);
-                return (if found { difference.max(before) } else { f64::INFINITY }, Some(shorter));
             }
             if !self.scales.is_smooth {
                 return (difference, Some(shorter));

@@ -74,11 +74,6 @@ impl StepRule {
     pub fn equal(step: f64) -> StepRule {
         StepRule::Step(EqualSteps { step, first: step, parts: 1.0 })
     }
-
-    /// The tolerance of a step; 1 for equal steps, which have none.
-    fn tolerance(self) -> f64 {
-        if let StepRule::Tolerance(tolerance) = self { tolerance } else { 1.0 }
-    }
 }
 
 /// The result of one integration over all output times.
@@ -97,8 +92,6 @@ pub(crate) struct Sweep {
     pub errors: f64,
     /// The longest step.
     pub longest: f64,
-    /// Whether an adaptive step has met a sharp change of the laws.
-    pub is_sharp: bool,
     pub steps: u64,
     /// Number of pieces of steps in which events of a centre of mass in closed form were sought.
     pub pieces: u64,
@@ -193,7 +186,7 @@ impl Integrator<'_> {
         let values = self.values(&start)?;
         let mut cursor = Cursor {
             at: start,
-            controller: StepController::new(self.first, self.bounds.longest, self.rule.tolerance()),
+            controller: StepController::new(self.first, self.bounds.longest),
             fastest,
             values,
             ended: false,
@@ -274,7 +267,6 @@ impl Integrator<'_> {
             if cursor.controller.judge(to - from, error / tolerance) {
                 sweep.longest = sweep.longest.max((to - from).abs());
                 sweep.errors += error;
-                sweep.is_sharp |= cursor.controller.is_sharp;
                 self.arrive(cursor, next, sweep, done)?;
                 let turn = self.body.omega(next.phase.momentum).norm() * (to - from);
                 self.bounds.limit.check(sweep.steps, to - from, turn, || done(to))?;

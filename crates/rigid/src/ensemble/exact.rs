@@ -19,17 +19,13 @@ const METHOD: &str = "exact";
 
 impl<'a> Scheduler<'a> {
     /// Writes the motions of free bodies, at most as many as there are lanes, and leaves none.
-    pub fn free(
-        &self,
-        motions: &mut FreeMotions<TOGETHER>,
-        members: &mut Vec<Member<'a>>,
-        progress: &mut dyn FnMut(Progress) -> bool,
-    ) {
+    pub fn free(&self, members: &mut Vec<Member<'a>>, progress: &mut dyn FnMut(Progress) -> bool) {
         if members.is_empty() {
             return;
         }
         if members.len() == TOGETHER {
             let bodies: [FreeBody; TOGETHER] = array::from_fn(|l| free_body(&members[l]));
+            let mut motions = FreeMotions::default();
             motions.set_up(&bodies);
             let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
             for (index, &time) in self.times.iter().enumerate() {

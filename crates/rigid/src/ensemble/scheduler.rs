@@ -5,7 +5,6 @@ use super::columns::{Columns, lock};
 use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy, WIDE};
 use super::output::{Outputs, Share};
 use crate::error::SimulateError;
-use crate::exact::free::FreeMotions;
 use crate::exact::many::TIMES_IN_LANES;
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::Method;
@@ -121,7 +120,7 @@ impl<'a> Scheduler<'a> {
     pub fn next_member(&self, progress: &mut dyn FnMut(Progress) -> bool) -> Option<Member<'a>> {
         let method = self.options.method.unwrap_or(METHOD);
         let adapts = method == METHOD && self.ensemble.in_lanes(false);
-        let (mut free, mut motions) = (Vec::new(), FreeMotions::default());
+        let mut free = Vec::new();
         let mut next = None;
         while let Some((body, own)) = self.next_body() {
             if !adapts {
@@ -137,7 +136,7 @@ impl<'a> Scheduler<'a> {
                 Strategy::Free => {
                     free.push(member);
                     if free.len() == self.free_together() {
-                        self.free(&mut motions, &mut free, progress);
+                        self.free(&mut free, progress);
                     }
                 }
                 Strategy::Exact(closed) => {
@@ -147,7 +146,7 @@ impl<'a> Scheduler<'a> {
                 Strategy::Single => self.run_single(body, member.own, progress),
             }
         }
-        self.free(&mut motions, &mut free, progress);
+        self.free(&mut free, progress);
         next
     }
 

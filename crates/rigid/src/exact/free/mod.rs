@@ -127,7 +127,7 @@ impl FreeMotion {
 
     /// From principal axes to space, and with the frame from principal axes to those of the body.
     pub(crate) fn in_frame(frame: Rotor, moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
-        FreeBody { moments, frame, rotor, omega }.motion()
+        FreeBody::in_frame(frame, moments, rotor, omega).motion()
     }
 
     /// How far in time, in s, the phase is accurate: 1e17 turns.

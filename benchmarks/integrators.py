@@ -16,7 +16,7 @@ import numpy as np
 
 import polhode as ph
 from contest import OURS
-from polhode._mechanics.simulate import METHODS
+from polhode._mechanics.arguments import METHODS
 from truth import Top
 
 TOLERANCES = (1e-6, 1e-9, 1e-12)

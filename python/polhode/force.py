@@ -9,25 +9,14 @@ array of numbers, or batched vectors. Python functions are shared by all bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
-import numpy as np
-
-from polhode import _native
-from polhode._algebra.constructors import as_points, vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body
-from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
-from polhode._mechanics.parameters import Batch, named_together, numbers, rows, together
-from polhode._mechanics.registry import FORCES
-from polhode._mechanics.sums import Sum, multiple, require_single
-from polhode._support.arrays import Array, as_float
-
-if TYPE_CHECKING:
-    from polhode._mechanics.state import State
+from polhode._mechanics.forces import Force, force_of, native_force
+from polhode._mechanics.laws import function_of, law_of_formula
+from polhode._mechanics.parameters import named_together
 
 __all__ = [
     "Force",
@@ -40,78 +29,6 @@ __all__ = [
     "spring",
     "thrust",
 ]
-
-# What counts as a constant force in a sum.
-_VECTORS = (Multivector, np.ndarray)
-
-
-@dataclass(frozen=True, repr=False)
-class Force(Sum):
-    """A sum of forces, returned by the functions of this module.
-
-    Forces are immutable values: equal if their arguments are equal, hashable, and picklable.
-
-    Examples
-    --------
-    Forces add up, and a vector is a constant force in N:
-
-    >>> ph.force.constant([0, 0, -9.81]) + ph.force.drag(0.1)
-    constant([0.0, 0.0, -9.81]) + drag(0.1)
-    >>> ph.force.drag(0.1) - 9.81 * ph.e3
-    drag(0.1) + constant([0.0, 0.0, -9.81])
-
-    A number times a force is a force with other arguments:
-
-    >>> 2 * ph.force.drag(0.1)
-    drag(0.2)
-    """
-
-    laws: tuple[_native.Force, ...]
-    _constant = "for a constant force write constant(F) or a vector"
-
-    def __add__(self, other: Force | Multivector | Array) -> Force:
-        return super().__add__(constant(other) if isinstance(other, _VECTORS) else other)
-
-    def __radd__(self, other: int | Multivector | Array) -> Force:
-        return constant(other) + self if isinstance(other, _VECTORS) else super().__radd__(other)
-
-    def __sub__(self, other: Force | Multivector | Array) -> Force:
-        return super().__sub__(constant(other) if isinstance(other, _VECTORS) else other)
-
-    def __rsub__(self, other: int | Multivector | Array) -> Force:
-        return constant(other) - self if isinstance(other, _VECTORS) else super().__rsub__(other)
-
-    def _multiple(self, law: _native.Force, factor: float, done: str) -> _native.Force:
-        return multiple(law, factor, (0,), done)
-
-    def at(self, body: Body, state: State, t: float | None = None) -> Multivector:
-        """Return the force at a single state and time, a vector in space in N.
-
-        In formulas, L excludes the momentum of `gyrostat` wheels. The time t is in s, by default that of the
-        state.
-
-        Examples
-        --------
-        Weight and drag of a ball that moves at 2 m/s along e1:
-
-        >>> ball = ph.Body.sphere(0.1, mass=0.5)
-        >>> state = ph.State(ph.Rotor.identity(), [0, 0, 0], velocity=[2, 0, 0])
-        >>> (ph.force.constant([0, 0, -5]) + ph.force.drag(0.1)).at(ball, state)
-        -0.2 e1 - 5 e3
-        """
-        # Here, for simulations need not import formulas.
-        from polhode._mechanics.force_values import names_of_motion, value_of
-        from polhode._mechanics.state import require_single_state
-
-        require_single(self)
-        if not isinstance(body, Body):
-            raise TypeError(f"a force needs a Body, which has a mass, got {type(body).__name__}")
-        require_single_state(state)
-        motion = names_of_motion(body, state, finite(as_float(state.time if t is None else t, "t"), "t"))
-        return sum((value_of(law, motion) for law in self.laws), vector([0.0, 0.0, 0.0]))
-
-    def __repr__(self) -> str:
-        return " + ".join(map(_shown, self.laws)) or "Force(())"
 
 
 def __dir__() -> list[str]:
@@ -131,7 +48,7 @@ def constant(F: Any) -> Force:
     >>> round(float(fall.position[-1]["e3"]), 9)  # −½ g t²
     -20.0
     """
-    return _force("constant", F)
+    return force_of("constant", F)
 
 
 def thrust(force: Any, at: Any = None) -> Force:
@@ -150,7 +67,7 @@ def thrust(force: Any, at: Any = None) -> Force:
     >>> round(float(motion.omega_body[-1]["e12"]), 9)
     0.5
     """
-    return _force("thrust", force) if at is None else _force("thrust", force, at)
+    return force_of("thrust", force) if at is None else force_of("thrust", force, at)
 
 
 def drag(k: Any) -> Force:
@@ -174,7 +91,7 @@ def drag(k: Any) -> Force:
            [0.6065],
            [0.3679]])
     """
-    return _force("drag", k)
+    return force_of("drag", k)
 
 
 def quadratic_drag(k: Any) -> Force:
@@ -190,7 +107,7 @@ def quadratic_drag(k: Any) -> Force:
     >>> ph.simulate(ball, dropped, [0, 10, 20], force=forces).velocity["e3"].round(4)
     array([ 0., -7., -7.])
     """
-    return _force("quadratic_drag", k)
+    return force_of("quadratic_drag", k)
 
 
 def spring(stiffness: Any, anchor: Any = 0) -> Force:
@@ -208,7 +125,7 @@ def spring(stiffness: Any, anchor: Any = 0) -> Force:
     >>> round(float(swing.position[-1]["e1"]), 9)
     -1.0
     """
-    return _force("spring", stiffness, anchor)
+    return force_of("spring", stiffness, anchor)
 
 
 def central(mu: Any) -> Force:
@@ -226,7 +143,7 @@ def central(mu: Any) -> Force:
     >>> orbit.position["e1"].round(9)
     array([-1.,  1.])
     """
-    return _force("central", mu)
+    return force_of("central", mu)
 
 
 def formula(text: str, /, **values: Any) -> Force:
@@ -267,7 +184,7 @@ def formula(text: str, /, **values: Any) -> Force:
     """
 
     def law(given: tuple[tuple[str, Any], ...]) -> Force:
-        return _native_force("formula", text, named_together(given))
+        return native_force("formula", text, named_together(given))
 
     return law_of_formula(law, text, values, batches=True)
 
@@ -287,30 +204,4 @@ def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Forc
     >>> ph.simulate(ball, thrown, [0, 1, 2], force=law).velocity["e1"].round(4)  # exp(-t/2)
     array([1.    , 0.6065, 0.3679])
     """
-    return _native_force("function", function_of(f, "t", "position", "velocity", "rotor"))
-
-
-def _force(name: str, *values: Any) -> Force:
-    """Return the force of the registry with these values for its arguments."""
-    entries = FORCES[name].arguments
-    convert: dict[str, Any] = {"scalar": numbers, "vector": _vectors}
-    arguments = [convert[x.shape](value, x.name) for x, value in zip(entries, values, strict=False)]
-    return _native_force(name, *arguments, names=[x.name for x in entries])
-
-
-def _native_force(name: str, *arguments: Any, names: Sequence[str] = ()) -> Force:
-    return Force((_native.Force(name, *together(arguments, name, names)),))
-
-
-def _vectors(value: Any, name: str) -> tuple[float, ...] | Batch:
-    return rows(as_points(value, f"the force's {name}"), f"the force's {name}")
-
-
-def _shown(law: _native.Force) -> str:
-    if law.name == "formula":
-        text, values = law.arguments
-        return shown("formula", [text], dict(values))
-    if law.name == "thrust" and len(law.arguments) == 2:
-        F, at = law.arguments
-        return shown("thrust", [F], {"at": at})
-    return shown(law.name, law.arguments, {})
+    return native_force("function", function_of(f, "t", "position", "velocity", "rotor"))

@@ -11,39 +11,23 @@ bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-from polhode import _native
-from polhode._algebra.constructors import as_bivectors, bivector
+from polhode._algebra.constructors import as_bivectors
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body
-from polhode._mechanics.body_arrays import bodies_of, has, inertia_of
+from polhode._mechanics.body_arrays import bodies_of, has
 from polhode._mechanics.inertia import Inertia
-from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
+from polhode._mechanics.laws import function_of, law_of_formula, one_of
 from polhode._mechanics.orbits import DipoleField, KeplerOrbit, dipole_field
-from polhode._mechanics.parameters import (
-    bivectors,
-    gains,
-    named_together,
-    numbers,
-    numbers_of,
-    rotors,
-    together,
-    vectors,
-)
-from polhode._mechanics.pivot import HOLDING, about_pivot
-from polhode._mechanics.registry import TORQUES
-from polhode._mechanics.sums import Sum, multiple, require_single
+from polhode._mechanics.parameters import named_together, numbers, numbers_of, vectors
+from polhode._mechanics.registry import FRAMES, INTERPOLATIONS
+from polhode._mechanics.torques import Torque, native_torque, torque_of
 from polhode._mechanics.wheels import wheel_arguments
-from polhode._support.arrays import as_float, as_floats
-
-if TYPE_CHECKING:
-    from polhode._mechanics.state import State
+from polhode._support.arrays import as_floats
 
 __all__ = [
     "KeplerOrbit",
@@ -68,92 +52,6 @@ __all__ = [
     "torsion_spring",
     "viscous_damping",
 ]
-
-_CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
-    "scalar": numbers,
-    "vector": vectors,
-    "bivector": bivectors,
-    "gains": gains,
-    "rotor": rotors,
-}
-# The arguments in which a law is linear; the first one of all others.
-_LINEAR: dict[str, tuple[int, ...]] = {
-    "gravity_gradient": (),
-    "pd_control": (0, 1),
-    "reaction_wheels": (),
-    "tabulated": (1,),
-}
-_FRAMES = ("body", "space")
-_KINDS = tuple(next(x.words for x in TORQUES["tabulated"].arguments if x.name == "kind"))
-
-
-@dataclass(frozen=True, repr=False)
-class Torque(Sum):
-    """A sum of torque laws, returned by the functions of this module.
-
-    Laws are immutable values: equal if their arguments are equal, hashable, and picklable.
-
-    Examples
-    --------
-    Laws add up; each has the value of its arguments:
-
-    >>> law = ph.torque.heavy([0, 0, 2]) + ph.torque.damping(0.5)
-    >>> law
-    heavy([0.0, 0.0, 2.0]) + damping(0.5)
-    >>> law.holds  # a point of the body is fixed
-    True
-    >>> law == ph.torque.heavy([0, 0, 2]) + ph.torque.damping(0.5)
-    True
-
-    A number times a law multiplies what it exerts; the result is a law with other arguments:
-
-    >>> 2 * law - ph.torque.damping(0.25)
-    heavy([0.0, 0.0, 4.0]) + damping(1.0) + damping(-0.25)
-    """
-
-    laws: tuple[_native.Law, ...]
-    _constant = "for a constant torque write constant_body(N) or constant_space(N)"
-
-    def _multiple(self, law: _native.Law, factor: float, done: str) -> _native.Law:
-        return multiple(law, factor, _LINEAR.get(law.name, (0,)), done)
-
-    def __repr__(self) -> str:
-        return " + ".join(map(_shown, self.laws)) or "Torque(())"
-
-    @property
-    def holds(self) -> bool:
-        """Whether a law holds the body at a fixed point, as `gravity` and `heavy` do."""
-        return any(law.name in HOLDING for law in self.laws)
-
-    def at(self, inertia: Inertia | Body, state: State, t: float | None = None) -> Multivector:
-        """Return the torque T in body axes at a single state and time: ``I(Ω_B') − Ω_B × I(Ω_B) = T``.
-
-        This is the right side of handout eq. (4.21) in body axes, in N m; for a `gyrostat` it is the
-        reaction of the wheel to being turned, for `reaction_wheels` their torque on a body whose inertia is
-        without their moments about their axes. The inertia is about the centre of mass, or about the fixed
-        point if a law holds the body; from a `Body` the right one is taken. The time t is in s, by default
-        that of the state.
-
-        Examples
-        --------
-        Damping at the rate 0.5/s is ``−0.5 I(Ω_B)``:
-
-        >>> inertia = ph.Inertia.from_principal_moments(1, 2, 3)
-        >>> state = ph.State(ph.Rotor.identity(), [0, 0, 4])
-        >>> ph.torque.damping(0.5).at(inertia, state)
-        -6 e1∧e2
-        """
-        from polhode._mechanics.state import require_single_state
-
-        require_single(self)
-        if not isinstance(inertia, Inertia | Body):
-            raise TypeError(f"inertia must be an Inertia or a Body, got {type(inertia).__name__}")
-        require_single_state(state)
-        bodies, laws = about_pivot(bodies_of(inertia), self.laws)
-        body = inertia_of(bodies[()], self.holds)
-        rotor, omega = state.rotor._data, state.omega_body._data
-        time = finite(as_float(state.time if t is None else t, "t"), "t")
-        return bivector(_native.torque_at(list(laws), body._core, rotor, omega, time))
 
 
 def __dir__() -> list[str]:
@@ -214,7 +112,7 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
         raise TypeError("gravity needs a Body, which has a mass, got an Inertia; see ph.torque.heavy(c)")
     masses = np.array([one.mass for one in bodies.flat]).reshape(bodies.shape)
     centers = np.array([one._core.center_of_mass() for one in bodies.flat]).reshape(*bodies.shape, 3)
-    return _native_law(
+    return native_torque(
         "gravity",
         acceleration,
         numbers(masses, "the mass"),
@@ -243,7 +141,7 @@ def heavy(c: Any) -> Torque:
     >>> print(f"{(turn[-1] - turn[0]) / 10:.3f}")
     0.015
     """
-    return _law("heavy", c)
+    return torque_of("heavy", c)
 
 
 def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -> Torque:
@@ -279,7 +177,7 @@ def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0
         if np.any(eccentricity) or np.any(mean_anomaly):
             raise TypeError("an orbit has its own eccentricity and mean anomaly; leave these arguments out")
         rate, eccentricity, mean_anomaly = rate.rate, rate.eccentricity, rate.mean_anomaly
-    return _law("gravity_gradient", rate, eccentricity, mean_anomaly)
+    return torque_of("gravity_gradient", rate, eccentricity, mean_anomaly)
 
 
 def magnetic(dipole: Any, field: Any, orbit: KeplerOrbit | None = None) -> Torque:
@@ -312,14 +210,14 @@ def magnetic(dipole: Any, field: Any, orbit: KeplerOrbit | None = None) -> Torqu
             raise TypeError(
                 "a field that is a function needs an orbit; give orbit=ph.torque.KeplerOrbit(...)"
             )
-        return _law("magnetic", dipole, field)
+        return torque_of("magnetic", dipole, field)
     if not isinstance(orbit, KeplerOrbit):
         raise TypeError(f"orbit must be a KeplerOrbit, got {type(orbit).__name__}")
     own = vectors(dipole, "dipole")
     if not isinstance(own, tuple):
         raise ValueError(f"along an orbit the dipole must be a single vector, got batch shape {own.shape}")
     met = field.moment if isinstance(field, DipoleField) else function_of(field, "t", "position")
-    return _native_law("magnetic_on_orbit", own, orbit._numbers, met)
+    return native_torque("magnetic_on_orbit", own, orbit._numbers, met)
 
 
 def larmor(b: Any) -> Torque:
@@ -337,7 +235,7 @@ def larmor(b: Any) -> Torque:
     >>> motion.momentum_space[-1].components[:2].round(4)  # cos 1, −sin 1
     array([ 0.5403, -0.8415])
     """
-    return _law("larmor", b)
+    return torque_of("larmor", b)
 
 
 def radiation_pressure(
@@ -371,7 +269,7 @@ def radiation_pressure(
     >>> law.at(inertia, ph.State(ph.Rotor.identity(), [0, 0, 0]))
     -4.56e-05 e3∧e1
     """
-    return _law("radiation_pressure", area, offset, sun, coefficient, pressure)
+    return torque_of("radiation_pressure", area, offset, sun, coefficient, pressure)
 
 
 # --- springs, dampers, control
@@ -391,7 +289,7 @@ def damping(g: Any) -> Torque:
     >>> motion.omega_body["e12"].round(4)  # exp(-0.5 t)
     array([1.    , 0.6065, 0.3679])
     """
-    return _law("damping", g)
+    return torque_of("damping", g)
 
 
 def viscous_damping(d: Any) -> Torque:
@@ -410,7 +308,7 @@ def viscous_damping(d: Any) -> Torque:
     >>> motion.omega_body["e12"].round(4)  # exp(-t/2)
     array([1.    , 0.6065, 0.3679])
     """
-    return _law("viscous_damping", d)
+    return torque_of("viscous_damping", d)
 
 
 def quadratic_damping(k: Any) -> Torque:
@@ -426,7 +324,7 @@ def quadratic_damping(k: Any) -> Torque:
     >>> motion.omega_body["e12"].round(6)
     array([1.  , 0.5 , 0.25])
     """
-    return _law("quadratic_damping", k)
+    return torque_of("quadratic_damping", k)
 
 
 def torsion_spring(stiffness: Any, rest: Rotor | None = None) -> Torque:
@@ -452,7 +350,7 @@ def torsion_spring(stiffness: Any, rest: Rotor | None = None) -> Torque:
     >>> round(float(swing.rotor[-1].to_rotation_vector()[2]), 6)
     -0.3
     """
-    return _law("torsion_spring", stiffness, rest)
+    return torque_of("torsion_spring", stiffness, rest)
 
 
 def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
@@ -478,7 +376,7 @@ def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
     >>> motion.rotor.to_rotation_vector()[:, 2].round(4)
     array([1.    , 0.7358, 0.0404])
     """
-    return _law("pd_control", kp, kd, target)
+    return torque_of("pd_control", kp, kd, target)
 
 
 def gyrostat(h: Any) -> Torque:
@@ -500,7 +398,7 @@ def gyrostat(h: Any) -> Torque:
     -1.00 rad/s
     1.00 rad/s
     """
-    return _law("gyrostat", h)
+    return torque_of("gyrostat", h)
 
 
 def reaction_wheels(
@@ -566,7 +464,7 @@ def reaction_wheels(
     array([1.])
     """
     given = wheel_arguments(axes, inertias, torques, times, speeds, omega_body, max_torque, max_speed)
-    return _native_law("reaction_wheels", *given)
+    return native_torque("reaction_wheels", *given)
 
 
 # --- given values
@@ -585,7 +483,7 @@ def constant_body(N: Any) -> Torque:
     >>> motion.omega_body["e12"].round(9)
     array([0. , 0.5, 1. ])
     """
-    return _law("constant_body", N)
+    return torque_of("constant_body", N)
 
 
 def constant_space(N: Any) -> Torque:
@@ -601,7 +499,7 @@ def constant_space(N: Any) -> Torque:
     >>> motion.momentum_space["e23"].round(9)
     array([0. , 0.5, 1. ])
     """
-    return _law("constant_space", N)
+    return torque_of("constant_space", N)
 
 
 def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
@@ -638,7 +536,9 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
             f"times of shape (n,) need torques of shape (n, 3), got shapes {when.shape} and {rows.shape}"
         )
     table = tuple(when.tolist()), tuple(map(tuple, rows.tolist()))
-    return _native_law("tabulated", *table, _one_of(_FRAMES, frame, "frame"), _one_of(_KINDS, kind, "kind"))
+    return native_torque(
+        "tabulated", *table, one_of(FRAMES, frame, "frame"), one_of(INTERPOLATIONS, kind, "kind")
+    )
 
 
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
@@ -684,10 +584,10 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     >>> bool(weight.at(inertia, state).is_close(ph.torque.heavy(c).at(inertia, state)))
     True
     """
-    axes = _one_of(_FRAMES, frame, "frame")
+    axes = one_of(FRAMES, frame, "frame")
 
     def law(given: tuple[tuple[str, Any], ...]) -> Torque:
-        return _native_law("formula", text, axes, named_together(given))
+        return native_torque("formula", text, axes, named_together(given))
 
     return law_of_formula(law, text, values, batches=True)
 
@@ -708,55 +608,4 @@ def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
     >>> motion.omega_body["e12"].round(4)  # exp(-0.5 t)
     array([1.    , 0.6065, 0.3679])
     """
-    return _native_law("function", function_of(f, "t", "rotor", "omega_body"))
-
-
-def settled(bodies: Any, torque: Torque | None) -> tuple[Any, Torque | None]:
-    """Return the bodies with a fixed point, if any, at the origin of their axes, and the torque."""
-    if torque is None:
-        return bodies, None
-    bodies, laws = about_pivot(bodies, torque.laws)
-    return bodies, Torque(laws)
-
-
-# --- arguments
-
-
-def _law(name: str, *values: Any) -> Torque:
-    """Return the law of the registry with these values for its arguments."""
-    entries = TORQUES[name].arguments
-    arguments = [_CONVERSIONS[x.shape](value, x.name) for x, value in zip(entries, values, strict=True)]
-    return _native_law(name, *arguments, names=[x.name for x in entries])
-
-
-def _native_law(name: str, *arguments: Any, names: Sequence[str] = ()) -> Torque:
-    return Torque((_native.Law(name, *together(arguments, name, names)),))
-
-
-def _one_of(words: tuple[str, ...], value: str, name: str) -> str:
-    if value not in words:
-        raise ValueError(f"{name} is {value!r}, expected {' or '.join(map(repr, words))}")
-    return value
-
-
-# --- text
-
-
-def _shown(law: _native.Law) -> str:
-    if law.name == "tabulated":
-        times, _, frame, kind = law.arguments
-        return f"tabulated({len(times)} rows, {times[0]:.6g} s to {times[-1]:.6g} s, {frame=}, {kind=})"
-    if law.name == "reaction_wheels":
-        return f"reaction_wheels({len(law.arguments[0])} wheels, {len(law.arguments[6])} rows of torques)"
-    if law.name == "magnetic_on_orbit":
-        dipole, orbit, met = law.arguments
-        field = DipoleField(met) if isinstance(met, tuple) else met
-        return shown("magnetic", [dipole, field], {"orbit": KeplerOrbit(*orbit)})
-    if law.name == "gravity":
-        g, mass, center, pivot = law.arguments
-        return shown("gravity", [], {"mass": mass, "center_of_mass": center, "g": g, "pivot": pivot})
-    if law.name == "formula":
-        text, frame, values = law.arguments
-        named = {"frame": frame} if frame != "body" else {}
-        return shown("formula", [text], {**named, **dict(values)})
-    return shown(law.name, law.arguments, {})
+    return native_torque("function", function_of(f, "t", "rotor", "omega_body"))

@@ -195,7 +195,7 @@ def test_bad_steps():
     stepper = ph.Stepper(BODY, START)
     with pytest.raises(ValueError, match="dt must be finite, got nan"):
         stepper.step(np.nan)
-    with pytest.raises(ValueError, match='frame must be "body" or "space"'):
+    with pytest.raises(ValueError, match="frame must be 'body' or 'space', got"):
         stepper.step(0.1, [0, 0, 1], frame="world")
     with pytest.raises(ValueError, match=r"torque has batch shape \(2,\), but the stepper \(\)"):
         stepper.step(0.1, np.zeros((2, 3)))

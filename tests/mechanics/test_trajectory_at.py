@@ -182,7 +182,7 @@ def test_names_of_other_libraries_are_errors_that_name_ours():
             getattr(motion, name)
     with pytest.raises(IndexError, match=r"of one motion is at\(t\)"):
         motion[0]
-    with pytest.raises(TypeError, match="a constant torque is constant_body"):
+    with pytest.raises(TypeError, match="for a constant torque write constant_body"):
         ph.simulate(BODY, START, [1.0], torque=[0, 0, 1])
     with pytest.raises(TypeError, match=r"see Rotor\.from_quaternion"):
         ph.State([1, 0, 0, 0], [0, 0, 1])

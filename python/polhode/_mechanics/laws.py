@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -28,6 +28,13 @@ def finite(value: float, name: str) -> float:
 
 def number(value: Any, name: str) -> float:
     return finite(as_float(value, name), name)
+
+
+def one_of(words: Sequence[str], value: str, name: str) -> str:
+    """Return a value that is one of these words; a ValueError for others."""
+    if value not in words:
+        raise ValueError(f"{name} must be {' or '.join(map(repr, words))}, got {value!r}")
+    return value
 
 
 def formula_value(value: Any, name: str, batches: bool = False) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -65,9 +65,6 @@ def numbers_of(argument: Any) -> Array:
     return argument.rows if isinstance(argument, Batch) else np.atleast_1d(np.array(argument, float))
 
 
-Numbers = float | tuple[float, ...] | Batch
-
-
 def numbers(value: Any, name: str) -> float | Batch:
     """Return a finite number, or a batch from an array."""
     array = as_floats(value, name)
@@ -109,6 +106,16 @@ def rows(components: Array, name: str) -> tuple[float, ...] | Batch:
     """Return components as a tuple, or a batch of them; they must be finite."""
     check_finite(components, name)
     return Batch(components) if components.ndim > 1 else tuple(components.tolist())
+
+
+# The conversion of an argument, given with its name, by its shape in the registry.
+CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
+    "scalar": numbers,
+    "vector": vectors,
+    "bivector": bivectors,
+    "gains": gains,
+    "rotor": rotors,
+}
 
 
 def check_finite(components: Array, what: str) -> None:

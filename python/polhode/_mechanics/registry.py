@@ -42,3 +42,11 @@ TORQUES, FORCES = (
     }
     for table in _native.law_registry()
 )
+
+
+def _words(name: str) -> tuple[str, ...]:
+    return next(tuple(x.words) for x in TORQUES["tabulated"].arguments if x.name == name)
+
+
+# Axes of components, and kinds of interpolation in a table.
+FRAMES, INTERPOLATIONS = _words("frame"), _words("kind")

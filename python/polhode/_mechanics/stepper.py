@@ -13,10 +13,12 @@ from polhode._algebra.constructors import as_bivectors, bivector, vector
 from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._mechanics.arguments import about_fixed_point, ensemble_of
 from polhode._mechanics.ensemble import check_state
 from polhode._mechanics.foreign_names import STEPPER
+from polhode._mechanics.laws import one_of
 from polhode._mechanics.parameters import check_finite
-from polhode._mechanics.simulate import _ensemble, _settled
+from polhode._mechanics.registry import FRAMES
 from polhode._mechanics.state import State
 from polhode._mechanics.sums import Sum
 from polhode._support.arrays import Array, Shape, as_float, as_floats
@@ -40,7 +42,7 @@ class Stepper:
     torque table of ``kind="previous"`` and the same method and step, `simulate` gives the same motion to
     rounding. The bodies of a batch have one time; none depends on the others::
 
-        satellite = ph.Stepper(body, state, ph.torque.gravity_gradient(1e-3))
+        satellite = ph.Stepper(body, state, ph.torque.magnetic(dipole, field))
         while satellite.time < 600:
             satellite.step(0.1, torque=controller(satellite.state))
 
@@ -103,8 +105,8 @@ class Stepper:
         longest = math.inf if step is None else as_float(step, "step")
         if not longest > 0:
             raise ValueError(f"step must be positive, got {step}")
-        bodies, law = _settled(body, torque)
-        setup = _ensemble(bodies, state, [0.0], law, force, method, None, None, step, (None, None, []))
+        bodies, law = about_fixed_point(body, torque)
+        setup = ensemble_of(bodies, state, [0.0], law, force, method, None, None, step, (None, None, []))
         if not math.prod(setup.shape):
             raise ValueError(f"a stepper needs at least one body, got batch shape {setup.shape}")
         self.shape = setup.shape
@@ -167,7 +169,7 @@ class Stepper:
         >>> satellite.step(0.5, torque=[0, 0, 2]).omega_body.components.round(12)  # N dt/i
         array([0.  , 0.  , 0.25])
         """
-        core, seconds, in_space = self._core, _seconds(dt), _in_space(frame)
+        core, seconds, in_space = self._core, _seconds(dt), one_of(FRAMES, frame, "frame") == "space"
         if wheel_torque is not None:
             core.command(self._commands(wheel_torque))
         spin = core.step_once(seconds, torque, in_space)
@@ -255,12 +257,6 @@ def _seconds(dt: Any) -> float:
     if not math.isfinite(seconds):
         raise ValueError(f"dt must be finite, got {seconds}")
     return seconds
-
-
-def _in_space(frame: str) -> bool:
-    if frame not in ("body", "space"):
-        raise ValueError(f'frame must be "body" or "space", got {frame!r}')
-    return frame == "space"
 
 
 def _common_time(times: Array) -> Array:

@@ -15,6 +15,8 @@ from polhode._algebra.multivector import Multivector
 from polhode._mechanics.parameters import Batch, common
 from polhode._support.arrays import Shape, as_components
 
+CONSTANT_TORQUE = "for a constant torque write constant_body(N) or constant_space(N)"
+
 L = TypeVar("L", _native.Law, _native.Force)
 
 

@@ -14,10 +14,10 @@ from polhode import _native
 from polhode import force as forces
 from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.rotor import Rotor
+from polhode._mechanics.arguments import check_progress, checked_threads
 from polhode._mechanics.bodies import Body
 from polhode._mechanics.ensemble import Results, require, warn_of
 from polhode._mechanics.inertia import Inertia
-from polhode._mechanics.simulate import check_progress, checked_threads
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.ensemble import EnsembleSpec

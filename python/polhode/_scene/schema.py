@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import combinations
 from typing import Any
 
-from polhode._mechanics.registry import FORCES, TORQUES, Argument, Entry
-from polhode._mechanics.simulate import METHODS
+from polhode._mechanics.arguments import METHODS
+from polhode._mechanics.registry import FORCES, FRAMES, TORQUES, Argument, Entry
 from polhode._native import kept_words
 
 Schema = dict[str, Any]
@@ -103,7 +103,7 @@ def _body() -> Schema:
 
 
 def _initial() -> Schema:
-    frame = {"frame": {"enum": ["body", "space"]}}
+    frame = {"frame": {"enum": list(FRAMES)}}
     spins = [
         _table({"plane": _plane(), "rate": _quantity("rad/s"), **frame}, required=("plane", "rate")),
         _table({"vector": _three("rad/s"), **frame}, required=("vector",)),

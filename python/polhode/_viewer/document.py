@@ -20,14 +20,14 @@ import numpy as np
 
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.transform import RigidTransform
+from polhode._mechanics.arguments import about_fixed_point, as_force, as_torque
 from polhode._mechanics.bodies import Body
-from polhode._mechanics.body_arrays import bodies_of
 from polhode._mechanics.closed_form import ClosedForm
 from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.laws import finite
 from polhode._mechanics.problem import Problem
-from polhode._mechanics.simulate import as_force, as_torque, simulate
+from polhode._mechanics.simulate import simulate
 from polhode._mechanics.state import State
 from polhode._mechanics.sums import Sum
 from polhode._mechanics.trajectory import Trajectory
@@ -39,7 +39,7 @@ from polhode._support.arrays import Array, as_float
 from polhode._support.packing import packed, unpacked
 from polhode._viewer.recording import recorded
 from polhode._viewer.values import of_values
-from polhode.torque import Torque, damping, heavy, larmor, settled
+from polhode.torque import Torque, damping, heavy, larmor
 
 Document = dict[str, Any]
 
@@ -69,7 +69,7 @@ def document(
             raise TypeError(f"state must be a State, got {type(state).__name__}")
         law, push = as_torque(torque), None if force is None else as_force(force)
         _refuse_batch(state, law, push)
-        bodies, law = settled(bodies_of(x), law)
+        bodies, law = about_fixed_point(x, law)
         return _of_problem(_problem(bodies[()], state, law, push, duration))
     _refuse(x, state=state, torque=torque, force=force)
     if isinstance(x, ClosedForm):

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeVar, dataclass_transform
 
 from polhode._generic.g3_smooth import log_even
 from polhode._generic.numeric import Numeric
-from polhode._mechanics.sums import Sum
+from polhode._mechanics.sums import CONSTANT_TORQUE, Sum
 from polhode.jax._components import (
     Four,
     Three,
@@ -306,7 +306,7 @@ class Torque(Sum):
     """A sum of laws, returned by the functions of `polhode.jax.torque`: a pytree of their parameters."""
 
     laws: tuple[Any, ...]
-    _constant = "for a constant torque write constant_body(N) or constant_space(N)"
+    _constant = CONSTANT_TORQUE
 
     @property
     def depends_on_rate(self) -> bool:

@@ -84,7 +84,7 @@ def simulate(
 def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str) -> tuple[Start, Torque]:
     """Return bodies, initial states and torque in principal axes; raise if the method does not fit."""
     if isinstance(inertia, Body) and isinstance(torque, native.Torque):
-        bodies, torque = native.settled(bodies_of(inertia), torque)
+        bodies, torque = torque._about_pivot(bodies_of(inertia))
         inertia = bodies[()]
     force = laws.of(torque)
     _check(method, force)
@@ -98,7 +98,7 @@ def _check_weights(body: Body, torque: Torque) -> None:
     """Raise for weights that do not point along the centre of mass, unless they are traced."""
     for (c,) in torque.arguments_of(weight):
         if not any(isinstance(x, jax.core.Tracer) for x in c):
-            native.settled(bodies_of(body), native.heavy(np.stack(c, axis=-1)))
+            native.heavy(np.stack(c, axis=-1))._about_pivot(bodies_of(body))
 
 
 def _both_ways(

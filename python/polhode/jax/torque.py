@@ -17,7 +17,8 @@ from polhode import torque as native
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.registry import TORQUES
+from polhode._mechanics.laws import one_of
+from polhode._mechanics.registry import FRAMES, TORQUES
 from polhode._support.arrays import as_floats
 from polhode.jax import _laws as laws
 from polhode.jax._arguments import as_array, rows
@@ -120,10 +121,8 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
 
     Values are multivectors, rotors and numbers, which may be traced; linear maps are not supported.
     """
-    if frame not in ("body", "space"):
-        raise ValueError(f"frame is {frame!r}, expected 'body' or 'space'")
     given = {name: value_of(value, name) for name, value in values.items()}
-    return Torque((Formula(given, None, text, frame).checked(),))
+    return Torque((Formula(given, None, text, one_of(FRAMES, frame, "frame")).checked(),))
 
 
 def function(f: Callable[[Any, Any, Any], Any]) -> Torque:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _native
+from polhode._mechanics.arguments import check_progress, checked_threads
 from polhode._mechanics.result import Failure
-from polhode._mechanics.simulate import check_progress, checked_threads
 from polhode._report.ensemble.layout import LABELS, Variable
 from polhode._report.ensemble.reduced import Reduction, blocks_of, over_bodies
 from polhode._report.ensemble.reduced_layout import bytes_of_body, layout_of

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._mechanics.simulate import METHODS
+from polhode._mechanics.arguments import METHODS
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.ensemble.arrays import (
     META,

@@ -112,7 +112,7 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
     >>> bool((again.rotor == motion.rotor).all())
     True
     """
-    from polhode._report.netcdf import read
+    from polhode._report.netcdf_reading import read
 
     return read(path)
 

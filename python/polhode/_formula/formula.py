@@ -6,25 +6,17 @@ import functools
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-import numpy as np
-
 from polhode import _native
 from polhode._algebra.algebra import Algebra
-from polhode._algebra.algebra import algebra as algebra_of
-from polhode._algebra.coefficients import kind_of
-from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
-from polhode._algebra.products import result_array
-from polhode._algebra.rotor import Rotor
-from polhode._formula.agreement import Agreement, agreement
-from polhode._formula.arguments import Given, compiled, given, kinds_of
+from polhode._formula.agreement import Agreement
+from polhode._formula.arguments import kinds_of
 from polhode._formula.errors import FormulaError
-from polhode._formula.interpreter import Step, Walk, steps_of
-from polhode._support.arrays import is_float, rows
+from polhode._formula.evaluation import called
+from polhode._formula.interpreter import Step, steps_of
 
 __all__ = ["Agreement", "Formula", "FormulaError", "evaluate", "formula"]
 
-_G3 = algebra_of(3)
 _LANGUAGES = ("python", "c", "rust", "glsl")
 
 
@@ -170,7 +162,7 @@ class Formula(_native.FormulaCaller):
         #3 = add(#1, #2): grade 0, 2, for a·b + a∧b
         """
         program = self._program(kinds)
-        return described(self.text, steps_of(program), program.names)
+        return _described(self.text, steps_of(program), program.names)
 
     def code(self, language: str, function: str = "formula", /, **kinds: Any) -> str:
         """Return the source of a function that computes the formula, for names of these kinds.
@@ -340,80 +332,10 @@ def _compiled(text: str) -> Formula:
     return formula(text)
 
 
-# --- values
-
-
-def called(core: _native.Formula, arguments: tuple[Any, ...], named: dict[str, Any] | None) -> Any:
-    """Return the value of a formula over values of any kind; the binding calls this."""
-    if len(arguments) > 1 or (arguments and core.arguments and not isinstance(arguments[0], Mapping)):
-        raise TypeError(_misfit(core, len(arguments)))
-    named = named or {}
-    program, known = compiled(core, given(core, arguments[0] if arguments else None, named))
-    is_value = "out" in program.names or "out" in core.arguments
-    return evaluated(core.text, program, known, None if is_value else named.get("out"))
-
-
-def _misfit(core: _native.Formula, count: int) -> str:
-    if core.arguments:
-        names = ", ".join(core.arguments)
-        return f"this formula takes {len(core.arguments)} values by position ({names}), got {count}"
-    return (
-        f"a formula takes keywords and at most one mapping of values, got {count} values by position; name "
-        'these when the formula is made: ph.formula(text, arguments="R x Ω")'
-    )
-
-
 _native.register("call_formula", called)
 
 
-def evaluated(text: str, program: _native.Program, known: Given, out: Any = None) -> Any:
-    """Return the value of a program for values of its kinds, or write it to `out`."""
-    inputs = known.inputs(program)
-    kind = program.value_type
-    if kind is not None:
-        data = [x._data if isinstance(x, Multivector) else x for x in inputs]
-        # In other algebras single precision is rounded after each step, as by the operators.
-        if all(map(is_float, data)) and (known.algebra is _G3 or all(x.dtype == np.float64 for x in data)):
-            value = _run(program, kind, data, known.algebra, out)
-            if value is not None:
-                return value
-    walk = Walk(text, steps_of(program), inputs, known.algebra)
-    if len(program.results[0]) == 1:
-        return walk.last() if out is None else _written(walk.last(), inputs, out)
-    if out is not None:
-        raise TypeError("the value of an equation is an Agreement, not an array; omit out")
-    if not inputs and known.algebra is _G3:  # constants alone are compared exactly
-        walk.kind = kind_of(np.empty(0, dtype=object))
-    return agreement(walk, program)
-
-
-def _run(
-    program: _native.Program, kind: tuple[int, int, bool], data: list[Any], algebra: Any, out: Any
-) -> Multivector | None:
-    """Return the value by the compiled core; None if a row has no value in another algebra than 3-d space."""
-    mask, size, unit = kind
-    dtypes, shapes = {x.dtype for x in data}, {x.shape[:-1] for x in data}
-    dtype = dtypes.pop() if len(dtypes) == 1 else np.dtype(np.float64)  # the higher of two precisions
-    batch = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
-    result = result_array((*batch, size), dtype, tuple(data), out)
-    if not program.run([rows(x.astype(dtype, copy=False), batch) for x in data], result):
-        return None
-    return Rotor._from_rows(result) if unit else Multivector._of(result, mask, algebra)
-
-
-def _written(value: Multivector, inputs: list[Any], out: Any) -> Multivector:
-    """Return the value, written to `out`."""
-    if not is_float(value._data):
-        raise TypeError(f"out needs values of NumPy floats, got {value.dtype}; omit out")
-    data = tuple(x._data if isinstance(x, Multivector) else x for x in inputs)
-    result = result_array(value._data.shape, value.dtype, data, out)
-    result[...] = value._data
-    if isinstance(value, Rotor):
-        return Rotor._from_rows(result)
-    return Multivector._of(result, value._mask, value.algebra)
-
-
-def described(text: str, steps: list[Step], names: list[str]) -> list[str]:
+def _described(text: str, steps: list[Step], names: list[str]) -> list[str]:
     """Return the steps, one line each, with inputs and constants in place."""
     shown: list[str] = []
     lines: list[str] = []

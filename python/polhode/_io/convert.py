@@ -10,7 +10,7 @@ from typing import Any
 from polhode._io import aem, aem_writing, gltf, members, spice, tables
 from polhode._io.history import AttitudeHistory, FileError
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report import netcdf
+from polhode._report import netcdf_reading
 
 _READERS: dict[str, Callable[..., AttitudeHistory]] = {
     "aem": aem.read_aem,
@@ -107,7 +107,7 @@ def load(path: str | os.PathLike[str], **options: Any) -> Trajectory | AttitudeH
     if not options and form_of(path, READ, "read") == "nc":
         history = members.read_netcdf(path)
         try:
-            return netcdf.read(path)
+            return netcdf_reading.read(path)
         except ValueError:
             return history
     return read(path, **options)

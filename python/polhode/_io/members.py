@@ -12,7 +12,7 @@ import numpy as np
 
 from polhode._io.history import AttitudeHistory, FileError
 from polhode._io.tables import of_parts
-from polhode._report import netcdf
+from polhode._report import netcdf, netcdf_reading
 from polhode._report.ensemble.arrays import zarr
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._report.table import ALONG_TIME
@@ -64,13 +64,13 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
         try:
             with library.File(path, "r") as file:
                 if "body" in file:
-                    attributes = {x: netcdf.attribute(y) for x, y in file.attrs.items()}
+                    attributes = {x: netcdf_reading.attribute(y) for x, y in file.attrs.items()}
                     return _member(name, file, attributes, body)
         except FileError:
             raise
-        except netcdf.DAMAGED as error:
+        except netcdf_reading.DAMAGED as error:
             raise FileError(f"{name}: error: cannot be read as a netCDF file: {error}") from None
-    fields, attributes = netcdf._content(path)
+    fields, attributes = netcdf_reading.content(path)
     if body is not None:
         raise FileError(f"{name}: error: the file holds one body; leave out body={body}")
     return _single(name, fields, attributes)
@@ -121,11 +121,11 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
         if "body" in group:
             return _member(name, group, dict(group.attrs), body)
         known = ("time", "wheel_speed", *netcdf.MOTION)
-        fields = {x: netcdf.values(x, group[x]) for x in known if x in group}
+        fields = {x: netcdf_reading.values(x, group[x]) for x in known if x in group}
         attributes = dict(group.attrs)
     except FileError:
         raise
-    except netcdf.DAMAGED as error:
+    except netcdf_reading.DAMAGED as error:
         raise FileError(f"{name}: error: cannot be read as a Zarr store: {error}") from None
     if body is not None:
         raise FileError(f"{name}: error: the store holds one body; leave out body={body}")
@@ -137,7 +137,7 @@ def _single(name: str, fields: Mapping[str, Any], attributes: Mapping[str, Any])
     if missing := [x for x in ("time", "attitude") if x not in fields]:
         raise FileError(f"{name}: error: not a motion that polhode wrote: {missing[0]!r} is missing")
     parts = {x: fields[x] for x in ALONG_TIME if x in fields}
-    kept = netcdf.of_user(dict(attributes))
+    kept = netcdf_reading.of_user(dict(attributes))
     try:
         wheels, inertia = fields.get("wheel_speed"), fields.get("inertia")
         return of_parts(np.asarray(fields["time"], float), parts, wheels, kept, inertia)
@@ -178,14 +178,14 @@ def _member(name: str, arrays: Any, attributes: Mapping[str, Any], body: int | N
             raise FileError(f"{name}: error: no attitudes of bodies: {needed!r} is missing")
     # A group has no shape.
     body = _require_body(name, body, getattr(arrays["attitude"], "shape", (0,))[0])
-    time = np.asarray(netcdf.values("time", arrays["time"]), float)
+    time = np.asarray(netcdf_reading.values("time", arrays["time"]), float)
     known = [x for x in (*ALONG_TIME, "wheel_speed") if x in arrays]
-    parts = {x: np.asarray(netcdf.values(x, arrays[x], body), float) for x in known}
+    parts = {x: np.asarray(netcdf_reading.values(x, arrays[x], body), float) for x in known}
     inertia = _inertia(arrays, body)
     wheels = parts.pop("wheel_speed", None)
     parts = _along(time, parts)
     count = _complete(name, time, parts["attitude"], body)
-    kept = {x: y for x, y in netcdf.of_user(dict(attributes)).items() if x not in _OF_FILE}
+    kept = {x: y for x, y in netcdf_reading.of_user(dict(attributes)).items() if x not in _OF_FILE}
     parts = {x: y[:count] for x, y in parts.items()}
     wheels = None if wheels is None else wheels[:count]
     try:
@@ -198,13 +198,13 @@ def _along(time: Array, parts: dict[str, Array]) -> dict[str, Array]:
     """Return the quantities at all times; some are in the file once for each body."""
     found = {}
     for name, values in parts.items():
-        if values.shape != netcdf.shape_of(name):
+        if values.shape != netcdf_reading.shape_of(name):
             found[name] = values
         else:
             found[name] = np.repeat(values[np.newaxis], len(time), axis=0)
             if name == "position":
                 found[name] += np.multiply.outer(time - time[0], parts["velocity"])
-    netcdf.require_shapes(time, found)
+    netcdf_reading.require_shapes(time, found)
     return found
 
 
@@ -213,7 +213,7 @@ def _inertia(arrays: Any, body: int) -> Array | None:
     if "inertia" not in arrays:
         return None
     each = len(getattr(arrays["inertia"], "shape", ())) == 3
-    return np.asarray(netcdf.values("inertia", arrays["inertia"], body if each else None), float)
+    return np.asarray(netcdf_reading.values("inertia", arrays["inertia"], body if each else None), float)
 
 
 def _complete(name: str, time: Array, attitudes: Array, body: int) -> int:

@@ -19,7 +19,7 @@ from polhode._io.history import AttitudeHistory, FileError, RowError
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.robots.document import Source
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report import netcdf, table
+from polhode._report import netcdf, netcdf_reading, table
 from polhode._report.output import encoded
 from polhode._report.table import ALONG_TIME, UNITS, columns_of
 from polhode._support.arrays import Array
@@ -123,7 +123,7 @@ def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> At
         if not isinstance(stated, dict):
             raise ValueError(f"PANDAS_ATTRS must be attributes by name, as JSON, got {kept[:40]!r}")
         attributes = {x: y for x, y in stated.items() if x not in _OWN}
-    except netcdf.DAMAGED as error:
+    except netcdf_reading.DAMAGED as error:
         raise FileError(f"{name}: error: cannot be read as a Parquet file of numbers: {error}") from None
     try:
         return _history(columns, body, attributes)
@@ -143,7 +143,7 @@ def write_table(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[st
 # --- reading
 
 # Attributes of a file that describe how a trajectory was computed.
-_OWN = {*netcdf._OWN, "units", "batch_shape"}
+_OWN = {*netcdf_reading.OWN, "units", "batch_shape"}
 
 
 def _content(path: str | os.PathLike[str], name: str) -> bytes:
@@ -227,7 +227,7 @@ def of_parts(
     inertia: Array | None = None,
 ) -> AttitudeHistory:
     """Return the history with these components, attitudes as quaternions w, x, y, z."""
-    netcdf.require_shapes(time, parts)
+    netcdf_reading.require_shapes(time, parts)
     quaternions = np.asarray(parts["attitude"], float)
     with np.errstate(over="ignore"):  # an infinite norm is rejected below
         norms = np.linalg.norm(quaternions, axis=-1)
@@ -292,11 +292,11 @@ def _parquet(history: AttitudeHistory) -> bytes:
 
 def _netcdf(history: AttitudeHistory) -> bytes:
     netcdf.require_libraries()
-    variables = {name: netcdf._quantity(name, ("time",), x) for name, x in _parts(history).items()}
+    variables = {name: netcdf.quantity(name, ("time",), x) for name, x in _parts(history).items()}
     if history.wheel_speed is not None:
         variables["wheel_speed"] = netcdf.wheels_of(("time",), history.wheel_speed)
     if history.inertia is not None:
-        variables["inertia"] = netcdf._quantity("inertia", (), history.inertia.matrix)
+        variables["inertia"] = netcdf.quantity("inertia", (), history.inertia.matrix)
     return netcdf.encoded(history.time, variables, _attributes(history))
 
 

@@ -32,7 +32,7 @@ from polhode._mechanics.state import State
 from polhode._mechanics.sums import Sum
 from polhode._mechanics.trajectory import Trajectory
 from polhode._native import SceneError
-from polhode._report.netcdf import read
+from polhode._report.netcdf_reading import read
 from polhode._scene.scene import Scene
 from polhode._scene.writer import UnwritableError, scene_text
 from polhode._support.arrays import Array, as_float

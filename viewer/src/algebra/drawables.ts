@@ -6,7 +6,7 @@ import { vectorLiteral } from "./literal.ts";
 import { nonzeroGrades } from "./notation.ts";
 
 /** Number of colours. */
-export const COLOURS = 8;
+const COLOURS = 8;
 
 /** A formula with at most this many characters is its own label. */
 const LONGEST = 8;

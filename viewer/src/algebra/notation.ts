@@ -13,7 +13,7 @@ export interface Term {
 /** The indices of the basis blades; empty for the scalar 1. */
 const BLADES = ["", "1", "2", "3", "23", "31", "12", "I"];
 /** The first component of each grade. */
-export const STARTS = [0, 1, 4, 7, 8];
+const STARTS = [0, 1, 4, 7, 8];
 
 /** Components smaller than this fraction of the largest are rounding errors. */
 const ROUNDING = 1e-12;

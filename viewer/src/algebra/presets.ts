@@ -1,5 +1,5 @@
 /** Example lines with a description. */
-export interface AlgebraPreset {
+interface AlgebraPreset {
   id: string;
   title: string;
   /** One or two sentences. */

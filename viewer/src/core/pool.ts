@@ -14,7 +14,7 @@ const WORTH = 200;
 const MOST = 8;
 
 /** An ensemble without a closed form, whose scene is solved. */
-export interface Job {
+interface Job {
   module: WebAssembly.Module;
   solution: Solution;
   /** The number of bodies to compute. */
@@ -23,7 +23,7 @@ export interface Job {
   processors: number;
 }
 
-export interface Listener {
+interface Listener {
   /** Gets the fraction of the bodies that are known. */
   progress: (part: number) => void;
   /** Gets slices of the bodies from the first on, and why a worker failed. */

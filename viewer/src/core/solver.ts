@@ -11,7 +11,7 @@ const BLOCKING = 8;
 /** After this time in ms a scene is given up if a newer one waits. */
 const PATIENCE = 400;
 
-export interface Task {
+interface Task {
   scene: string;
   name: string;
   files: Files;

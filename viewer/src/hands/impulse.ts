@@ -3,7 +3,7 @@ import { type About, State } from "../core/core.ts";
 import { quaternion, vector } from "../stage/rotor.ts";
 
 /** A body just after an impulse, which keeps its attitude. Bivectors are given by their axial vectors. */
-export interface Pushed {
+interface Pushed {
   /** Ω_B, rad/s. */
   omega: Vector3;
   /** The change of L in space, r∧J, kg m²/s. */

@@ -16,7 +16,7 @@ export interface Entry {
 }
 
 /** What of a motion `acting` draws, and whether there is a torque. */
-export type Acts = Pick<Figure, "acting" | "torque">;
+type Acts = Pick<Figure, "acting" | "torque">;
 
 const KINDS = { planet: "planet", field: "field B", dipole: "dipole m", sun: "sun", wheel: "wheel" };
 

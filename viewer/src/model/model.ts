@@ -39,7 +39,7 @@ export const SHOWN: Shown = {
 export type CurveName = "polhode" | "herpolhode" | "trace" | "separatrix" | "neighbours" | "cloud";
 
 /** What the pointer is on: a layer in the legend, which is emphasized, or a curve in a picture, which is marked in all. */
-export type Pointed = { layer: keyof Shown; curve?: never } | { curve: CurveName; layer?: never };
+type Pointed = { layer: keyof Shown; curve?: never } | { curve: CurveName; layer?: never };
 
 /** The name of a scene, and the files that it refers to. */
 interface Opened {
@@ -48,7 +48,7 @@ interface Opened {
 }
 
 /** Holds values that the history keeps beside a scene: those of the controls. */
-export interface Keeper {
+interface Keeper {
   take(): unknown;
   /** Sets the values that `take` returned, or, from null, those of the motion shown. */
   give(kept: unknown): void;

@@ -16,7 +16,7 @@ const OUTDATED =
   "left out";
 
 /** The view of a model. */
-export function viewOf(model: Model): ViewState {
+function viewOf(model: Model): ViewState {
   const { time, playing, speed, camera, pose, theme, shown } = model;
   return {
     time: time.value,

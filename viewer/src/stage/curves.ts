@@ -18,7 +18,7 @@ export interface Curve {
 }
 
 /** Whether a curve is marked while the pointer is over one. */
-export function isMarked(name: CurveName, pointed: CurveName | null): boolean {
+function isMarked(name: CurveName, pointed: CurveName | null): boolean {
   return name === pointed || (pointed !== null && TOGETHER.includes(pointed) && TOGETHER.includes(name));
 }
 

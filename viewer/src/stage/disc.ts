@@ -7,7 +7,7 @@ import { AXES } from "./rotor.ts";
 import { aim, circle, Shapes } from "./shapes.ts";
 
 /** The style of a bivector; `radius` is that of its disc at the start. */
-export interface DiscStyle {
+interface DiscStyle {
   bivector: "omega" | "momentum" | "torque";
   symbol: string;
   unit: string;

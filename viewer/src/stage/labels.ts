@@ -39,7 +39,7 @@ export interface Label {
   from: Vector2 | null;
 }
 
-export interface Point {
+interface Point {
   x: number;
   y: number;
 }

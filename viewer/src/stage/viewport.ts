@@ -21,7 +21,7 @@ import type { Screen } from "./ribbon.ts";
 import type { Sight } from "./tools.ts";
 
 /** WebGL 2 is not available. */
-export class NoWebGL extends Error {
+class NoWebGL extends Error {
   override message =
     "No 3-d picture: WebGL 2 is missing or switched off in this browser. All values are shown.";
 }

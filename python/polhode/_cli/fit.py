@@ -39,6 +39,24 @@ def add(commands: Any) -> None:
         "(time,omega_body_x, …) states them by its names: s and rad/s. With --periods instead of a "
         "file: the rotations of a body that a light curve with these periods leaves possible.",
     )
+    _add_data(fit)
+    _add_model(fit)
+    _add_periods(fit)
+    fit.add_argument(
+        "-o", "--output", metavar="FILE.json", type=file_name("a fit"), help="write the fit to this file"
+    )
+    fit.add_argument(
+        "--plot",
+        metavar="FILE",
+        type=file_name("a figure"),
+        help="draw the residuals to FILE.svg, FILE.pdf or FILE.png",
+    )
+    add_force(fit)
+    add_amount(fit, "the fit as JSON, in SI units")
+
+
+def _add_data(fit: argparse.ArgumentParser) -> None:
+    """Add the file of the data, and what its columns are."""
     fit.add_argument("data", metavar="FILE.csv", nargs="?", help="the measured data; - is standard input")
     for what, of, names in (("time", "t", units.TIMES), ("rate", "the rates", units.RATES)):
         words = f"unit of {of}: {', '.join(names)}"
@@ -65,6 +83,10 @@ def add(commands: Any) -> None:
         type=_positive,
         help="standard deviation of attitudes in a file of both kinds, where --sigma is that of rates",
     )
+
+
+def _add_model(fit: argparse.ArgumentParser) -> None:
+    """Add the options that choose what is fitted."""
     fit.add_argument("--no-bias", dest="bias", action="store_false", help="rates without a constant bias")
     fit.add_argument(
         "--clock-offset",
@@ -89,6 +111,10 @@ def add(commands: Any) -> None:
         help="parameters of these torques to fit, separated by commas, such as pd_control.kp or "
         "formula.k; they start from the values of the scene",
     )
+
+
+def _add_periods(fit: argparse.ArgumentParser) -> None:
+    """Add the options for the periods of a light curve."""
     fit.add_argument(
         "--periods",
         metavar=("ROTATION", "PRECESSION"),
@@ -103,17 +129,6 @@ def add(commands: Any) -> None:
         type=_positive,
         help="principal moments for --periods in any unit; without them, the ranges of possible bodies",
     )
-    fit.add_argument(
-        "-o", "--output", metavar="FILE.json", type=file_name("a fit"), help="write the fit to this file"
-    )
-    fit.add_argument(
-        "--plot",
-        metavar="FILE",
-        type=file_name("a figure"),
-        help="draw the residuals to FILE.svg, FILE.pdf or FILE.png",
-    )
-    add_force(fit)
-    add_amount(fit, "the fit as JSON, in SI units")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -16,10 +16,11 @@ from polhode._fit.misfit import misfit
 from polhode._fit.model import Model
 from polhode._fit.parameters import Layout, Parameters, shape_of
 from polhode._fit.result import Fit
-from polhode._fit.samples import attitudes_of, rates_of
+from polhode._fit.samples import Samples, attitudes_of, rates_of
 from polhode._fit.solve import refined, solve
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import angular_velocity
+from polhode._support.arrays import Array
 from polhode._support.calls import explains_calls
 from polhode._support.extras import optional
 from polhode.torque import Torque
@@ -126,15 +127,7 @@ def fit(
     attitudes = attitudes_of(attitude, sigma_attitude)
     measured = rates_of(rates, sigma_rates)
     data = {name: x for name, x in (("attitude", attitudes), ("rates", measured)) if x is not None}
-    if not data:
-        raise ValueError("fit needs data: give attitude=(times, rotors), rates=(times, omega_body), or both")
-    if len(data) == 2 and not all(x.is_known for x in data.values()):
-        raise ValueError("attitudes and rates together need sigma_attitude and sigma_rates, to weigh them")
-    if clock_offset and len(data) < 2:
-        raise ValueError(
-            "clock_offset needs attitudes and rates: free motion does not depend on the time of its start, "
-            "so that the offset of one clock cannot be found"
-        )
+    _check_data(data, clock_offset)
     first = min(float(x.times[0]) for x in data.values())
     laws = laws_of(torque, free)
     scaling = laws.scaling(first)
@@ -158,26 +151,47 @@ def fit(
             f"{dof + model.size} measured components cannot determine {model.size} parameters; give more data"
         )
     axes = _axes(sensor_axes)
-    found, *others = solve(model, axes, None if start is None else _start(start, model, axes, laws))
+    fits = solve(model, axes, None if start is None else _start(start, model, axes, laws))
     is_known = all(x.is_known for x in data.values())
     if not is_known:
-        model, (found, *others) = _reweighted(model, [found, *others], dof)
-        data = dict(zip(data, model.samples, strict=True))
+        model, fits = _reweighted(model, fits, dof)
+    result = _result(model, fits, dof, is_known, scaling)
+    if result.misfit is not None:
+        warnings.warn(result.misfit, RuntimeWarning, stacklevel=3)
+    return result
+
+
+def _check_data(data: Mapping[str, Samples], clock_offset: bool) -> None:
+    """Raise a ValueError unless the data, attitudes or rates or both, are sufficient."""
+    if not data:
+        raise ValueError("fit needs data: give attitude=(times, rotors), rates=(times, omega_body), or both")
+    if len(data) == 2 and not all(x.is_known for x in data.values()):
+        raise ValueError("attitudes and rates together need sigma_attitude and sigma_rates, to weigh them")
+    if clock_offset and len(data) < 2:
+        raise ValueError(
+            "clock_offset needs attitudes and rates: free motion does not depend on the time of its start, "
+            "so that the offset of one clock cannot be found"
+        )
+
+
+def _result(model: Model, fits: list[Parameters], dof: int, is_known: bool, scaling: Array | None) -> Fit:
+    """Return the best fit with its uncertainties; the `fits` are sorted, best first."""
+    found, *others = fits
+    layout, laws = model.layout, model.laws
+    samples = {"attitude": model.attitudes, "rates": model.rates}
+    data = {name: x for name, x in samples.items() if x is not None}
     reduced = _reduced(model, found, dof)
     variance = 1.0 if is_known else max(reduced, _least_variance(model))
     facts = information(model, found, variance, others, scaling)
     differences = dict(zip(data, model.differences(found), strict=True))
     noise = {name: float(np.sqrt(np.mean(d**2))) for name, d in differences.items()}
-    problem = misfit(data, differences, noise, reduced if is_known else None)
-    if problem is not None:
-        warnings.warn(problem, RuntimeWarning, stacklevel=3)
     return Fit(
         inertia=found.inertia,
         omega_body=bivector(found.omega),
         rotor=found.rotor,
-        time=first,
+        time=model.start,
         sensor_axes=found.axes if layout.axes else None,
-        torque=laws.with_values(found.torque) if laws.torque.laws else None,
+        torque=None if laws is None else laws.with_values(found.torque),
         bias=bivector(found.bias) if layout.bias else None,
         clock_offset=found.offset if layout.offset else None,
         names=facts.names,
@@ -190,7 +204,7 @@ def fit(
         chi2_reduced=reduced if is_known else None,
         dof=dof,
         undetermined=facts.undetermined,
-        misfit=problem,
+        misfit=misfit(data, differences, noise, reduced if is_known else None),
     )
 
 

@@ -29,7 +29,7 @@ def to_radians(angles: Any) -> Any:
     """Convert angles in degrees to radians."""
     d = kind_of(angles)
     if isinstance(d, exact.Exact):
-        return np.frompyfunc(lambda x: exact.divide(x * exact.pi_beside(x, d.pi), 180), 1, 1)(angles)
+        return np.frompyfunc(lambda x: exact.divide(x * exact.pi_like(x, d.pi), 180), 1, 1)(angles)
     return angles * DEGREE
 
 
@@ -37,5 +37,5 @@ def to_degrees(angles: Any) -> Any:
     """Convert angles in radians to degrees."""
     d = kind_of(angles)
     if isinstance(d, exact.Exact):
-        return np.frompyfunc(lambda x: 180 * x / exact.pi_beside(x, d.pi), 1, 1)(angles)
+        return np.frompyfunc(lambda x: 180 * x / exact.pi_like(x, d.pi), 1, 1)(angles)
     return angles * (180 / math.pi)

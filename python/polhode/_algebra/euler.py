@@ -97,7 +97,7 @@ def _exact_angles(d: Exact, q: Parts, axes: list[int], turning: bool) -> Parts:
     middle = 2 * exact.atan2(sine, cosine)
     first, last = exact.atan2(b * c - a * e, a * c + b * e), exact.atan2(b * c + a * e, a * c - b * e)
     if sign is not None:
-        middle, last = middle - exact.divide(exact.pi_beside(middle, d.pi), 2), sign * last
+        middle, last = middle - exact.divide(exact.pi_like(middle, d.pi), 2), sign * last
     return [last, middle, first] if turning else [first, middle, last]
 
 

@@ -58,7 +58,7 @@ def add_folder(parser: argparse.ArgumentParser, what: str) -> None:
     parser.add_argument("-o", "--output", metavar="FOLDER", default=".", help=words)
 
 
-def made_folder(path: Path) -> Path:
+def create_folder(path: Path) -> Path:
     """Return a folder to write to, created if it is missing; an OSError if this is not possible."""
     if path.exists() and not path.is_dir():
         raise NotADirectoryError(f"{path} is not a folder; choose another one with -o")

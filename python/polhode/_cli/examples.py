@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode._cli.common import DRIFTED, OK, add_command, add_folder, add_force, check_written, made_folder
+from polhode._cli.common import DRIFTED, OK, add_command, add_folder, add_force, check_written, create_folder
 from polhode._support.arrays import Array
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def _copy(files: list[Path], folder: Path) -> list[Path]:
     for path in targets:
         if path.exists() or path.is_symlink():
             raise FileExistsError(f"{path} exists; move it, or choose another folder with -o")
-    made_folder(folder)
+    create_folder(folder)
     for path, content in targets.items():
         with path.open("xb") as file:
             file.write(content)
@@ -119,7 +119,7 @@ def _demo(options: argparse.Namespace) -> int:
     from polhode._scene.scene import Scene
     from polhode._support.files import write_atomically
 
-    folder = made_folder(Path(options.output))
+    folder = create_folder(Path(options.output))
     check_written([folder / name for name in (_PAGE, *_FIGURES)], options.force)
     scene = Scene.read(examples()[NAME])
     trajectory = scene.run()

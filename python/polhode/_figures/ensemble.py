@@ -29,33 +29,33 @@ _HIGH = np.radians(70)
 _FAINTEST, _DENSEST = 0.03, 100.0
 
 
-def fan_figure(gathered: EnsembleRecords | ReducedRecords) -> Figure:
+def fan_figure(records: EnsembleRecords | ReducedRecords) -> Figure:
     """Draw bands of quantiles over time.
 
     From the top: the angle of the attitude from that of the nominal body, the tilt of an axis, and the rate.
     """
     figure = new_figure(8, 8)
     panels = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
-    times, scale = _scale(gathered.scene.elapsed)
+    times, scale = _scale(records.scene.elapsed)
     seconds, unit = time_unit(np.sqrt(times[0] * times[-1]) if scale == "log" else times)
     labels = {
         "from_nominal": "attitude, from that of the\nnominal body, degrees",
-        "tilt": f"tilt of the axis\nfrom {gathered.tilt_name}, degrees",
+        "tilt": f"tilt of the axis\nfrom {records.tilt_name}, degrees",
         "rate": "angular velocity |Ω|,\nrad/s",
     }
     for axes, (name, label) in zip(panels, labels.items(), strict=True):
-        bands = gathered.quantiles(name)[:, -len(times) :]
+        bands = records.quantiles(name)[:, -len(times) :]
         _fan(axes, times / seconds, bands if name == "rate" else 180 / np.pi * bands)
         axes.set(xscale=scale, ylabel=label)
         axes.grid(alpha=0.25, lw=0.6)
         axes.margins(x=0)
-    _horizons(panels[0], gathered, seconds)
+    _horizons(panels[0], records, seconds)
     panels[1].ticklabel_format(axis="y", useOffset=False)
     panels[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     panels[-1].set_xlabel(f"time, {unit}")
     figure.align_ylabels()
-    figure.suptitle(gathered.scene.name)
-    figure.supxlabel(f"Quantiles over {_counted(gathered)}; the axis: {gathered.axis_name}.", fontsize=9)
+    figure.suptitle(records.scene.name)
+    figure.supxlabel(f"Quantiles over {_counted(records)}; the axis: {records.axis_name}.", fontsize=9)
     return figure
 
 
@@ -73,13 +73,13 @@ def _fan(axes: Axes, t: Array, bands: Array) -> None:
     axes.plot(t, median, color=BLUE, lw=1.4, label="median")
 
 
-def _horizons(axes: Axes, gathered: EnsembleRecords | ReducedRecords, seconds: float) -> None:
+def _horizons(axes: Axes, records: EnsembleRecords | ReducedRecords, seconds: float) -> None:
     """Mark where the 95 % quantile of the angle exceeds 10° and 90°."""
-    highest = gathered.quantiles("from_nominal")[-1]
+    highest = records.quantiles("from_nominal")[-1]
     axes.set_ylim(0, 185)
     axes.set_yticks(range(0, 181, 45))
     for angle in (10, 90):
-        moment = first_above(gathered.scene.elapsed, highest, np.radians(angle))
+        moment = first_above(records.scene.elapsed, highest, np.radians(angle))
         if not moment:
             continue
         # On the left, above the bands, if there is room.
@@ -98,37 +98,37 @@ def _horizons(axes: Axes, gathered: EnsembleRecords | ReducedRecords, seconds: f
         )
 
 
-def _counted(gathered: EnsembleRecords | ReducedRecords) -> str:
-    finished = gathered.complete - len(gathered.failures)
-    without = f" ({len(gathered.failures)} failed on the way)" if gathered.failures else ""
+def _counted(records: EnsembleRecords | ReducedRecords) -> str:
+    finished = records.complete - len(records.failures)
+    without = f" ({len(records.failures)} failed on the way)" if records.failures else ""
     counted = f"{finished:,}".replace(",", "\u2009")
     return f"{counted} {'body' if finished == 1 else 'bodies'}{without}"
 
 
-def directions_figure(gathered: EnsembleRecords) -> Figure:
+def directions_figure(records: EnsembleRecords) -> Figure:
     """Draw equal-area maps of the directions of the axis in space at three times.
 
     Each is centred on the reference of the tilt, L of the nominal body or e3; else on e1.
     """
     figure = new_figure(11, 3.5)
-    middle, name = _middle(gathered)
+    middle, name = _middle(records)
     frame = _frame(middle)
     panels = figure.subplots(1, 3, subplot_kw={"projection": "hammer"})
-    times = gathered.scene.elapsed
+    times = records.scene.elapsed
     drawn: Any = None
     for k, axes in enumerate(panels):
-        directions = gathered.directions[:, k].astype(float)
+        directions = records.directions[:, k].astype(float)
         drawn = _map(axes, directions[np.isfinite(directions).all(axis=1)] @ frame.T)
-        when = float(times[gathered.shown[k]])
+        when = float(times[records.shown[k]])
         axes.set_title("at the start" if when == 0 else f"after {time_text(when, 3)}", fontsize=11)
-        _mark(axes, gathered, frame, gathered.shown[k])
+        _mark(axes, records, frame, records.shown[k])
     bar = figure.colorbar(
         drawn, ax=list(panels), orientation="horizontal", shrink=0.4, aspect=40, pad=0.03, extend="both"
     )
     bar.set_label("density, relative to a uniform distribution", fontsize=9)
-    figure.suptitle(gathered.scene.name)
+    figure.suptitle(records.scene.name)
     figure.supxlabel(
-        f"Directions of {gathered.axis_name} in space, of {_counted(gathered)}, smoothed over "
+        f"Directions of {records.axis_name} in space, of {_counted(records)}, smoothed over "
         f"{np.degrees(_WIDTH):.0f}°; ring: the nominal body.\n"
         f"The sphere of space axes from outside, in equal areas, centred on {name}; "
         f"{'e2' if abs(frame[0, 2]) > _ALONG else 'e3'} is up.",
@@ -137,13 +137,13 @@ def directions_figure(gathered: EnsembleRecords) -> Figure:
     return figure
 
 
-def _middle(gathered: EnsembleRecords) -> tuple[Array, str]:
+def _middle(records: EnsembleRecords) -> tuple[Array, str]:
     """Return the direction on which the maps are centred, and its name."""
-    momentum = gathered.nominal.momentum_space.components[0]
+    momentum = records.nominal.momentum_space.components[0]
     size = float(np.linalg.norm(momentum))
-    if gathered.tilt_name == "L" and size > 0:
+    if records.tilt_name == "L" and size > 0:
         return momentum / size, "the momentum L of the nominal body"
-    if gathered.tilt_name == "the vertical":
+    if records.tilt_name == "the vertical":
         return np.array([0.0, 0.0, 1.0]), "e3"
     return np.array([1.0, 0.0, 0.0]), "e1"
 
@@ -172,9 +172,9 @@ def _map(axes: Axes, directions: Array) -> Any:
     return drawn
 
 
-def _mark(axes: Axes, gathered: EnsembleRecords, frame: Array, k: int) -> None:
+def _mark(axes: Axes, records: EnsembleRecords, frame: Array, k: int) -> None:
     """Mark the axis of the nominal body and the axes of space."""
-    path = gathered.nominal.rotor(vector(gathered.axis)).components[k]
+    path = records.nominal.rotor(vector(records.axis)).components[k]
     axes.plot(*_angles(frame @ path), "o", mfc="none", mec=ORANGE, mew=1.4, ms=9, zorder=5)
     for name, direction in zip(("e1", "e2", "e3"), frame.T, strict=True):
         place = _angles(direction)

@@ -100,8 +100,8 @@ class Laws:
         new: dict[int, dict[int | str, Any]] = {}
         for x, part in zip(self.arguments, self._parts(values), strict=True):
             new.setdefault(x.law, {})[x.place] = _argument(x.kind, part)
-        made = [_with(law, new[k]).laws[0] if k in new else law for k, law in enumerate(self.torque.laws)]
-        return Torque(tuple(made))
+        laws = [_with(law, new[k]).laws[0] if k in new else law for k, law in enumerate(self.torque.laws)]
+        return Torque(tuple(laws))
 
     def _parts(self, values: Array) -> Iterator[Array]:
         """Yield the values (..., n) of each argument."""
@@ -239,8 +239,8 @@ def _with(law: Any, new: dict[int | str, Any]) -> Torque:
     for place, (about, value) in enumerate(zip(TORQUES[law.name].arguments, law.arguments, strict=True)):
         old = Rotor._from_rows(np.array(value)) if about.shape == "rotor" else value
         values.append(new.get(place, old))
-    made: Torque = getattr(laws_of_torque, law.name)(*values)
-    return made
+    torque: Torque = getattr(laws_of_torque, law.name)(*values)
+    return torque
 
 
 def _rejects(law: Any, place: int, kind: str, rows: Array) -> bool:

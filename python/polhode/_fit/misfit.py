@@ -1,4 +1,4 @@
-"""Whether a fit is hopeless: residuals that noise does not explain."""
+"""Bodies that do not fit the data: residuals that noise does not explain."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State
 from polhode._report.summary import number
 from polhode._support.arrays import Array, as_float, hands_out_copies
-from polhode._support.calls import made_by
+from polhode._support.calls import created_by
 from polhode._support.extras import optional
 from polhode.torque import Torque
 
@@ -33,7 +33,7 @@ _TOO_SMALL, _MANY = 0.1, 10
 @with_foreign_names(
     {**dict.fromkeys(("params", "popt", "x"), "values"), **dict.fromkeys(("cov", "pcov"), "covariance")}
 )
-@made_by("ph.fit")
+@created_by("ph.fit")
 @hands_out_copies("values", "covariance", "times", "residuals")
 @dataclass(frozen=True, eq=False)
 class Fit:

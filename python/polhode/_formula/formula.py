@@ -323,8 +323,8 @@ def evaluate(text: str, values: Mapping[str, Any] | None = None, /, **named: Any
     >>> bool(ph.evaluate("a b = a·b + a∧b", a=a, b=b))
     True
     """
-    made = _compiled(text) if isinstance(text, str) else formula(text)
-    return made(*(() if values is None else (values,)), **named)
+    found = _compiled(text) if isinstance(text, str) else formula(text)
+    return found(*(() if values is None else (values,)), **named)
 
 
 @functools.lru_cache(maxsize=256)

@@ -150,7 +150,7 @@ def is_rounding(x: Any, tolerance: float) -> bool:
     return bool(abs(x) <= tolerance)
 
 
-def pi_beside(x: Any, pi: Any) -> Any:
+def pi_like(x: Any, pi: Any) -> Any:
     """Return SymPy's π if x is an expression, else the number given."""
     return sys.modules["sympy"].pi if is_symbolic(x) else pi
 

@@ -18,7 +18,7 @@ from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.result import Certificate, Crossings, Failure
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen, hands_out_copies
-from polhode._support.calls import made_by
+from polhode._support.calls import created_by
 from polhode._support.memory import require_array
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ BYTES_OF_POINT = 400
 
 
 @with_foreign_names(TRAJECTORY)
-@made_by("ph.simulate, or ph.Trajectory.read(path) for a file")
+@created_by("ph.simulate, or ph.Trajectory.read(path) for a file")
 @hands_out_copies("time", "energy")
 @dataclass(frozen=True, eq=False)
 class Trajectory:

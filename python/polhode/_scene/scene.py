@@ -23,7 +23,7 @@ from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.ensemble import EnsembleSpec
 from polhode._scene.table import TableReader
 from polhode._support.arrays import Array, frozen, hands_out_copies
-from polhode._support.calls import made_by
+from polhode._support.calls import created_by
 from polhode.force import Force
 from polhode.torque import Torque
 
@@ -66,7 +66,7 @@ class SceneNotFoundError(SceneError, FileNotFoundError):
 
 
 @with_foreign_names({**dict.fromkeys(("load", "open", "from_file"), "Scene.read(path)"), "simulate": "run()"})
-@made_by("ph.Scene.read(path)")
+@created_by("ph.Scene.read(path)")
 @hands_out_copies("shift", "times")
 @dataclass(frozen=True, eq=False)
 class Scene:

@@ -148,7 +148,7 @@ def _values(function: Callable[..., Any], parameters: list[inspect.Parameter]) -
     return "".join(f", with {name}={' or '.join(map(repr, x))}" for name, x in few.items() if x)
 
 
-def made_by(remedy: str) -> Callable[[type[T]], type[T]]:
+def created_by(remedy: str) -> Callable[[type[T]], type[T]]:
     """Make the TypeError of a constructor that users do not call name the functions to use."""
 
     def explained(kind: type[T]) -> type[T]:

@@ -297,8 +297,8 @@ export class Model {
   }
 
   /** Toggles the visibility of a part. */
-  toggle(thing: keyof Shown): void {
-    this.shown.value = { ...this.shown.value, [thing]: !this.shown.value[thing] };
+  toggle(part: keyof Shown): void {
+    this.shown.value = { ...this.shown.value, [part]: !this.shown.value[part] };
   }
 
   /** Fits the picture into view. */

@@ -2,7 +2,7 @@ import { CAMERAS, type Shown, type ViewState } from "../document.ts";
 import { Check, Select } from "../inputs/fields.tsx";
 import type { Model } from "../model/model.ts";
 
-const THINGS: [keyof Shown, string][] = [
+const PARTS: [keyof Shown, string][] = [
   ["body", "Body"],
   ["labels", "Labels"],
   ["bodyFrame", "Body axes f₁ f₂ f₃"],
@@ -34,13 +34,13 @@ export function ViewPanel({ model }: { model: Model }) {
     <>
       <fieldset class="checks">
         <legend>Show</legend>
-        {THINGS.map(([thing, label]) => (
+        {PARTS.map(([part, label]) => (
           <Check
-            key={thing}
-            id={`show-${thing}`}
+            key={part}
+            id={`show-${part}`}
             label={label}
-            checked={shown[thing]}
-            onChange={() => model.toggle(thing)}
+            checked={shown[part]}
+            onChange={() => model.toggle(part)}
           />
         ))}
       </fieldset>

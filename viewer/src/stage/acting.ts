@@ -44,22 +44,22 @@ export function acting(setting: Setting): Part | null {
     return { group: drawn, label, tip: new Vector3(away, 0, tip) };
   };
   const sources = start.sources.map((source) => {
-    const made = GLYPHS[source.kind](setting, (drawn, tip, away) =>
-      glyph(SYMBOLS[source.kind], drawn, tip, away),
+    const drawn = GLYPHS[source.kind](setting, (group, tip, away) =>
+      glyph(SYMBOLS[source.kind], group, tip, away),
     );
     const valued = source.kind !== "wheel" || hasMass(figure.about);
-    if (source.unit && valued) made.label.value = quantity(vector(source.along).length(), source.unit);
-    (source.in_space ? inSpace : inBody).add(made.group);
-    return made;
+    if (source.unit && valued) drawn.label.value = quantity(vector(source.along).length(), source.unit);
+    (source.in_space ? inSpace : inBody).add(drawn.group);
+    return drawn;
   });
   const thrusts = start.thrusts.map(({ along }) => {
     const shapes = new Shapes(setting.screen, palette.weight);
     shapes.arrow(AXES[2].clone().multiplyScalar(SHORT), { width: 2.6, behind: 0.4 });
     shapes.object.position.z = -SHORT;
-    const made = glyph("F", new Group().add(shapes.object), -SHORT);
-    made.label.value = quantity(vector(along).length(), "N");
-    inBody.add(made.group);
-    return made;
+    const drawn = glyph("F", new Group().add(shapes.object), -SHORT);
+    drawn.label.value = quantity(vector(along).length(), "N");
+    inBody.add(drawn.group);
+    return drawn;
   });
   const show = ({ group, label, tip }: Glyph, along: Vector3): void => {
     group.quaternion.setFromUnitVectors(AXES[2], along.normalize());
@@ -75,15 +75,15 @@ export function acting(setting: Setting): Part | null {
       inSpace.visible = inBody.visible = seen;
       for (const { label } of [...sources, ...thrusts]) label.hidden = !seen;
       if (!found || !seen) return;
-      sources.forEach((made, k) => {
-        show(made, vector(found.sources[k]!.along));
-        if (!found.sources[k]!.in_space) made.label.at.applyQuaternion(attitude);
+      sources.forEach((drawn, k) => {
+        show(drawn, vector(found.sources[k]!.along));
+        if (!found.sources[k]!.in_space) drawn.label.at.applyQuaternion(attitude);
       });
-      thrusts.forEach((made, k) => {
+      thrusts.forEach((drawn, k) => {
         const { along, at } = found.thrusts[k]!;
-        made.group.position.copy(vector(at).sub(origin).divideScalar(figure.size));
-        show(made, vector(along));
-        made.label.at.applyQuaternion(attitude);
+        drawn.group.position.copy(vector(at).sub(origin).divideScalar(figure.size));
+        show(drawn, vector(along));
+        drawn.label.at.applyQuaternion(attitude);
       });
     },
   };

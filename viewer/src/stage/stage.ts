@@ -292,7 +292,7 @@ export class Stage extends Viewport {
 
   private description(shown: Shown): string {
     const about = this.motion?.about;
-    const things: [boolean, string][] = [
+    const parts: [boolean, string][] = [
       [shown.body, "the body"],
       [shown.bodyFrame, bodyAxes(about)],
       [shown.spaceFrame, "the axes e1, e2, e3 of space"],
@@ -307,7 +307,7 @@ export class Stage extends Viewport {
       [shown.gravity && about?.held === true, "the pivot and the weight"],
       [shown.torque && this.acts, "the torque as an oriented disc"],
     ];
-    const drawn = things.filter(([seen]) => seen).map(([, thing]) => thing);
+    const drawn = parts.filter(([seen]) => seen).map(([, part]) => part);
     const bodies = about?.ensemble ? ` One of ${about.ensemble} bodies.` : "";
     return `${about?.title ?? "A rigid body in motion"}.${bodies} Drawn: ${drawn.join(", ") || "nothing"}. The keys I, J, K and L turn the view, + and − zoom, F fits it.`;
   }

@@ -36,7 +36,7 @@ pub use compile::{compile, types};
 pub use print::Style;
 pub use run::RowError;
 pub use run::general::RowRunner;
-pub use run::side_by_side::Beside;
+pub use run::side_by_side::SideBySide;
 pub use run::single::Runner;
 pub use run::steps::Given;
 pub use syntax::names::{Definition, Meaning, Names, Type};

@@ -190,7 +190,7 @@ impl Calculus {
 
     /// The bivector B with `exp B = R`, and the number by which R is larger than `exp B`.
     fn log_of_unit(&self, r: &[f64]) -> Result<(Vec<f64>, f64), MathError> {
-        let checked = |log: Vec<f64>| self.size_beside(&log, r).map(|size| (log, size));
+        let checked = |log: Vec<f64>| self.relative_size(&log, r).map(|size| (log, size));
         let principal = self.principal_log(r).and_then(checked);
         let found = principal.or_else(|| {
             self.commuting_planes(r).into_iter().find_map(|plane| {
@@ -207,7 +207,7 @@ impl Calculus {
     /// The size of R in units of `exp(log)`; None if R is not along it. The rounding of a large R makes `R~R = 1`
     /// uncertain by `ε|R|²`. A bivector B near null ones may be larger than R; it and its exponential are then sums that
     /// cancel, and `exp(log R)` was found to be off by at most `27 ε|B|²`.
-    fn size_beside(&self, log: &[f64], r: &[f64]) -> Option<f64> {
+    fn relative_size(&self, log: &[f64], r: &[f64]) -> Option<f64> {
         let length = norm(r);
         let (r, exp) = (scaled(r, 1.0 / length), scaled(&self.exp_bits(log).ok()?, 1.0 / length));
         let ratio = dot(&exp, &r) / dot(&exp, &exp);

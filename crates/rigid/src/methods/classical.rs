@@ -80,12 +80,16 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
     /// `Ω = I⁻¹(m − h)`.
     #[inline(always)]
     pub fn omega(&self, momentum: &[Lanes<W, F>; 3]) -> [Lanes<W, F>; 3] {
-        self.omega_beside(momentum, &self.wheel)
+        self.omega_with_wheel(momentum, &self.wheel)
     }
 
     /// The same with this momentum h of wheels.
     #[inline(always)]
-    pub fn omega_beside(&self, momentum: &[Lanes<W, F>; 3], wheel: &[Lanes<W, F>; 3]) -> [Lanes<W, F>; 3] {
+    pub fn omega_with_wheel(
+        &self,
+        momentum: &[Lanes<W, F>; 3],
+        wheel: &[Lanes<W, F>; 3],
+    ) -> [Lanes<W, F>; 3] {
         let mut omega = *momentum;
         for k in 0..3 {
             omega[k] = (momentum[k] - wheel[k]) * self.inverse[k];

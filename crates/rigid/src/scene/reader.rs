@@ -296,7 +296,7 @@ impl Reader {
         let mut complete = true;
         for (slot, item) in array.iter_mut().zip(items.iter()) {
             match read(self, item) {
-                Some(thing) => *slot = thing,
+                Some(found) => *slot = found,
                 None => complete = false,
             }
         }

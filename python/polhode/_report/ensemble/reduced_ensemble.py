@@ -17,7 +17,7 @@ from polhode._report.ensemble.reduced_layout import bytes_of_body, layout_of
 from polhode._scene.scene import Scene
 from polhode._support import memory
 from polhode._support.arrays import Array, frozen
-from polhode._support.calls import made_by
+from polhode._support.calls import created_by
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _COPIES = 2
 
 
-@made_by("Scene.reduce")
+@created_by("Scene.reduce")
 @dataclass(frozen=True, eq=False)
 class ReducedEnsemble(Mapping[str, Array]):
     """Reduced outputs of the bodies of an ensemble: arrays by name, as the variables of its netCDF file.

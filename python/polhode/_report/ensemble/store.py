@@ -126,8 +126,8 @@ class EnsembleStore:
             (part / OWN / META).write_text(json.dumps(_GROUP | {"attributes": {}}))
             identity = identity_of(scene)
             seal(part / OWN / "run.json", identity | {"files": digests(part, _files(part, own=False))})
-            made = EnsembleStore(part, identity)
-            made.consolidate()
+            store = EnsembleStore(part, identity)
+            store.consolidate()
             try:
                 os.rename(part, target)
             except OSError:

@@ -27,11 +27,11 @@ impl Derivation<'_> {
     /// The derivative; `None` where it is zero, as of numbers and basis elements.
     pub fn of(&mut self, node: &Node) -> Derived {
         self.count(1, node)?;
-        let made = |kind| Node::new(kind, node.span);
+        let new = |kind| Node::new(kind, node.span);
         match &node.kind {
             Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar => Ok(None),
             Kind::Name(name) if is_built_in(name) && self.names.get(name).is_none() => Ok(None),
-            Kind::Name(name) => Ok(Some(made(Kind::Name(format!("{name}'"))))),
+            Kind::Name(name) => Ok(Some(new(Kind::Name(format!("{name}'"))))),
             Kind::Sum(terms) => {
                 let mut changing = Vec::new();
                 for (minus, term) in terms {
@@ -53,19 +53,19 @@ impl Derivation<'_> {
             Kind::Power(x, 1) => self.of(x),
             Kind::Power(x, n) if (2..=MOST_FACTORS).contains(n) => {
                 let factors = (0..*n).map(|_| self.copy(x)).collect::<Result<_, _>>()?;
-                self.of(&made(Kind::Product(factors)))
+                self.of(&new(Kind::Product(factors)))
             }
             // (A⁻¹)' = −A⁻¹ A' A⁻¹
             Kind::Power(x, -1) => {
                 let Some(x) = self.of(x)? else { return Ok(None) };
-                let term = made(Kind::Product(vec![self.copy(node)?, x, self.copy(node)?]));
-                Ok(Some(made(Kind::Sum(vec![(true, term)]))))
+                let term = new(Kind::Product(vec![self.copy(node)?, x, self.copy(node)?]));
+                Ok(Some(new(Kind::Sum(vec![(true, term)]))))
             }
             Kind::Derivative(x) => self.of(x)?.map_or(Ok(None), |x| self.of(&x)),
             // Linear maps, such as the inertia in body axes, are constant.
             Kind::Call(name, arguments) if matches!(self.names.get(name), Some(Meaning::Map { .. })) => {
                 let rate = arguments.first().map_or(Ok(None), |x| self.of(x))?;
-                Ok(rate.map(|rate| made(Kind::Call(name.clone(), vec![rate]))))
+                Ok(rate.map(|rate| new(Kind::Call(name.clone(), vec![rate]))))
             }
             Kind::Power(..) | Kind::Function(..) | Kind::Call(..) => Err(Error::new(
                 node.span,

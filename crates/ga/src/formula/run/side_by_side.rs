@@ -11,7 +11,7 @@ use crate::simd::{Lane, Path};
 use std::ops::Range;
 
 /// A program with memory for `W` rows, a multiple of 8, as lanes. Steps common to all rows and times are computed once.
-pub struct Beside<'r, const W: usize> {
+pub struct SideBySide<'r, const W: usize> {
     runner: &'r Runner,
     path: Path,
     schedule: Schedule,
@@ -30,7 +30,7 @@ pub struct Beside<'r, const W: usize> {
 struct Parameter<'r, const W: usize> {
     input: usize,
     /// The steps, with numbers as rows.
-    steps: Beside<'r, W>,
+    steps: SideBySide<'r, W>,
     /// The bits of the numbers to which the values of the program belong.
     now: Option<[u64; W]>,
     /// Whether some row has no value now.
@@ -46,11 +46,11 @@ impl Runner {
     ///
     /// # Panics
     /// If the inputs are not of their kinds and grades.
-    pub fn beside<const W: usize>(
+    pub fn side_by_side<const W: usize>(
         &self,
         known: &[Option<Given>],
         parameter: Option<usize>,
-    ) -> Option<Beside<'_, W>> {
+    ) -> Option<SideBySide<'_, W>> {
         assert_eq!(known.len(), self.inputs.len(), "an entry for each input");
         let Some(input) = parameter else { return self.part(known, self.whole()) };
         let [own, others] = self.parts_by(input, known);
@@ -65,13 +65,13 @@ impl Runner {
             foreseen: Foreseen::default(),
             values: Vec::new(),
         };
-        Some(Beside { parameter: Some(Box::new(parameter)), ..self.part(known, others)? })
+        Some(SideBySide { parameter: Some(Box::new(parameter)), ..self.part(known, others)? })
     }
 
-    fn part<const W: usize>(&self, known: &[Option<Given>], part: Part) -> Option<Beside<'_, W>> {
+    fn part<const W: usize>(&self, known: &[Option<Given>], part: Part) -> Option<SideBySide<'_, W>> {
         let schedule = self.schedule(known, true, &part).ok()?;
         let of = |(&id, &first): (&Id, &usize)| (id, first..first + size(self.steps[id].grades));
-        Some(Beside {
+        Some(SideBySide {
             runner: self,
             path: Path::best(),
             known: known.to_vec(),
@@ -84,7 +84,7 @@ impl Runner {
     }
 }
 
-impl<const W: usize> Beside<'_, W> {
+impl<const W: usize> SideBySide<'_, W> {
     /// The numbers of an input other than the parameter, to be set before evaluation; they keep their values. None of an
     /// input that is known.
     #[inline]

@@ -212,7 +212,7 @@ fn lanes_against_single_values<const ROWS: usize>() -> usize {
         let is_number = |i: &usize| !is_known(*i) && program.inputs[*i].kind.size() == 1;
         let numbers: Vec<usize> = (0..program.inputs.len()).filter(is_number).collect();
         let parameter = (!numbers.is_empty()).then(|| numbers[random.below(numbers.len())]);
-        let mut beside = runner.beside::<ROWS>(&known, parameter);
+        let mut beside = runner.side_by_side::<ROWS>(&known, parameter);
         let mut second = draw(&mut random);
         if let Some(parameter) = parameter {
             let shared = second[parameter][0];

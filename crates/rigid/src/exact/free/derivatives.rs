@@ -118,8 +118,8 @@ impl Differentiated {
             // At rest the turn is that by δω.
             return (varied.change.map(|change| change * t), varied.change, rate);
         }
-        let made: [Form; 3] = from_fn(|k| Form::rate(k) * i[k] + Form::moment(k) * start[k]);
-        let seen = in_body(rotor, made);
+        let change: [Form; 3] = from_fn(|k| Form::rate(k) * i[k] + Form::moment(k) * start[k]);
+        let seen = in_body(rotor, change);
         let rest: [Form; 3] = from_fn(|k| seen[k] - varied.change[k] * i[k] - Form::moment(k) * w[k]);
         let along = (0..3).fold(Form::default(), |sum, k| {
             let moment = 0.5 * (start[k] * start[k] * t - varied.squares[k]);

@@ -124,7 +124,7 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
         let v = self.cubic.largest_root::<true>(highest, &[true; W]);
         let x3 = gravity * w0 + v;
         let second = two * spin * self.h - gravity * self.g_g - two * (z0 - Wides::all(1.0)) * self.w_w;
-        let [x1, x2] = self.beside(second, x3);
+        let [x1, x2] = self.other_distances(second, x3);
         let far = (gravity * (x1 + x2)).exceeds(x3 - gravity * x2);
         let mut w1 = w0 + x1;
         if far != [false; W] {
@@ -137,7 +137,7 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
         // One of the two by the other, so that no factor 2ĉ is divided by.
         let by_v = v.exceeds(w2_scaled);
         let w2 = product.or(&by_v, w2_scaled) / v.or(&by_v, gravity);
-        let [x1, x2] = self.beside(second, gravity * w0 + v);
+        let [x1, x2] = self.other_distances(second, gravity * w0 + v);
         let gap = x1 + x2;
         let z3 = two * gravity + v;
         let [z1, z2] = factors(self.sigma * self.sigma / z3, gap);
@@ -146,7 +146,7 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
 
     /// Distances of u0 from r1 and r2, given that from r3 times 2ĉ.
     #[inline(always)]
-    fn beside(&self, second: Wides<W, FMA>, x3: Wides<W, FMA>) -> [Wides<W, FMA>; 2] {
+    fn other_distances(&self, second: Wides<W, FMA>, x3: Wides<W, FMA>) -> [Wides<W, FMA>; 2] {
         let product = self.rise * self.rise / x3;
         factors(product, (second + self.cubic.gravity * product) / x3)
     }

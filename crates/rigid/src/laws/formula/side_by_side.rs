@@ -5,13 +5,13 @@ use crate::laws::forcing::Place;
 use crate::laws::torque::lanes::{Three, in_lanes, reversed, seen, turned};
 use crate::state::phase::Gyrostat;
 use polhode_ga::Rotor;
-use polhode_ga::formula::{Beside, Given};
+use polhode_ga::formula::{Given, SideBySide};
 use polhode_ga::simd::lanes::{Lanes, composed};
 use std::sync::Arc;
 
 /// A torque for each body.
 pub(crate) struct Formulas<'f, const W: usize, const F: bool> {
-    program: Beside<'f, W>,
+    program: SideBySide<'f, W>,
     /// The inputs that change along the motion.
     motions: Vec<(usize, Motion)>,
     /// From principal axes to those of the body; `None` if they are the same for all bodies.
@@ -49,7 +49,7 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
         let known: Vec<Option<Given>> =
             still.iter().map(|values| values.as_ref().filter(|v| same(v)).map(|v| v[0])).collect();
         let is_time = |source: &Source| matches!(source, Source::Motion(Motion::Time));
-        let mut program = runner.beside(&known, sources.iter().position(is_time))?;
+        let mut program = runner.side_by_side(&known, sources.iter().position(is_time))?;
         for (input, values) in still.iter().enumerate().filter_map(|(i, v)| Some((i, v.as_ref()?))) {
             for (l, value) in values.iter().enumerate() {
                 let lanes = program.input(input).iter_mut();

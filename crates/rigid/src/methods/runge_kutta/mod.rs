@@ -164,7 +164,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         let axes = matrix(&rotor);
         let momentum = mapped_back(&axes, &at.momentum);
         let wheel = forcing.wheel(&bodies.wheel, &at.time);
-        let omega = bodies.omega_beside(&momentum, &wheel);
+        let omega = bodies.omega_with_wheel(&momentum, &wheel);
         let place = Place { rotor, omega, time: at.time };
         let omega = mapped(&axes, &omega);
         let first = cross(&turned, &omega);

@@ -25,16 +25,16 @@ impl Scene {
     ) -> Result<ensemble::Ensemble, DrawError> {
         let Some(points) = &ensemble.points else { return self.drawn(ensemble, built, bodies) };
         let mut cursor = Cursor::new(points, &self.text);
-        let mut gathered = Gathered::default();
+        let mut rows = Collected::default();
         for index in bodies {
             let failed = |message| DrawError { body: index, message };
             let point = cursor.read(index % points.number).map_err(|problems| {
                 failed(problems.into_iter().map(|(_, message)| message).collect::<Vec<_>>().join("; "))
             })?;
             let (scene, body, laws) = self.at_point(point, built).map_err(failed)?;
-            gathered.add(scene.drawn(ensemble, (&body, &laws), index..index + 1)?);
+            rows.add(scene.drawn(ensemble, (&body, &laws), index..index + 1)?);
         }
-        Ok(gathered.ensemble(&self.shared(ensemble, points, built)))
+        Ok(rows.ensemble(&self.shared(ensemble, points, built)))
     }
 
     /// Checks the bodies and the laws of all points.
@@ -162,7 +162,7 @@ struct Shared {
 
 /// Properties of bodies, one after the other.
 #[derive(Default)]
-struct Gathered {
+struct Collected {
     inertias: Vec<Inertia>,
     starts: Vec<Start>,
     laws: Vec<Vec<Torque>>,
@@ -170,7 +170,7 @@ struct Gathered {
     forces: Vec<Vec<Force>>,
 }
 
-impl Gathered {
+impl Collected {
     /// Adds an ensemble of one body.
     fn add(&mut self, one: ensemble::Ensemble) {
         self.inertias.push(*one.inertias.of(0));

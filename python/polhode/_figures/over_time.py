@@ -10,7 +10,7 @@ from polhode._algebra.constructors import vector
 from polhode._figures.palette import AXES, BLACK, MOMENTUM, ORANGE, PLANES, SPACE_AXES
 from polhode._figures.style import Axes, Figure, drawing, dress, scaled_unit, time_unit
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.describe import main_axis
+from polhode._report.motion_parameters import main_axis
 from polhode._report.summary import QUANTITIES
 from polhode._support.arrays import Array
 

@@ -16,7 +16,7 @@ from polhode._figures.spheres import axis_figure, path_figure, polhode_figure
 from polhode._figures.style import Figure, Sheet, as_png, encoded, require_times
 from polhode._figures.tilt import angle_figure, locus_figure, satellite_figure, top_figure
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.describe import long_axis, main_axis, weight, wheel
+from polhode._report.motion_parameters import long_axis, main_axis, weight, wheel
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 from polhode._support.extras import optional

@@ -13,7 +13,7 @@ from polhode._figures.style import NEW, Axes, Figure, Sheet, drawing, dress, mar
 from polhode._mechanics.closed_forms import LagrangeTop
 from polhode._mechanics.smooth import samples
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.describe import long_axis, main_axis
+from polhode._report.motion_parameters import long_axis, main_axis
 from polhode._support.arrays import Array
 
 # Numbers of tilts and rates of the grid for curves of equal energy.

@@ -1,4 +1,4 @@
-"""Parameters of a motion's torques, for figures and reports."""
+"""Parameters of the torques and axes of a motion, for figures and reports."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.result import Failure
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.describe import main_axis, orbit_of, weight
+from polhode._report.motion_parameters import main_axis, orbit_of, weight
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 

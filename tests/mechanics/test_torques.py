@@ -412,3 +412,17 @@ def test_arguments_have_the_words_of_scenes(kind):
         names = set(inspect.signature(getattr(module, name)).parameters)
         # An empty field: in scenes the law is this value alone.
         assert {argument.field for argument in entry.arguments if argument.field} <= names, name
+
+
+def test_defaults_are_those_of_scenes():
+    """The registry has the defaults of numbers; a choice of words begins with its default."""
+    for laws, module in ((TORQUES, ph.torque), (FORCES, ph.force)):
+        for name, entry in laws.items():
+            own = inspect.signature(getattr(module, name)).parameters.values()
+            for argument, parameter in zip(entry.arguments, own, strict=False):
+                if argument.shape == "scalar":
+                    expected = argument.default and argument.default[0]
+                    default = None if parameter.default is inspect.Parameter.empty else parameter.default
+                    assert default == expected, (name, argument.name)
+                if argument.shape == "word":
+                    assert parameter.default == argument.words[0]

@@ -1,4 +1,4 @@
-"""Signs of rotors: R and −R are the same rotation; which of the two to hold."""
+"""Signs of rotors: choice between R and −R, which are the same rotation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One body of many: from netCDF files of batches and ensembles, and from Zarr stores."""
+"""Reading of one body of many: from netCDF files of batches and ensembles, and from Zarr stores."""
 
 from __future__ import annotations
 

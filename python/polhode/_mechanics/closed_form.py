@@ -181,7 +181,7 @@ def given(
     name: str = "",
     remedy: str = "Body.inertia",
 ) -> tuple[tuple[Any, ...], Any]:
-    """Return what the core takes, arrays broadcast to one batch shape, and the inertias.
+    """Return the arguments of the core, arrays broadcast to one batch shape, and the inertias.
 
     The numbers `law` (..., k) of the torque have a name for errors.
     """

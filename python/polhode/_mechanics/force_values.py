@@ -16,7 +16,7 @@ from polhode._mechanics.state import State
 
 
 def names_of_motion(body: Body, state: State, t: float) -> dict[str, Any]:
-    """Return what the motion defines in the formula of a force."""
+    """Return the values of the names that the motion defines in the formula of a force."""
     rotor, omega, inertia = state.rotor, state.omega_body, body.inertia
     in_space, momentum = rotor(omega), inertia(omega)
     names = {"x": state.position, "v": state.velocity, "m": body.mass, "R": rotor, "t": t, "I": inertia}

@@ -1,4 +1,4 @@
-"""`KeplerOrbit` and the field of a dipole: what a satellite meets along its way."""
+"""`KeplerOrbit`, and the magnetic field of a dipole at positions along it."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What is known of a run: text, numbers and netCDF files."""
+"""Reports of runs: text, numbers and netCDF files."""

@@ -1,4 +1,4 @@
-"""Motions read from netCDF files, and the checks of what a foreign file holds."""
+"""Reading of motions from netCDF files, with checks of foreign files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""XML documents whose elements know their place, without document types."""
+"""XML documents without document types; each element has its place in the file."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class Inertial:
             raise self.node.error(str(error)) from None
 
     def case(self) -> slips.Case:
-        """Return what the search for slips needs."""
+        """Return the inertia as a case for the search for slips."""
         turn = self.rotor.to_matrix()
         center = np.asarray(turn).T @ self.center
         return slips.Case(self.matrix, self.mass, center, self.texts, self.in_rows)

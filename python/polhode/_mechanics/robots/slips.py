@@ -199,7 +199,7 @@ _SLIPS: tuple[Callable[[Case], str | None], ...] = (
 
 
 def doubts(case: Case) -> Iterator[str]:
-    """Yield what is improbable about a possible inertia."""
+    """Yield warnings of improbable values of a possible inertia."""
     distance = float(np.linalg.norm(case.center))
     if distance > _FAR:
         yield f"centre of mass is {distance:.3g} m from the origin of the link; is it in mm instead of m?"

@@ -1,1 +1,1 @@
-"""The run of a scene with many bodies and what is reported of it."""
+"""Runs of scenes with many bodies, and their reports."""

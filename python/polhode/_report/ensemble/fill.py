@@ -150,6 +150,6 @@ def _part_of(progress: Report | None, done: int, count: int) -> Report | None:
 
 
 def _kept(store: EnsembleStore) -> str:
-    """Return what a store has after an interrupt, and how to continue."""
+    """Return a message after an interrupt: the state of the store, and how to continue."""
     complete = sum(mark["bodies"][1] - mark["bodies"][0] for mark in store.marks())
     return f"{store.path} has {complete} of {counted(store.number, 'body')}; continue with resume (--resume)"

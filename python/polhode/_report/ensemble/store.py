@@ -186,7 +186,7 @@ class EnsembleStore:
         return "done" if right else "corrupt"
 
     def marks(self, blocks: Iterable[int] | None = None) -> Iterator[dict[str, Any]]:
-        """Yield what the marks of blocks say, in order: bodies, failures, methods, drifts."""
+        """Yield the contents of the marks of blocks, in order: bodies, failures, methods, drifts."""
         for index in range(self.blocks) if blocks is None else blocks:
             with contextlib.suppress(OSError, ValueError):
                 yield sealed(self._mark(index))

@@ -71,9 +71,9 @@ def reduce(
 ) -> Any:
     """Return the rotors ``l R r`` of the smallest angle, for l and r of two groups: SciPy's ``reduce``.
 
-    For symmetries `right` of a body and `left` of its surroundings, equivalent attitudes have
-    the same reduced angle: the misorientation of crystals. The scalar part of
-    the result is >= 0. Of several equal angles, to rounding, any may be taken.
+    For symmetries `right` of a body and `left` of its surroundings, equivalent attitudes have the same
+    reduced angle: the misorientation of crystals. The scalar part of the result is >= 0. Of several equal
+    angles, to rounding, any may be taken.
 
     Parameters
     ----------

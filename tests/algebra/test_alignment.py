@@ -240,3 +240,20 @@ def test_wrong_infinite_weights_raise():
         ph.align([0 * e1, e2], [e2, e1], [np.inf, 1])
     with pytest.raises(ValueError, match="weights must be finite"):
         ph.align(a, b, [np.inf, -1, 1])
+
+
+@pytest.mark.parametrize("a_power", [-560, 0, 530])
+@pytest.mark.parametrize("b_power", [-560, 0, 530])
+@pytest.mark.parametrize("weight_power", [-1000, 0, 1000])
+def test_an_infinite_weight_beside_vectors_and_weights_of_any_size(a_power, b_power, weight_power):
+    a, _, b = noisy(4, 1e-3)
+    w = np.array([np.inf, 1.0, 2.0, 0.5])
+    plain = ph.align(a, b, w)
+    fit = ph.align(np.ldexp(a, a_power), np.ldexp(b, b_power), np.ldexp(w, weight_power))
+    assert fit.rotor.distance(plain.rotor) <= 8 * EPS
+    if a_power == b_power:
+        expected = np.ldexp(plain.residual, a_power + weight_power // 2)
+        np.testing.assert_allclose(fit.residual, expected, rtol=1e-10)
+    with np.errstate(over="ignore"):
+        expected = np.ldexp(plain.covariance, -(a_power + b_power + weight_power))
+    np.testing.assert_allclose(fit.covariance, expected, rtol=1e-12, atol=1e-320)

@@ -64,6 +64,13 @@ def test_weights_pull_the_mean():
     assert ph.mean(pair, [1, 3])(e1).dot(b(e1)).components > ph.mean(pair)(e1).dot(b(e1)).components
 
 
+@pytest.mark.parametrize("size", [5e-324, 1e-310, 1e-200, 1e307])
+def test_weights_of_any_size_give_the_same_mean(size):
+    R = ph.Rotor.from_axis_angle(e3, [[10, 30, 40], [10, 30, -50]], degrees=True)
+    w = np.array([1, 2, 1])
+    assert (ph.mean(R, w * size, axis=1).distance(ph.mean(R, w, axis=1)) <= 8 * EPS).all()
+
+
 def test_rotors_without_a_unique_mean_raise():
     half_turns = ph.Rotor.from_components(np.eye(4))
     with pytest.raises(ValueError, match="no mean"):

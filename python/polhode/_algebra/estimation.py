@@ -73,7 +73,11 @@ def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None)
     order, rest = (*kept, *axes), tuple(rotors.shape[k] for k in kept)
     rows = kind.asarray(rotors._data)
     rows = xp.reshape(xp.permute_dims(rows, (*order, len(order))), (*rest, -1, 4))
-    weighted = rows if w is None else xp.reshape(xp.permute_dims(w, order), (*rest, -1, 1)) * rows
+    weighted = rows
+    if w is not None:
+        column = xp.reshape(xp.permute_dims(w, order), (*rest, -1, 1))
+        # By a power of two, so that sums neither overflow nor lose digits.
+        weighted = (column / power_of_two(column, -2) if kind.native else column) * rows
     eps = float(np.finfo(rotors.dtype).eps) if is_float(rotors._data) else kind.eps
 
     def check(values: Any) -> None:
@@ -244,13 +248,7 @@ def align(a: Any, b: Any, weights: Any = None, *, errors: Errors = "raise") -> A
         off = y - turned
         residual = xp.sqrt(xp.sum(weights * xp.sum(off * off, axis=-1), axis=-1))
         return Alignment(rotor.canonical(), residual, covariance)
-    with np.errstate(over="ignore"):
-        unit = np.maximum(*units)
-        off = y * (units[1] / unit) - turned * (units[0] / unit)
-        residual = np.sqrt((weights * (off * off).sum(axis=-1)).sum(axis=-1))
-        residual = residual * np.sqrt(weight[..., 0]) * unit[..., 0, 0]
-        for size in (*units, weight[..., None]):
-            covariance = covariance / size
+    residual, covariance = _in_units(y, turned, weights, covariance, (*units, weight))
     return Alignment(rotor.canonical(), residual, covariance)
 
 
@@ -274,6 +272,10 @@ def _aligned_exactly(kind: Any, x: Any, y: Any, weights: Any) -> Alignment:
     kind.require((sizes > 0).all(axis=0), "a vector with an infinite weight is 0 and has no direction")
     axis = target / sizes[1][..., np.newaxis]
     shortest = Rotor.from_vectors(vector(first), vector(target))
+    # By powers of two, which round nothing, so that no product overflows or vanishes.
+    x, y = (np.where(exact[..., np.newaxis], 0.0, v) for v in (x, y))
+    units, weight = [power_of_two(v, (-2, -1)) for v in (x, y)], power_of_two(others, -1)
+    (x, y), others = (v / unit for v, unit in zip((x, y), units, strict=True)), others / weight
     n, turned = axis[..., np.newaxis, :], shortest[..., np.newaxis](vector(x)).components
     p, q = (v - (v * n).sum(axis=-1, keepdims=True) * n for v in (turned, y))
     cosine = (others * (p * q).sum(axis=-1)).sum(axis=-1)
@@ -284,10 +286,23 @@ def _aligned_exactly(kind: Any, x: Any, y: Any, weights: Any) -> Alignment:
     curvature = np.hypot(cosine, sine)
     kind.require(curvature > 32 * kind.eps * size, _PARALLEL)
     rotor = Rotor.from_axis_angle(axis, np.arctan2(sine, cosine)) * shortest
-    off = y - rotor[..., np.newaxis](vector(x)).components
-    residual = np.sqrt((others * (off * off).sum(axis=-1)).sum(axis=-1))
     covariance = axis[..., :, np.newaxis] * axis[..., np.newaxis, :] / curvature[..., np.newaxis, np.newaxis]
+    turned = rotor[..., np.newaxis](vector(x)).components
+    residual, covariance = _in_units(y, turned, others, covariance, (*units, weight))
     return Alignment(rotor.canonical(), residual, covariance)
+
+
+def _in_units(y: Any, turned: Any, weights: Any, covariance: Any, units: tuple[Any, ...]) -> tuple[Any, Any]:
+    """Return residual and covariance of b and turned a (..., n, 3), and weights, divided by these units."""
+    first, second, weight = units
+    with np.errstate(over="ignore"):
+        unit = np.maximum(first, second)
+        off = y * (second / unit) - turned * (first / unit)
+        residual = np.sqrt((weights * (off * off).sum(axis=-1)).sum(axis=-1))
+        residual = residual * np.sqrt(weight[..., 0]) * unit[..., 0, 0]
+        # In one step: the product of the units may be in range where parts of it are not.
+        power = sum(np.frexp(size)[1] - 1 for size in (first, second, weight[..., None]))
+        return residual, np.ldexp(covariance, -power)
 
 
 def _rows(values: Any, what: str) -> Any:

@@ -2,6 +2,7 @@
 
 import pickle
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -49,6 +50,22 @@ def test_velocities_have_the_energy_and_the_angular_momentum_of_the_orbit(eccent
     assert not swept[..., :2].any()
     np.testing.assert_allclose(swept[..., 2], np.sqrt(mu * a * (1 - eccentricity**2)), rtol=1e-9)
     assert orbit.velocity(0.0).shape == ()
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-10, 1e-14])
+@pytest.mark.parametrize("share", [0.01, 0.3, 0.45, 0.49])
+def test_velocities_far_out_on_a_long_ellipse(gap, share):
+    orbit = T.KeplerOrbit(1e7, 1 - gap)
+    t = share * orbit.period
+    with mpmath.workdps(40):
+        e = mpmath.mpf(orbit.eccentricity)
+        n = mpmath.sqrt(mpmath.mpf(orbit.mu) / mpmath.mpf(1e7) ** 3)
+        E = mpmath.findroot(lambda E: E - e * mpmath.sin(E) - n * t, (0, mpmath.pi), solver="anderson")
+        speed = n * mpmath.mpf(1e7) / (1 - e * mpmath.cos(E))
+        expected = [-speed * mpmath.sin(E), speed * mpmath.sqrt(1 - e**2) * mpmath.cos(E)]
+    x, y, _ = orbit.velocity(t).components
+    # A rounding of the time changes the velocity by 1e-14 of it near the apoapsis.
+    assert mpmath.hypot(x - expected[0], y - expected[1]) <= 1e-13 * mpmath.hypot(*expected)
 
 
 def test_an_orbit_with_another_eccentricity_is_an_error():

@@ -12,7 +12,7 @@ from polhode._algebra.constructors import as_vectors, vector
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.laws import number
 from polhode._mechanics.parameters import vectors
-from polhode._support.arrays import as_floats
+from polhode._support.arrays import as_floats, lengths
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,8 @@ class KeplerOrbit:
     def velocity(self, t: Any) -> Multivector:
         """Return the velocity relative to the planet at times (...), vectors in m/s.
 
-        With the true anomaly ν it is ``√(μ/(a (1 − e²))) (−sin ν e1 + (e + cos ν) e2)``.
+        With the true anomaly ν it is ``√(μ/(a (1 − e²))) (−sin ν e1 + (e + cos ν) e2)``, where
+        ``e + cos ν = (1 − e²) (x/a + e) a/r``, which does not cancel far out on a long ellipse.
 
         Examples
         --------
@@ -97,10 +98,12 @@ class KeplerOrbit:
         >>> bool((path.position[-1] - orbit.position(600)).norm() < 1e-2)
         True
         """
-        place = self.position(t).components
-        direction = place / np.linalg.norm(place, axis=-1, keepdims=True)
-        across = direction @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 0]]) + [0, self.eccentricity, 0]
-        return vector(np.sqrt(self.mu / (self.semi_major_axis * (1 - self.eccentricity**2))) * across)
+        a, e = self.semi_major_axis, self.eccentricity
+        place = self.position(t).components / a
+        r, breadth = lengths(place), np.sqrt((1 - e) * (1 + e))
+        x, y = place[..., 0], place[..., 1]
+        direction = np.stack([-y / r / breadth, breadth * (x + e) / r, np.zeros_like(r)], axis=-1)
+        return vector(np.sqrt(self.mu / a) * direction)
 
     @property
     def _numbers(self) -> tuple[float, float, float, float]:

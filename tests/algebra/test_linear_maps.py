@@ -136,6 +136,14 @@ def test_sums_and_products_follow_ieee():
     assert same(F(ph.scalar(np.inf)), ph.scalar(np.inf))
 
 
+def test_determinants_of_columns_of_very_different_sizes():
+    sizes = 2.0 ** np.array([[700, 700, -700], [-700, -700, 700], [-1000, 1000, 10], [0, 0, 0]])
+    sizes[3, 0] = 0.0
+    matrices = random_map().matrix * sizes[:, np.newaxis, :]
+    expected = random_map().determinant * np.array([2.0**700, 2.0**-700, 2.0**10, 0.0])
+    np.testing.assert_array_equal(ph.LinearMap.from_matrix(matrices).determinant, expected)
+
+
 def test_coefficients_become_floats_and_other_algebras_raise():
     F = random_map()
     for dtype in (object, np.float32):

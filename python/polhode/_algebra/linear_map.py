@@ -25,6 +25,7 @@ from polhode._support.arrays import (
     first_index,
     frozen,
     lengths,
+    power_of_two,
 )
 
 _NAMES = {1: "vectors", 2: "bivectors"}
@@ -214,7 +215,11 @@ class LinearMap:
         n, matrix = self.algebra.dimension, self.matrix
         if matrix.shape[-1] != n:
             return np.linalg.det(matrix)
-        return compound(self.algebra, matrix, n)[..., 0, 0][()]
+        # Columns in units of powers of two, so that no product on the way overflows or vanishes.
+        units = power_of_two(matrix, -2)
+        powers = np.sum(np.frexp(units)[1] - 1, axis=(-2, -1))
+        with np.errstate(over="ignore"):
+            return np.ldexp(compound(self.algebra, matrix / units, n)[..., 0, 0], powers)[()]
 
     def trace(self) -> Any:
         """Return the trace of the matrix, ``Σ e^k·F(e_k)``: a float, or an array of the batch shape.

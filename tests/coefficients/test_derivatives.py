@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+import polhode as ph
 from generic_arrays import EPS, eight_of, multiplied, native, of
 from polhode._generic import functions, layout, rotors
 
@@ -172,6 +173,32 @@ def test_undefined_values_are_not_finite_while_traced():
     assert not np.isfinite(jax.jit(function("exp", SCALAR))(jnp.asarray([1000.0]))).all()
     assert np.isnan(jax.jit(lambda m: functions.normalized(of(m), m))(jnp.zeros(3))).all()
     assert np.isnan(jax.jit(lambda m: rotors.from_components(of(m), m))(jnp.zeros(4))).all()
+
+
+SMOOTH_AT_ZERO = {
+    "rotation vector": (3, lambda v: ph.Rotor.from_rotation_vector(v)),
+    "bivector": (3, lambda v: ph.bivector(v).exp()),
+    "multivector": (8, lambda v: ph.multivector(v).exp()),
+    "cosine": (3, lambda v: ph.bivector(v).cos()),
+    "spacetime": (6, lambda v: ph.algebra(1, 3).bivector(v).exp()),
+    "vector of spacetime": (4, lambda v: ph.algebra(1, 3).vector(v).exp()),
+    "motor": (6, lambda v: ph.algebra(3, 0, 1).bivector(v).exp()),
+}
+
+
+@pytest.mark.parametrize("name", SMOOTH_AT_ZERO)
+def test_second_derivatives_where_squares_vanish(name):
+    size, f = SMOOTH_AT_ZERO[name]
+
+    def number(v):
+        data = f(v).dense()
+        return data @ jnp.arange(1.0, data.shape[-1] + 1)
+
+    hessian = jax.jit(jax.hessian(number))
+    expected = hessian(jnp.zeros(size))
+    direction = np.linspace(-1, 1.3, size)
+    for length in (1e-30, 1e-160, 1e-300):
+        np.testing.assert_allclose(hessian(jnp.asarray(length * direction)), expected, rtol=0, atol=64 * EPS)
 
 
 def test_float32_derivatives_stay_float32():

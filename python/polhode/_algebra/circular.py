@@ -198,7 +198,7 @@ def _joined(
 
 def _closed(d: Any, value: Multivector, sign: int, squares: tuple[int, ...]) -> Pair:
     s, rest = _scalar_and_rest(value)
-    scale = d.scale(rest) if rest else s * 0.0 + 1.0
+    scale = d.scale_of_large(rest) if rest else s * 0.0 + 1.0
     scaled = scale * 0.0
     for square, x in zip(squares, rest, strict=True):
         scaled = scaled + sign * square * (x / scale) * (x / scale)

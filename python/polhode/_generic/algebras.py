@@ -159,7 +159,7 @@ def _simple_exp(d: Numeric, terms: Sequence[Term], data: Array) -> Array:
 def _closed_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
     """``e^s (cosh √w + V sinh √w / √w)`` for a number ``V² = w``: boost (w > 0), shift or turn (w < 0)."""
     s, *v = components(m)
-    scale = d.scale(v) if v else d.zeros_like(s) + 1.0
+    scale = d.scale_of_large(v) if v else d.zeros_like(s) + 1.0
     scaled = d.zeros_like(s)
     for i, j, k, sign in terms:
         if i == j != 0 and k == 0:

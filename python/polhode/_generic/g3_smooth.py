@@ -109,7 +109,7 @@ def exp(d: Numeric, m: Components, mask: int) -> Components:
         cos, sinc = cos_sinc(d, m[4:7])
         size = d.exp(m[0])
         return [size * cos, *m[1:4], *(size * (sinc * b) for b in m[4:7]), m[7]]
-    scale = d.scale(m[1:7])
+    scale = d.scale_of_large(m[1:7])
     zeta, scaled = Complex(m[0], m[7]), split([x / scale for x in m])[1]
     w = scaled.times(scale).times(scale)
     small = w.square() < 1
@@ -125,7 +125,7 @@ def exp(d: Numeric, m: Components, mask: int) -> Components:
 
 def cos_sinc(d: Numeric, b: Components) -> tuple[Any, Any]:
     """``cos|B|`` and ``sin|B|/|B|``."""
-    scale = d.scale(b)
+    scale = d.scale_of_large(b)
     scaled = squares(d, [x / scale for x in b])
     square = scaled * scale * scale
     small = square < 1

@@ -150,6 +150,14 @@ class Numeric:
         usable = (largest > 0) & (largest <= float(info.max))
         return self.where(usable & ~usual, largest, self.xp.ones_like(largest))
 
+    def scale_of_large(self, components: list[Array]) -> Array:
+        """Return `scale`, but 1 for small components, of functions in whose series their squares may vanish.
+
+        Squares of a small scale vanish too, and second derivatives with them.
+        """
+        scale = self.scale(components)
+        return self.where(scale < 1, 1.0, scale)
+
     def largest(self, components: list[Array]) -> Array:
         """Return the largest magnitude, as a constant."""
         largest = self.xp.abs(self.constant(components[0]))

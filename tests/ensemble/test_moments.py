@@ -91,3 +91,11 @@ def test_incompatible_shapes_are_rejected():
     for name in ("count", "missing", "mean", "variance", "std", "minimum", "maximum"):
         getattr(moments, name)[0] = 7
     assert [moments.count[0], moments.mean[0], moments.std[0], moments.maximum[0]] == [5, 0, 0, 0]
+
+
+def test_means_far_apart_do_not_overflow():
+    found = ph.Moments().add([1e308]).add([1.5e308]).add([-1.7e308])
+    assert abs(found.mean / (0.8e308 / 3) - 1) <= 1e-14
+    assert ph.Moments().add([1e308]).add([np.inf]).mean == np.inf
+    assert ph.Moments().add([np.nan]).add([np.inf]).mean == np.inf
+    assert np.isnan(ph.Moments().add([-np.inf]).add([np.inf]).mean)

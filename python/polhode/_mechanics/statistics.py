@@ -142,7 +142,7 @@ def _merged(a: _Found | None, b: _Found | None) -> _Found | None:
         change = b.mean - a.mean
         squares = a.squares + b.squares + change * change * a.number * share
         mean = np.where(share == 1, b.mean, a.mean + change * share)
-        mean = np.where(np.isfinite(change), mean, a.mean + b.mean)
+        mean = np.where(np.isfinite(change), mean, a.mean * (1 - share) + b.mean * share)
     extremes = np.fmin(a.minimum, b.minimum), np.fmax(a.maximum, b.maximum)
     return _Found(count, a.missing + b.missing, mean, squares, *extremes)
 

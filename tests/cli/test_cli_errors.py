@@ -348,7 +348,8 @@ def test_ctrl_c_ends_a_background_job_of_a_script(command, scene):
         assert process.wait() == 130
 
 
-def test_an_interrupted_run_leaves_no_file(tmp_path):
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_an_interrupted_run_leaves_no_file(number, code, tmp_path):
     (tmp_path / "long.toml").write_text(ENDLESS)
     (tmp_path / "out.nc").write_bytes(b"older")
     program = "from polhode._cli.main import main; print('go', flush=True); raise SystemExit(main())"
@@ -357,9 +358,9 @@ def test_an_interrupted_run_leaves_no_file(tmp_path):
         assert process.stdout.readline() == "go\n"
         time.sleep(1.0)
         assert process.poll() is None
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         output, errors = process.communicate()
-    assert process.returncode == 130
+    assert process.returncode == code
     assert "interrupted" in errors
     assert "Traceback" not in errors
     assert output == ""

@@ -17,7 +17,7 @@ from polhode._support.files import check_target, form_of
 if TYPE_CHECKING:
     from polhode._scene.scene import Scene
 
-OK, FAILED, BAD_INPUT, DRIFTED, INTERRUPTED = 0, 1, 3, 4, 130
+OK, FAILED, BAD_INPUT, DRIFTED, INTERRUPTED, TERMINATED = 0, 1, 3, 4, 130, 143
 
 Report = Callable[[int, float], object]
 

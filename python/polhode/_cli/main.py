@@ -10,6 +10,7 @@ import os
 import re
 import signal
 import sys
+import threading
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -41,15 +42,17 @@ def main(arguments: list[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
+    ends: list[int] = []
     try:
         _restore_ctrl_c()
         given = _with_values(sys.argv[1:] if arguments is None else arguments)
         options = _parser(given).parse_args(given)
-        with _printed_warnings():
+        with _printed_warnings(), _ending_as_ctrl_c(ends):
             code = int(options.command(options))
         print(end="", flush=True)
     except KeyboardInterrupt as stop:
-        code = _complain(str(stop) or "interrupted; no file was changed", common.INTERRUPTED)
+        code = common.TERMINATED if ends else common.INTERRUPTED
+        _complain(str(stop) or "interrupted; no file was changed", code)
     except (SceneError, UnreadableError) as error:
         code = _complain(str(error), common.BAD_INPUT)
     except BrokenPipeError:
@@ -67,6 +70,28 @@ def _restore_ctrl_c() -> None:
     """
     if signal.getsignal(signal.SIGINT) in (signal.SIG_IGN, _start.stop):
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def _ending_as_ctrl_c(ends: list[int]) -> Iterator[None]:
+    """Let the signal to terminate end the command as Ctrl-C does, so that it removes its unfinished files.
+
+    The list then has the signal.
+    """
+
+    def end(number: int, _: object) -> None:
+        ends.append(number)
+        raise KeyboardInterrupt
+
+    is_main = threading.current_thread() is threading.main_thread()
+    if not is_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:  # another program handles it
+        yield
+        return
+    signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 @contextmanager
@@ -103,7 +128,7 @@ def _parser(given: Sequence[str] = ()) -> argparse.ArgumentParser:
         description="Rigid-body motion in the language of geometric algebra.",
         epilog=(
             "Exit codes: 0 ok, 1 the run failed or an equation is false, 2 wrong usage, 3 bad input file "
-            "or formula, 4 a conserved quantity drifted past its bound, 130 interrupted."
+            "or formula, 4 a conserved quantity drifted past its bound, 130 interrupted, 143 terminated."
         ),
     )
     parser.add_argument("--version", action="version", version=f"polhode {__version__}")
@@ -247,6 +272,7 @@ def _view(options: argparse.Namespace) -> int:
 def _repl(_: argparse.Namespace) -> int:
     from polhode._formula.shell.repl import run
 
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the prompt goes on after Ctrl-C
     return run()
 
 

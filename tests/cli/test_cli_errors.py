@@ -112,6 +112,24 @@ def test_errors_of_the_system_name_the_file_and_the_reason(command, scene, tmp_p
     assert (done.returncode, done.stderr) == (1, "polhode: error: a.csv: permission denied\n")
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+@pytest.mark.parametrize(
+    "arguments", [["check"], ["run"], ["view", "--no-browser"], ["fit"], ["eval", "-f"]], ids=lambda x: x[0]
+)
+def test_a_named_pipe_is_refused(arguments, tmp_path, command):
+    """Opening it would wait for a writer, and Ctrl-C would not end that."""
+    os.mkfifo(tmp_path / "pipe")
+    done = command(*arguments, "pipe")
+    assert done.returncode == 3
+    assert "pipe: error: not a regular file" in done.stderr
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs devices")
+def test_a_device_is_not_read_without_end(command):
+    done = command("fit", "/dev/zero")
+    assert (done.returncode, done.stderr) == (3, "/dev/zero: error: not a regular file\n")
+
+
 def test_files_that_must_not_be_read(command, tmp_path, monkeypatch):
     """The system of a superuser may read them."""
     (tmp_path / "a.nc").write_bytes(b"\x89HDF")

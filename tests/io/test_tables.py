@@ -85,6 +85,9 @@ HEADER = "time,attitude_w,attitude_x,attitude_y,attitude_z"
         ("time\n1\n", "the file has no column 'attitude_w'"),
         (f"{HEADER}\n0,1,0,0\n", "a.csv:2:1: error: expected 5 numbers as in the first line, got 4"),
         (f"{HEADER}\n0,1,0,x,0\n", "a.csv:2:7: error: 'x' is not a finite number"),
+        (f"{HEADER}\n0,1,0,,0\n", "a.csv:2:7: error: the field is empty; correct it or remove the row"),
+        (f"{HEADER}\n0,1,0,0,0\nnan,1,0,0,0\n", "a.csv:3:1: error: times must be finite, got nan\n"),
+        (f"{HEADER}\n0,1,0,nan,0\n", "a.csv:2:3: error: attitude must be unit quaternions, got norm nan\n"),
         (f"{HEADER}\n0,2,0,0,0\n", "a.csv:2:3: error: attitude must be unit quaternions, got norm 2\n"),
         (f"{HEADER}\n0,1,0,0,0\n\n10,0,0,0,0\n", "a.csv:4:4: error: attitude must be unit quaternions, got"),
         (f"{HEADER}\n1,1,0,0,0\n0,1,0,0,0\n", "a.csv:3:1: error: times must increase, got 0.0 s after 1.0 s"),
@@ -113,6 +116,20 @@ def test_errors_of_a_body_in_a_batch_have_their_place(tmp_path):
     (tmp_path / "a.csv").write_text(f"body,{HEADER}\n0,0,1,0,0,0\n1,0,1,0,0,0\n0,1,1,0,0,0\n1,1,0,0,0,0\n")
     with pytest.raises(ph.io.FileError, match=r"a\.csv:5:5: error: attitude must be unit quaternions"):
         ph.io.read_csv(tmp_path / "a.csv", body=1)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "expected"),
+    [
+        ("utf-16", "a.csv: error: not UTF-8 text from byte 0 on; save the table as CSV in UTF-8"),
+        ("utf-16-le", "a.csv: error: byte 1 is zero, not text; save the table as CSV in UTF-8"),
+    ],
+)
+def test_tables_are_utf_8(encoding, expected, tmp_path):
+    (tmp_path / "a.csv").write_text(f"{HEADER}\n0,1,0,0,0\n", encoding)
+    with pytest.raises(ph.io.FileError) as caught:
+        ph.io.read_csv(tmp_path / "a.csv")
+    assert expected in str(caught.value)
 
 
 @pytest.mark.parametrize("form", ["csv", "parquet", "nc", "aem"])
@@ -148,7 +165,12 @@ def test_other_suffixes_are_refused(tmp_path):
     [
         ({"time": [0.0, 0.0]}, "times must increase"),
         ({"time": [0.0]}, "rotor must have shape"),
-        ({"time": [[0.0]]}, "time must be finite numbers of shape"),
+        ({"time": [[0.0]]}, r"time must have shape \(n,\), got \(1, 1\)"),
+        ({"time": [0.0, np.nan]}, "times must be finite, got nan at row 1"),
+        (
+            {"omega_body": ph.bivector([[0, 0, 0.0], [0, np.inf, 0]])},
+            "omega_body must be finite, got inf at row 1",
+        ),
         ({"omega_body": ph.vector([[1, 2, 3.0]] * 2)}, "omega_body must be bivectors"),
         ({"rotor": 1}, "rotor must be a Rotor"),
         ({"energy": np.zeros((1, 2))}, r"energy must have shape \(n,\) for n = 2, got \(1, 2\)"),

@@ -14,6 +14,7 @@ from polhode._mechanics.bodies import Body
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.result import Certificate
 from polhode._mechanics.trajectory import Trajectory
+from polhode._report.table import columns_of
 from polhode._support.arrays import Array, as_floats
 
 
@@ -95,8 +96,10 @@ class AttitudeHistory:
     def __post_init__(self) -> None:
         time = np.array(as_floats(self.time, "time"))
         object.__setattr__(self, "time", time)
-        if time.ndim != 1 or not np.isfinite(time).all():
-            raise ValueError(f"time must be finite numbers of shape (n,), got shape {time.shape}")
+        if time.ndim != 1:
+            raise ValueError(f"time must have shape (n,), got {time.shape}")
+        if len(odd := np.flatnonzero(~np.isfinite(time))):
+            raise RowError(f"times must be finite, got {time[odd[0]]}", int(odd[0]), "time")
         if len(fallen := np.flatnonzero(np.diff(time) <= 0)):
             k = int(fallen[0]) + 1
             raise RowError(f"times must increase, got {time[k]} s after {time[k - 1]} s", k, "time")
@@ -113,8 +116,11 @@ class AttitudeHistory:
                 raise TypeError(f"{name} must be {kind}, got {values!r:.80}")
             if values.shape != time.shape:
                 raise ValueError(f"{name} must have shape {time.shape} as the times, got {values.shape}")
-            if not np.isfinite(values.components).all():
-                raise ValueError(f"{name} must be finite")
+            rows = values.components
+            if not np.isfinite(rows).all():
+                k, part = (int(x) for x in np.argwhere(~np.isfinite(rows))[0])
+                column = columns_of("attitude" if name == "rotor" else name)[part]
+                raise RowError(f"{name} must be finite, got {rows[k, part]}", k, column)
         for name, ndim in (("energy", 1), ("wheel_speed", 2)):
             values = getattr(self, name)
             if values is not None and (np.ndim(values) != ndim or len(values) != len(time)):

@@ -61,8 +61,7 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
     -e1
     """
     name = os.fsdecode(path)
-    text = _content(path, name).decode("utf-8-sig", "replace")
-    source = Source(name, io.StringIO(text, newline=None).read().split("\n"))
+    source = Source(name, io.StringIO(_text(path, name), newline=None).read().split("\n"))
     rows = _rows(source)
     header = [word.strip() for word in next(rows, (1, []))[1]]
     if not header:
@@ -154,6 +153,19 @@ def _content(path: str | os.PathLike[str], name: str) -> bytes:
     return contents(path, copies=4)
 
 
+def _text(path: str | os.PathLike[str], name: str) -> str:
+    content = _content(path, name)
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FileError(
+            f"{name}: error: not UTF-8 text from byte {error.start} on; save the table as CSV in UTF-8"
+        ) from None
+    if (at := content.find(0)) >= 0:  # as in UTF-16 without a mark
+        raise FileError(f"{name}: error: byte {at} is zero, not text; save the table as CSV in UTF-8")
+    return text
+
+
 def _rows(source: Source) -> Iterator[tuple[int, list[str]]]:
     """Yield the fields of each row, and the number of its last line."""
     rows = csv.reader(source.lines)
@@ -171,7 +183,10 @@ def _number(source: Source, line: int, row: list[str], k: int) -> float:
     except ValueError:
         value = None
     if value is None or math.isinf(value):
-        raise FileError(source.error(line, _start(source, line, k), f"{row[k]!r} is not a finite number"))
+        problem = f"{row[k]!r} is not a finite number" if word else "the field is empty"
+        raise FileError(
+            source.error(line, _start(source, line, k), f"{problem}; correct it or remove the row")
+        )
     return value
 
 

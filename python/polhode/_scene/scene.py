@@ -24,6 +24,7 @@ from polhode._scene.ensemble import EnsembleSpec
 from polhode._scene.table import TableReader
 from polhode._support.arrays import Array, frozen, hands_out_copies
 from polhode._support.calls import created_by
+from polhode._support.files import is_endless
 from polhode.force import Force
 from polhode.torque import Torque
 
@@ -179,6 +180,8 @@ class Scene:
         >>> scene.state.omega_body / (2 * np.pi)
         e1∧e2
         """
+        if is_endless(path):
+            raise SceneError(f"{os.fsdecode(path)}: error: not a regular file; give the path of a scene file")
         table = TableReader()
         try:
             core = _native.Scene.read(os.fspath(path), table.read)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import stat
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -12,8 +13,24 @@ from polhode._support.memory import require
 
 
 def contents(path: str | os.PathLike[str], copies: int = 1) -> bytes:
-    """Return the content of a file; a MemoryError first if so many copies would not fit into memory."""
+    """Return the content of a file; a MemoryError first if so many copies would not fit into memory.
+
+    An OSError for a device or a named pipe, which may never end.
+    """
+    if is_endless(path):
+        raise OSError("not a regular file")
     return Path(loadable(path, copies)).read_bytes()
+
+
+def is_endless(path: str | os.PathLike[str]) -> bool:
+    """Whether a path is a device or a named pipe, which may wait forever; a shell's ``<(command)`` is not."""
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError):
+        return False  # reading reports it
+    if stat.S_ISFIFO(mode):
+        return not os.path.realpath(path).startswith(("/dev/", "/proc/"))
+    return stat.S_ISCHR(mode)
 
 
 def loadable(path: str | os.PathLike[str], copies: int = 1) -> str:

@@ -10,7 +10,7 @@ from typing import Any, BinaryIO, NamedTuple
 
 from polhode._formula.agreement import Agreement
 from polhode._formula.shell.session import Answer, LineError, Session, after_let, text_of, without_comment
-from polhode._support.files import UnreadableError
+from polhode._support.files import UnreadableError, is_endless
 
 OK, FALSE, BAD_INPUT = 0, 1, 3
 
@@ -82,6 +82,8 @@ def _file(path: str) -> Iterator[Line]:
     """Yield the lines of a file as they arrive."""
     source = "<stdin>" if path == "-" else path.encode(errors="replace").decode()
     empty = True
+    if is_endless(path):
+        raise UnreadableError(f"{source}: error: not a regular file; give the path of a file of formulas")
     try:
         with _standard_input() if path == "-" else open(path, "rb") as file:
             for number, data in enumerate(iter(lambda: file.readline(_LONGEST + 1), b""), 1):

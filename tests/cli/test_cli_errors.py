@@ -135,7 +135,7 @@ def test_files_that_must_not_be_read(command, tmp_path, monkeypatch):
     (tmp_path / "a.nc").write_bytes(b"\x89HDF")
     monkeypatch.setattr("os.access", lambda path, mode: mode != os.R_OK)
     done = command("convert", "a.nc", "b.aem")
-    assert (done.returncode, done.stderr) == (3, "polhode: error: a.nc: no permission to read it\n")
+    assert (done.returncode, done.stderr) == (3, "a.nc: error: no permission to read it\n")
 
 
 def test_a_missing_mesh_is_named(tmp_path):

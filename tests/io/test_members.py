@@ -238,5 +238,5 @@ def test_events_that_are_not_those_of_a_motion(tmp_path):
     with h5py.File(path, "r+") as file:
         del file["event_time"]
         file["event_time"] = 1.0
-    with pytest.raises(ValueError, match=r"a\.nc is not a motion that polhode wrote"):
+    with pytest.raises(ValueError, match=r"a\.nc: is not a motion that polhode wrote"):
         ph.Trajectory.read(path)

@@ -150,7 +150,7 @@ def test_the_command(kernels, tmp_path, capsys):
         main(["convert", a, b, *names])
     assert "clock and frame kernels of its spacecraft; give --kernel FILE for each" in capsys.readouterr().err
     assert main(["convert", a, b, "--kernel", "none.tls", *names]) == 3
-    assert capsys.readouterr().err == "polhode: error: none.tls: no such kernel\n"
+    assert capsys.readouterr().err == "none.tls: error: no such kernel\n"
     assert main(["convert", a, b, *given, *names]) == 0
     assert main(["convert", a, b, *given, *names]) == 0  # a file of ours is replaced
     assert main(["convert", b, c, *given, "--epoch", EPOCH]) == 0

@@ -473,7 +473,7 @@ def test_truncated_files_are_refused(saved):
     content = path.read_bytes()
     for length in (0, 100, len(content) // 2, len(content) - 1):
         path.write_bytes(content[:length])
-        with pytest.raises(OSError, match=r"a.nc cannot be read as a netCDF file"):
+        with pytest.raises(OSError, match=r"a.nc: cannot be read as a netCDF file"):
             ph.Trajectory.read(path)
 
 
@@ -486,16 +486,16 @@ def test_other_files_are_refused(tmp_path):
     with pytest.raises(OSError, match=r"folder.nc: not a regular file"):
         ph.Trajectory.read(tmp_path / "folder.nc")
     (tmp_path / "noise.nc").write_bytes(b"noise")
-    with pytest.raises(OSError, match=r"noise.nc cannot be read as a netCDF file"):
+    with pytest.raises(OSError, match=r"noise.nc: cannot be read as a netCDF file"):
         ph.Trajectory.read(tmp_path / "noise.nc")
     with pytest.importorskip("h5py").File(tmp_path / "groups.nc", "w") as file:
         file.create_group("attitude")
     with pytest.raises(
-        OSError, match=r"groups.nc cannot be read as a netCDF file: 'attitude' is not a variable"
+        OSError, match=r"groups.nc: cannot be read as a netCDF file: 'attitude' is not a variable"
     ):
         ph.Trajectory.read(tmp_path / "groups.nc")
     xarray.Dataset({"time": ("time", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
-    with pytest.raises(ValueError, match=r"other.nc is not a motion that polhode wrote: .* is missing"):
+    with pytest.raises(ValueError, match=r"other.nc: is not a motion that polhode wrote: .* is missing"):
         ph.Trajectory.read(tmp_path / "other.nc")
     many = ph.simulate(MOMENTS, ph.State(START.rotor, np.ones((2, 4, 3))), [0, 1])
     many.save(tmp_path / "many.nc")

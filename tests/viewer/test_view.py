@@ -210,7 +210,7 @@ def test_a_file_of_a_run_is_shown(tmp_path):
         (tmp_path / "a.nc").write_bytes(b"noise")
         status, _, content = answer(server, "/document.json")
         assert status == 404
-        assert b"a.nc cannot be read as a netCDF file" in content
+        assert b"a.nc: error: cannot be read as a netCDF file" in content
 
 
 # --- the command
@@ -227,8 +227,8 @@ def test_files_that_cannot_be_shown_are_bad_input(tmp_path, capsys):
         ("a.stl", f"a.stl: error: not a scene but a mesh: `polhode check {tmp_path / 'a.stl'}` checks it"),
         ("bad.toml", "bad.toml:7:1: error: unknown field `durration`"),
         ("absent.toml", "absent.toml: error: no such file"),
-        ("bad.nc", "bad.nc cannot be read as a netCDF file"),
-        ("absent.nc", "absent.nc: no such file"),
+        ("bad.nc", "bad.nc: error: cannot be read as a netCDF file"),
+        ("absent.nc", "absent.nc: error: no such file"),
     ):
         assert main.main(["view", str(tmp_path / name), "--no-browser"]) == 3
         captured = capsys.readouterr()

@@ -13,7 +13,7 @@ import numpy as np
 
 from polhode._cli import common
 from polhode._cli.common import add_command, add_force, check_written, positive, whole_number
-from polhode._support.files import UnreadableError, words_of
+from polhode._support.files import UnreadableError, unreadable
 
 if TYPE_CHECKING:
     from polhode._io.history import AttitudeHistory
@@ -198,9 +198,7 @@ def _refused(options: argparse.Namespace, error: ValueError) -> ValueError:
 
 def _unreadable(error: Exception) -> UnreadableError:
     """Return the error of a file that cannot be read, with the options of the command."""
-    if not isinstance(error, OSError):
-        return UnreadableError(_with_flags(str(error)))
-    return UnreadableError(f"polhode: error: {words_of(error)}")
+    return UnreadableError(_with_flags(str(unreadable(error))))
 
 
 def _given(options: argparse.Namespace, takes: set[str], where: str) -> dict[str, Any]:

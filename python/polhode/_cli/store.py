@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from polhode._cli import common
 from polhode._cli.common import file_name
 from polhode._support.extras import progress_bar
-from polhode._support.files import UnreadableError
+from polhode._support.files import unreadable
 from polhode._support.words import counted
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def status(options: argparse.Namespace) -> int:
     try:
         store = EnsembleStore.open(Path(options.status))
     except (FileNotFoundError, StoreError) as error:
-        raise UnreadableError(f"polhode: error: {error}") from None
+        raise unreadable(error) from None
     states = [store.state(index) for index in range(store.blocks)]
     counts = {name: states.count(name) for name in ("done", "missing", "corrupt")}
     complete = counts["done"] == store.blocks and store.shares

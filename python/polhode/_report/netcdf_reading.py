@@ -53,7 +53,7 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
     fields, attributes = content(path)
     if "attitude" in fields and "inertia" not in fields:
         raise ValueError(
-            f"{path} has no inertia, which a motion needs: it is a table of attitudes, as of a CSV or AEM "
+            f"{path}: has no inertia, which a motion needs: it is a table of attitudes, as of a CSV or AEM "
             f"file; ph.io.read_netcdf({os.fspath(path)!r}).trajectory(body).save('FILE.nc') writes a motion "
             "of a body"
         )
@@ -73,9 +73,9 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
             attributes=of_user(attributes),
         )
     except KeyError as error:
-        raise ValueError(f"{path} is not a motion that polhode wrote: {error} is missing") from None
+        raise ValueError(f"{path}: is not a motion that polhode wrote: {error} is missing") from None
     except (IndexError, TypeError, ValueError) as error:
-        raise ValueError(f"{path} is not a motion that polhode wrote: {error}") from error
+        raise ValueError(f"{path}: is not a motion that polhode wrote: {error}") from error
 
 
 def of_user(attributes: dict[str, Any]) -> dict[str, Any]:
@@ -131,7 +131,7 @@ def values(name: str, variable: Any, body: int | None = None) -> Any:
 def content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the arrays and the attributes of a file."""
     library = optional("h5py", "io", "a netCDF file")
-    if not os.path.exists(path):
+    if not os.path.lexists(path):
         raise FileNotFoundError(f"{path}: no such file")
     if not os.path.isfile(path):
         raise OSError(f"{path}: not a regular file")
@@ -146,10 +146,10 @@ def content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any
     except DAMAGED as error:
         others = os.fsdecode(path).lower().endswith((".csv", ".parquet", ".aem", ".bc"))
         remedy = "; use polhode.io.read" if others else ""
-        raise OSError(f"{path} cannot be read as a netCDF file: {error}{remedy}") from error
+        raise OSError(f"{path}: cannot be read as a netCDF file: {error}{remedy}") from error
     if many:
         raise ValueError(
-            f"{path} holds a batch of bodies; read it with xarray.open_dataset, or take one body: "
+            f"{path}: holds a batch of bodies; read it with xarray.open_dataset, or take one body: "
             f"polhode convert {path} one.nc --body 0"
         )
     return fields, attributes

@@ -45,6 +45,18 @@ class UnreadableError(Exception):
     """A file given to the command cannot be read or shown; the message gives the reason."""
 
 
+def unreadable(error: Exception) -> UnreadableError:
+    """Return the error of the command for a file that cannot be read: ``FILE: error: reason``.
+
+    The message of the given error begins with ``FILE: ``, and may have this form already.
+    """
+    words = words_of(error)
+    file, colon, reason = words.partition(": ")
+    if ": error: " in words or not colon:
+        return UnreadableError(words)
+    return UnreadableError(f"{file}: error: {reason}")
+
+
 def words_of(error: Exception) -> str:
     """Return the message of an error; of one of the system its file and reason, without the number."""
     if isinstance(error, OSError) and error.strerror and error.filename is not None:

@@ -144,7 +144,7 @@ def of_lesson(path: Path) -> Document:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
         found = error.object[error.start]
-        message = f"{path} is not UTF-8 text: byte {error.start} is {found:#04x}; save it as UTF-8"
+        message = f"{path}: not UTF-8 text: byte {error.start} is {found:#04x}; save it as UTF-8"
         raise ValueError(message) from None
     scenes = re.findall(r"^```toml *\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     files: dict[str, bytes] = {}

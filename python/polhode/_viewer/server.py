@@ -20,7 +20,7 @@ from polhode._mechanics.trajectory import Trajectory
 from polhode._report.table import columns_of
 from polhode._scene.scene import Scene
 from polhode._support.file_kinds import require_scene
-from polhode._support.files import UnreadableError, check_target
+from polhode._support.files import UnreadableError, check_target, unreadable
 from polhode._viewer.document import Document, of_file, of_scene, of_text, of_trajectory
 from polhode._viewer.html import bundle_path, page, served_page
 
@@ -125,7 +125,7 @@ class Source:
             try:
                 return of_file(self.path)
             except (OSError, ValueError) as error:
-                raise UnreadableError(f"polhode: error: {error}") from error
+                raise unreadable(error) from error
         scene = Scene.read(self.path)
         with self._lock:
             if (shown := of_scene(scene)) != self._scene:

@@ -109,7 +109,7 @@ class EnsembleStore:
         try:
             return EnsembleStore(path, sealed(path / OWN / "run.json"))
         except (OSError, ValueError, KeyError) as error:
-            raise StoreError(f"{path} {_not_a_store(path, error)}") from None
+            raise StoreError(f"{path}: {_not_a_store(path, error)}") from None
 
     @staticmethod
     def create(path: Path, scene: Scene) -> EnsembleStore:

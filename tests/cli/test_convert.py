@@ -145,3 +145,30 @@ def test_a_scene_gives_a_table_its_inertia(convert, tmp_path):
     motion = ph.io.read("a.csv").trajectory(ph.Inertia.from_principal_moments(1, 2, 3))
     ph.io.write_gltf(motion, "b.glb", mass=6)
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
+
+
+def test_a_scene_makes_a_table_a_motion(convert, tmp_path):
+    """The netCDF file has the inertia of the scene's body, so that it can be shown."""
+    MOTION.save("a.csv")
+    (tmp_path / "a.toml").write_text(SCENE)
+    assert convert("a.csv", "a.nc", "--scene", "a.toml").returncode == 0
+    motion = ph.Trajectory.read("a.nc")
+    assert np.array_equal(motion.rotor.components, MOTION.rotor.components)
+    np.testing.assert_allclose(motion.inertia.matrix, np.diag([1, 2, 3]), atol=1e-15)
+    done = convert("a.nc", "b.nc", "--scene", "a.toml")
+    assert (done.returncode, "a.nc has the inertia of its body; leave out --scene" in done.stderr) == (
+        2,
+        True,
+    )
+    (tmp_path / "other.toml").write_text(SCENE.replace("[1, 2, 3]", "[2, 2, 3]"))
+    done = convert("a.csv", "b.nc", "--scene", "other.toml")
+    assert done.returncode == 3
+    assert "a.csv: error: the angular momentum differs from that of the body of other.toml by" in done.stderr
+    assert not (tmp_path / "b.nc").exists()
+
+
+def test_a_renamed_file_is_recognised(convert, tmp_path):
+    MOTION.save("a.nc")
+    (tmp_path / "a.nc").rename(tmp_path / "a.dat")
+    assert convert("a.dat", "a.csv").returncode == 0
+    assert np.array_equal(ph.io.read("a.csv").rotor.components, MOTION.rotor.components)

@@ -223,7 +223,7 @@ def test_files_that_cannot_be_shown_are_bad_input(tmp_path, capsys):
     (tmp_path / "a.csv").write_text("time,attitude_w")
     (tmp_path / "a.stl").write_text("solid")
     for name, part in (
-        ("a.csv", f"ph.io.read({str(tmp_path / 'a.csv')!r}).trajectory(body).save('FILE.nc')"),
+        ("a.csv", f"`polhode convert {tmp_path / 'a.csv'} FILE.nc --scene SCENE.toml` writes the motion"),
         ("a.stl", f"a.stl: error: not a scene but a mesh: `polhode check {tmp_path / 'a.stl'}` checks it"),
         ("bad.toml", "bad.toml:7:1: error: unknown field `durration`"),
         ("absent.toml", "absent.toml: error: no such file"),
@@ -251,9 +251,20 @@ def test_the_remedy_for_a_table_of_attitudes_is_shown(form, tmp_path, monkeypatc
     assert main.main(["view", f"a.{form}", "--no-browser"]) == 3
     message = capsys.readouterr().err
     assert "no inertia" in message
-    remedy = re.search(r"ph\.io\.read.*'FILE\.nc'\)", message)[0]
-    eval(remedy, {"ph": ph, "body": body})
+    (tmp_path / "SCENE.toml").write_text(SCENE)
+    remedy = re.search(r"polhode (convert .*SCENE\.toml)", message)[1]
+    assert main.main(remedy.split()) == 0
     assert set(_view.Source(tmp_path / "FILE.nc").document()) >= {"format", "recorded"}
+
+
+def test_a_renamed_netcdf_file_is_shown(tmp_path):
+    """The suffix is not known, so the first bytes tell what the file is."""
+    pytest.importorskip("h5netcdf")
+    start = ph.State(ph.Rotor.identity(), [0.1, 1, 0.1])
+    body = ph.Inertia.from_principal_moments(1, 2, 3)
+    ph.simulate(body, start, np.linspace(0, 1, 5)).save(tmp_path / "a.nc")
+    (tmp_path / "a.nc").rename(tmp_path / "a.dat")
+    assert len(_view.Source(tmp_path / "a.dat").document()["recorded"]) > 0
 
 
 @pytest.mark.usefixtures("bundle")

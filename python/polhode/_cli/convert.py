@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from polhode._mechanics.inertia import Inertia
     from polhode._mechanics.trajectory import Trajectory
 
+# Largest relative difference of L in a table from R I(Ω) ~R; numbers in files may have few digits.
+_OFF = 1e-3
 # Options that a reader takes, and those of the written file; each is given to the format that has it.
 _READING = (
     "kernels",
@@ -82,7 +84,8 @@ def add(commands: Any) -> None:
     convert.add_argument("--body", metavar="N", type=number, help="body of a batch or an ensemble, from 0")
     text = "kernel for a CK: leapseconds, clock and frames, each with its own --kernel"
     convert.add_argument("--kernel", dest="kernels", metavar="FILE", action="append", help=text)
-    text = "scene whose mesh, solid or mass gives the body of a glTF animation"
+    text = "scene of the body in a table: its inertia for a netCDF file that polhode view shows; its mesh, "
+    text += "solid or mass for a glTF animation"
     convert.add_argument("--scene", metavar="SCENE.toml", help=text)
     for name, text in {
         "density": "density in kg/m³ of the body in a mesh",
@@ -104,8 +107,8 @@ def _convert(options: argparse.Namespace) -> int:
 
 def _convert_motion(options: argparse.Namespace) -> int:
     from polhode._io import bodies
-    from polhode._io.convert import OPTIONS, READ, WRITTEN, form_of, load, write
-    from polhode._io.history import AttitudeHistory, FileError
+    from polhode._io.convert import OPTIONS, WRITTEN, form_of, form_to_read, load, write
+    from polhode._io.history import FileError
 
     try:
         of_target = form_of(options.target, (*WRITTEN, *bodies.WRITTEN), "written")
@@ -114,17 +117,21 @@ def _convert_motion(options: argparse.Namespace) -> int:
                 f"a .{form} file has no motion, got {options.source!r}; a body is written as .urdf, .xml or "
                 ".stl, and polhode run computes the motion of a scene"
             )
-        of_source = form_of(options.source, READ, "read")
+        of_source = form_to_read(options.source)
     except ValueError as error:
         options.parser.error(str(error))
     takes = {"read": OPTIONS["read", of_source], "write": OPTIONS["write", of_target]}
     applying = {*takes["read"], *takes["write"]} - {*_OF_BODIES}  # the mass of a box is that of the scene
     given = _given(options, applying, f"from .{of_source} to .{of_target}")
     shape: dict[str, Any] = {}
+    body: Inertia | None = None
     if options.scene is not None:
-        if "surface" not in takes["write"]:
+        if "surface" in takes["write"]:
+            shape = _shape(options.scene)
+        elif of_target == "nc":
+            body = _inertia_of_motion(options.scene)
+        else:
             options.parser.error(f"--scene does not apply from .{of_source} to .{of_target}")
-        shape = _shape(options.scene)
     target = _target(options)
     try:
         motion = load(options.source, **{name: x for name, x in given.items() if name in takes["read"]})
@@ -133,9 +140,8 @@ def _convert_motion(options: argparse.Namespace) -> int:
     except ValueError as error:
         raise _refused(options, error) from None
     inertia = shape.pop("inertia", None)
-    if isinstance(motion, AttitudeHistory):
-        motion = _completed(motion, inertia, of_target)
     try:
+        motion = _of_body(options, motion, body) if body else _completed(motion, inertia, of_target)
         write(motion, target, **shape, **{name: x for name, x in given.items() if name in takes["write"]})
     except FileNotFoundError as error:  # a kernel
         raise _unreadable(error) from None
@@ -145,11 +151,45 @@ def _convert_motion(options: argparse.Namespace) -> int:
     return common.OK
 
 
-def _completed(history: AttitudeHistory, inertia: Inertia | None, form: str) -> AttitudeHistory | Trajectory:
+def _of_body(
+    options: argparse.Namespace, motion: AttitudeHistory | Trajectory, inertia: Inertia
+) -> Trajectory:
+    """Return the motion of a body with the inertia of a scene, for a table that has none."""
+    from polhode._io.history import AttitudeHistory
+
+    if not isinstance(motion, AttitudeHistory) or motion.inertia is not None:
+        options.parser.error(f"{options.source} has the inertia of its body; leave out --scene")
+    if motion.wheel_speed is not None:
+        raise UnreadableError(f"{options.source}: error: has wheel speeds, which a motion with --scene lacks")
+    found = motion.trajectory(inertia)
+    wanted = found.rotor(inertia(found.omega_body))
+    size, off = (np.max(np.abs(x.components), initial=0.0) for x in (wanted, found.momentum_space - wanted))
+    if off > _OFF * size:
+        raise UnreadableError(
+            f"{options.source}: error: the angular momentum differs from that of the body of {options.scene} "
+            f"by {off:.3g} kg m²/s; give the scene of this body"
+        )
+    return found
+
+
+def _inertia_of_motion(name: str) -> Inertia:
+    """Return the inertia that determines the motion of a scene: about the fixed point of a held body."""
+    from polhode._mechanics.inertia import Inertia
+
+    return Inertia(common.read_scene(name)._core.inertia())
+
+
+def _completed(
+    history: AttitudeHistory | Trajectory, inertia: Inertia | None, form: str
+) -> AttitudeHistory | Trajectory:
     """Return a history with the inertia of a scene if it has none; for netCDF a motion that can be shown.
 
     A body of an ensemble has all quantities; its file omits the position if that is always the origin.
     """
+    from polhode._io.history import AttitudeHistory
+
+    if not isinstance(history, AttitudeHistory):
+        return history
     if history.inertia is None and inertia is not None:
         history = replace(history, inertia=inertia)
     known = history.inertia, history.omega_body, history.momentum_space, history.energy

@@ -11,6 +11,7 @@ from polhode._io import aem, aem_writing, gltf, members, spice, tables
 from polhode._io.history import AttitudeHistory, FileError
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report import netcdf_reading
+from polhode._support.file_kinds import suffix_of
 
 _READERS: dict[str, Callable[..., AttitudeHistory]] = {
     "aem": aem.read_aem,
@@ -47,11 +48,18 @@ def form_of(path: str | os.PathLike[str], forms: tuple[str, ...], done: str) -> 
     return form
 
 
+def form_to_read(path: str | os.PathLike[str]) -> str:
+    """Return the form of a file of a motion: its suffix, or if that is not known, that of its first bytes."""
+    form = suffix_of(path).removeprefix(".")
+    return form if form in READ else form_of(path, READ, "read")
+
+
 def read(path: str | os.PathLike[str], **options: Any) -> AttitudeHistory:
     """Read the attitudes of one body from a file, in the form of its suffix.
 
-    The suffixes are ``.aem``, ``.bc`` (SPICE CK), ``.csv``, ``.nc``, ``.parquet`` and ``.zarr``. Options are
-    those of `read_aem`, `read_ck`, `read_csv`, `read_netcdf`, `read_parquet` and `read_zarr`.
+    The suffixes are ``.aem``, ``.bc`` (SPICE CK), ``.csv``, ``.nc``, ``.parquet`` and ``.zarr``. A file whose
+    suffix is not known is recognised by its first bytes, except CSV. Options are those of `read_aem`,
+    `read_ck`, `read_csv`, `read_netcdf`, `read_parquet` and `read_zarr`.
 
     Examples
     --------
@@ -61,7 +69,7 @@ def read(path: str | os.PathLike[str], **options: Any) -> AttitudeHistory:
     >>> ph.io.read("ball.csv")
     AttitudeHistory(3 times, t = 0 … 2 s, rotor, omega_body, momentum_space, position, velocity, energy)
     """
-    form = form_of(path, READ, "read")
+    form = form_to_read(path)
     return _READERS[form](path, **_with_kernels(options) if form == "bc" else options)
 
 
@@ -104,7 +112,7 @@ def _with_kernels(options: dict[str, Any]) -> dict[str, Any]:
 
 def load(path: str | os.PathLike[str], **options: Any) -> Trajectory | AttitudeHistory:
     """Return the motion in a file: a trajectory with all that it has, if the file has one, else a history."""
-    if not options and form_of(path, READ, "read") == "nc":
+    if not options and form_to_read(path) == "nc":
         history = members.read_netcdf(path)
         try:
             return netcdf_reading.read(path)
@@ -113,4 +121,4 @@ def load(path: str | os.PathLike[str], **options: Any) -> Trajectory | AttitudeH
     return read(path, **options)
 
 
-__all__ = ["READ", "WRITTEN", "FileError", "form_of", "load", "read", "write"]
+__all__ = ["READ", "WRITTEN", "FileError", "form_of", "form_to_read", "load", "read", "write"]

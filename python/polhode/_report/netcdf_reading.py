@@ -54,8 +54,7 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
     if "attitude" in fields and "inertia" not in fields:
         raise ValueError(
             f"{path}: has no inertia, which a motion needs: it is a table of attitudes, as of a CSV or AEM "
-            f"file; ph.io.read_netcdf({os.fspath(path)!r}).trajectory(body).save('FILE.nc') writes a motion "
-            "of a body"
+            f"file; polhode convert {path} FILE.nc --scene SCENE.toml writes the motion of the scene's body"
         )
     try:
         require_shapes(fields["time"], {name: fields[name] for name in MOTION if name != "inertia"})

@@ -49,6 +49,13 @@ _HEADS = {
 }
 
 
+def suffix_of(path: str | os.PathLike[str]) -> str:
+    """Return the suffix of a file in lower case; if it is not known, that of files with its first bytes."""
+    suffix = Path(path).suffix.lower()
+    known = suffix == ".toml" or suffix in _KINDS or not os.path.isfile(path)
+    return suffix if known else _suffix_by_content(path) or suffix
+
+
 def require_scene(path: str | os.PathLike[str]) -> None:
     """Raise a SceneError that says what an existing file is if it is not a scene."""
     name, suffix = os.fsdecode(path), Path(path).suffix.lower()

@@ -36,6 +36,7 @@ from polhode._report.netcdf_reading import read
 from polhode._scene.scene import Scene
 from polhode._scene.writer import UnwritableError, scene_text
 from polhode._support.arrays import Array, as_float
+from polhode._support.file_kinds import suffix_of
 from polhode._support.packing import packed, unpacked
 from polhode._viewer.recording import recorded
 from polhode._viewer.values import of_values
@@ -128,9 +129,9 @@ def _parsed(text: str) -> dict[str, Any]:
 
 def of_file(path: Path) -> Document:
     """Return the document of a scene, a netCDF file or a lesson; a `SceneError` for an invalid scene."""
-    if path.suffix.lower() == ".nc":
+    if (suffix := suffix_of(path)) == ".nc":
         return of_trajectory(read(path), path)
-    if path.suffix.lower() == ".md":
+    if suffix == ".md":
         return of_lesson(path)
     return of_scene(Scene.read(path))
 

@@ -19,7 +19,7 @@ from typing import Any
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.table import columns_of
 from polhode._scene.scene import Scene
-from polhode._support.file_kinds import require_scene
+from polhode._support.file_kinds import require_scene, suffix_of
 from polhode._support.files import UnreadableError, check_target, unreadable
 from polhode._viewer.document import Document, of_file, of_scene, of_text, of_trajectory
 from polhode._viewer.html import bundle_path, page, served_page
@@ -75,9 +75,9 @@ def run(options: argparse.Namespace, bar: Bar) -> int:
     path = Path(options.file)
     if options.file == "-":
         options.parser.error("the page reads its file again when it is reloaded: give a path, not -")
-    if path.suffix.lower() in _TABLES and path.exists():
+    if suffix_of(path) in _TABLES and path.exists():
         raise UnreadableError(f"{path}: error: {_about_table(path)}")
-    if path.suffix.lower() not in _SHOWN:
+    if suffix_of(path) not in _SHOWN:
         require_scene(path)
     script = bundle_path().read_bytes()
     source = Source(path)
@@ -103,7 +103,7 @@ def _about_table(path: Path) -> str:
                 return "not a motion; `polhode fit` fits a body to measured rates and attitudes"
     return (
         "a table of a motion has no inertia, which a motion that is shown needs; "
-        f"in Python, ph.io.read({str(path)!r}).trajectory(body).save('FILE.nc') writes a motion of a body"
+        f"`polhode convert {path} FILE.nc --scene SCENE.toml` writes the motion of the scene's body"
     )
 
 
@@ -121,7 +121,7 @@ class Source:
 
         An UnreadableError or a SceneError reports an invalid file; a ValueError, a motion that fails.
         """
-        if self.path.suffix.lower() in _SHOWN:
+        if suffix_of(self.path) in _SHOWN:
             try:
                 return of_file(self.path)
             except (OSError, ValueError) as error:

@@ -235,3 +235,26 @@ def test_random_rotors_are_uniform_and_repeatable():
     assert np.all(abs(covariance - np.eye(4) / 4) < 5 * 0.0035)
     # Rotated vectors cover the sphere: mean 0, variance 1/3 in each direction.
     assert np.all(abs(R(e1).components.mean(axis=0)) < 5 * 0.0041)
+
+
+@pytest.mark.parametrize(
+    "combine",
+    [
+        lambda R, S: R * S,
+        lambda R, S: R(ph.vector(np.ones((*S.shape, 3)))),
+        lambda R, S: R.distance(S),
+        lambda R, S: ph.slerp(R, S, 0.5),
+        lambda R, S: R ** np.ones(S.shape),
+        lambda R, S: R / np.ones(S.shape),
+        lambda R, S: R == S,
+        lambda R, S: R.is_close(S),
+        lambda R, S: (R * 2).exp(errors="mask") + S,
+        lambda R, S: ph.RigidTransform(R) * ph.RigidTransform(S),
+        lambda R, S: ph.RigidTransform(R) ** np.ones(S.shape),
+        lambda R, S: ph.Rotor.from_axis_angle(np.ones((*R.shape, 3)), np.ones(S.shape)),
+    ],
+)
+def test_batches_that_do_not_broadcast_are_named(combine):
+    R = ph.Rotor.random(12, rng=1)
+    with pytest.raises(ValueError, match=r"the batch shapes \(4,\) and \(3,\) do not broadcast"):
+        combine(R[:4], R[:3])

@@ -372,8 +372,11 @@ def test_indexing_matches_numpy(kind):
 def test_batches_that_do_not_broadcast_are_errors(kind):
     A, B = kind.random(1, (2,)), kind.random(2, (3,))
     for operate in (lambda: A * B, lambda: A + B, lambda: A.wedge(B), lambda: A == B):
-        with pytest.raises((ValueError, TypeError)):
+        with pytest.raises(
+            ValueError, match=r"batch shapes \(2,\) and \(3,\) do not broadcast: .* A\[:, None\]"
+        ):
             operate()
+    assert (A[:, None] * B).shape == (2, 3)
 
 
 @pytest.mark.parametrize("shape", [(0,), (2, 0)])

@@ -10,7 +10,7 @@ from polhode import _generic, _native
 from polhode._algebra.coefficients import common, namespace
 from polhode._algebra.grades import over_grades
 from polhode._algebra.products import coerced, common_algebra
-from polhode._support.arrays import is_complex
+from polhode._support.arrays import common_batch, is_complex
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -91,6 +91,7 @@ def _length(xp: Any, x: Any) -> Any:
 
 
 def _same_grades(a: Multivector, b: Multivector) -> tuple[Any, Any]:
+    common_batch(a.shape, b.shape)
     mask = a._mask | b._mask
     left, right = common(over_grades(a, mask), over_grades(b, mask))
     return left, right

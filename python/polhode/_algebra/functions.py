@@ -14,7 +14,16 @@ from polhode._algebra import motors as _motors
 from polhode._algebra.coefficients import common, kind_of, number_like, taken
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.products import coerced
-from polhode._support.arrays import Array, at_index, first_index, is_complex, is_float, mapped, new
+from polhode._support.arrays import (
+    Array,
+    at_index,
+    common_batch,
+    first_index,
+    is_complex,
+    is_float,
+    mapped,
+    new,
+)
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -36,6 +45,7 @@ def divided(value: Multivector, other: Any) -> Multivector:
         zero = divisor._data[..., 0] == 0
         if np.any(zero):
             raise ZeroDivisionError(f"division of a multivector by zero{at_index(first_index(zero))}")
+    common_batch(value.shape, divisor.shape)
     a, b = common(value._data, divisor._data)
     with np.errstate(over="ignore", invalid="ignore"):
         quotient = a / b if is_float(a) else kind_of(a, b).divide(a, b)

@@ -14,7 +14,7 @@ from polhode._algebra.coefficients import as_coefficients, common, duplicate, ki
 from polhode._algebra.coefficients import reshaped as coefficients_reshaped
 from polhode._algebra.foreign_values import remedy_for
 from polhode._algebra.products import coerced, common_algebra
-from polhode._support.arrays import Shape, is_float, new
+from polhode._support.arrays import Shape, common_batch, is_float, new
 from polhode._support.calls import explains_calls
 from polhode._support.memory import require_array
 
@@ -85,8 +85,10 @@ def linear(left: Multivector, right: Any, combine: Callable[[Any, Any], Any]) ->
     algebra = common_algebra(left, other)
     mask = left._mask | other._mask
     a, b = common(over_grades(left, mask), over_grades(other, mask))
-    if is_float(a) and a.shape != b.shape:
-        require_array(np.broadcast_shapes(a.shape, b.shape), "values", a.itemsize)
+    if a.shape != b.shape:
+        batch = common_batch(left.shape, other.shape)
+        if is_float(a):
+            require_array((*batch, a.shape[-1]), "values", a.itemsize)
     with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
         return _native.Multivector._of(combine(a, b), mask, algebra)
 
@@ -126,6 +128,14 @@ def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
     changed = as_coefficients(changed, "what the function returns", complex_too=True)
     own = duplicate(changed)  # f may keep its array
     return _native.Multivector._of(own, value._mask, value.algebra)
+
+
+def index_message(error: IndexError, shape: Shape, index: tuple[Any, ...]) -> str:
+    """Return the message for an index that NumPy rejects, which counts the axis of components too."""
+    text = str(error)
+    if text.startswith("too many indices"):
+        text = f"too many indices for the batch axes: {len(index)}"
+    return f"{text} (batch shape {shape})"
 
 
 def check_index(shape: Shape, index: tuple[Any, ...]) -> None:

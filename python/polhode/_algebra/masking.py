@@ -10,7 +10,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.coefficients import as_coefficients
-from polhode._support.arrays import is_float
+from polhode._support.arrays import common_batch, is_float
 
 Errors = Literal["raise", "mask"]
 # An argument, and how many of its last axes belong to one value; those of a multivector are known.
@@ -38,7 +38,7 @@ def masked(errors: str, f: Callable[..., T], *operands: Operand) -> T:
                 f'errors="mask" needs NumPy floats, got {type(x).__name__} of {x.dtype}; convert them first'
             )
     shapes = [value.shape if _is_value(value) else value.shape[: value.ndim - k] for value, k in given]
-    batch = np.broadcast_shapes(*shapes)
+    batch = common_batch(*shapes)
     count = math.prod(batch)
     rows = [
         np.broadcast_to(x, (*batch, *x.shape[len(shape) :])).reshape(count, *x.shape[len(shape) :])

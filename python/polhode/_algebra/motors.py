@@ -10,7 +10,7 @@ import numpy as np
 from polhode import _generic, _native
 from polhode._algebra.coefficients import kind_of
 from polhode._algebra.grades import over_grades, with_grades
-from polhode._support.arrays import is_float, new
+from polhode._support.arrays import common_batch, is_float, new
 
 if TYPE_CHECKING:
     from polhode._algebra.algebra import Algebra
@@ -69,7 +69,7 @@ def rows(value: Multivector) -> Any:
 def of_columns(algebra: Algebra, parts: list[Any], mask: int = EVEN) -> Multivector:
     """Return the element with these components in the order of `places`, over the grades in the mask."""
     if mask == EVEN and all(is_float(x) or isinstance(x, np.float64 | np.float32) for x in parts):
-        shape = np.broadcast_shapes(*(part.shape for part in parts))
+        shape = common_batch(*(part.shape for part in parts))
         found = new((*shape, len(parts)), np.result_type(*parts))
         for (index, sign), part in zip(_order(algebra), parts, strict=True):
             np.multiply(part, sign, out=found[..., index])

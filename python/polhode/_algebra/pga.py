@@ -25,7 +25,7 @@ from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._algebra.versors import small
-from polhode._support.arrays import copied, is_float, new
+from polhode._support.arrays import common_batch, copied, is_float, new
 from polhode._support.calls import takes_components
 
 
@@ -333,7 +333,7 @@ class PGA(Algebra):
         """Return the vector with these components (..., 1) of e0, and the others of a Euclidean vector."""
         weight, rows = common(first, rest._data)
         if is_float(rows):
-            batch = np.broadcast_shapes(weight.shape[:-1], rows.shape[:-1])
+            batch = common_batch(weight.shape[:-1], rows.shape[:-1])
             data = new((*batch, self.dimension), np.result_type(weight, rows))
             data[..., :1], data[..., 1:] = weight, rows
             return Multivector._of(data, 1 << 1, self)

@@ -23,6 +23,7 @@ def product(name: str, left: Multivector, right: Multivector, out: Any = None) -
     if not (is_float(a) and is_float(b)):
         if out is not None:
             raise TypeError(f"out needs factors of floats, got {left.dtype} and {right.dtype}")
+        common_batch(left.shape, right.shape)
         terms, _ = algebra._terms(name, left._mask, right._mask)
         kind = kind_of(a, b)
         with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the core

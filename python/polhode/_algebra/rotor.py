@@ -26,6 +26,7 @@ from polhode._support.arrays import (
     Array,
     Shape,
     batch_shape,
+    common_batch,
     is_float,
     new,
     normal_numbers,
@@ -418,6 +419,7 @@ class Rotor(_native.Rotor, Multivector):
         if not (is_float(a) and is_float(b)):
             if out is not None:
                 raise TypeError(f"out needs operands of floats, got {self.dtype} and {X.dtype}")
+            common_batch(self.shape, X.shape)
             kind = kind_of(a, b)
             return X._like(_generic.rotors.apply(kind, kind.asarray(a), kind.asarray(b), X._mask))
         batch, a, b = aligned(a, b)

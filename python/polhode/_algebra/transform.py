@@ -29,7 +29,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.screws import adjoint_matrix, screw_parameters
 from polhode._algebra.transform_batches import TransformBatch
-from polhode._support.arrays import Array, Shape, is_float, power_of_two
+from polhode._support.arrays import Array, Shape, common_batch, is_float, power_of_two
 from polhode._support.calls import explains_calls_of
 from polhode._support.extras import register_pytree
 
@@ -390,6 +390,7 @@ class RigidTransform(TransformBatch):
     def __pow__(self, n: Any) -> RigidTransform:
         """``exp(n log T)``: n times the screw of at most half a turn, for any real n or array of them."""
         powers = number_like(n, "the power of a transform", self.rotor._data)
+        common_batch(self.shape, powers.shape)
         coords = self.as_exp_coords()
         if not is_float(coords):
             coords, powers = common(coords, powers)

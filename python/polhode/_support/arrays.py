@@ -240,21 +240,31 @@ def rows(data: Array, batch: Shape) -> Array:
     return np.ascontiguousarray(data)
 
 
-def common_batch(a: Shape, b: Shape) -> Shape:
-    """Return the shape that two batches broadcast to."""
-    return a if a == b else np.broadcast_shapes(a, b)
+def common_batch(*shapes: Shape) -> Shape:
+    """Return the shape that batches broadcast to; a ValueError that names their shapes if they do not."""
+    first = shapes[0]
+    if all(shape == first for shape in shapes):
+        return first
+    try:
+        return np.broadcast_shapes(*shapes)
+    except ValueError:
+        listed = ", ".join(map(str, shapes[:-1]))
+        raise ValueError(
+            f"the batch shapes {listed} and {shapes[-1]} do not broadcast: lengths must be equal or 1; write "
+            "A[:, None] to combine each item of A with all others, ph.vector(x) for an array x of components"
+        ) from None
 
 
 def batch_shape(shape: Any) -> Shape:
     """Return a batch shape from a length or a sequence of lengths."""
     try:
-        return (operator.index(shape),)
-    except TypeError:
-        pass
-    try:
-        return tuple(operator.index(length) for length in shape)
+        lengths = (shape,) if hasattr(shape, "__index__") else tuple(shape)
+        found = tuple(map(operator.index, lengths))
     except TypeError as error:
         raise TypeError(f"a batch shape is a whole number or a tuple of them, got {shape!r}") from error
+    if any(length < 0 for length in found):
+        raise ValueError(f"the lengths of a batch shape must be >= 0, got {shape!r}")
+    return found
 
 
 def batch_index(index: Any, shape: Shape) -> tuple[tuple[Any, ...], tuple[Any, ...], Shape]:
@@ -271,7 +281,7 @@ def joined(*parts: Array) -> Array:
     """Broadcast the batches together and concatenate the components in the last axis."""
     if len(parts) == 1:
         return np.ascontiguousarray(parts[0])
-    batch = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
+    batch = common_batch(*(part.shape[:-1] for part in parts))
     require_array((*batch, sum(part.shape[-1] for part in parts)), "operands")
     wide = [np.broadcast_to(part, (*batch, part.shape[-1])) for part in parts]
     return np.ascontiguousarray(np.concatenate(wide, axis=-1))

@@ -1,6 +1,7 @@
 """Names and calls of other libraries are errors, and what these tell to write works."""
 
 import math
+import operator
 import re
 import rlcompleter
 
@@ -10,7 +11,7 @@ import sympy
 from scipy.spatial import transform as scipys
 
 import polhode as ph
-from polhode import I, RigidTransform, Rotor, e1, e2
+from polhode import I, RigidTransform, Rotor, e1, e2, e3
 from polhode._algebra import foreign_tables, ufuncs
 from polhode._support import package_names
 
@@ -49,6 +50,12 @@ BASE = {
     "x": [1, 2, 3],
     "xi": np.ones(6),
     "k": 1,
+    "phi": 0.4,
+    "H": np.eye(4),
+    "D": [1, 0, 0, 0, 0, 0, 0, 0],
+    "P": SPHERES.up([1, 2, 3]),
+    "times": [0, 1],
+    "omega": np.zeros((2, 3)),
 }
 OF_PLANES = {
     "A": PLANE,
@@ -82,6 +89,7 @@ OTHERS = {
     "astype(float)": {"value": sympy.Integer(2) * e1},
     "factor()": {"value": e1 ^ e2},
     "reshape(-1)": {"value": V},
+    "k_vector(3, components)": {"components": np.ones(1)},
     "map(sympy.expand)": {"value": x * e1},
     "map(lambda c: sympy.integrate(c, x))": {"value": x * e1, "x": x},
     "ph.concatenate([R, S])": {"R": Rotor.random(2, rng=1), "S": Rotor.random(3, rng=2)},
@@ -155,6 +163,7 @@ def test_names_of_the_package_are_seen(name):
 
 R, T, A = Rotor.random(rng=1), RigidTransform(Rotor.random(rng=2), [1, 2, 3]), ph.algebra(3)
 TWO, PATH = RigidTransform.stack([T, T]), ph.RotorSpline([0, 1, 2], Rotor.random(3, rng=3))
+OPERATORS = [getattr(operator, name) for name in ("add", "sub", "mul", "truediv", "xor", "or_", "and_")]
 TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
 
 
@@ -177,6 +186,15 @@ TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
         (lambda: ph.stack([e1, e2], dim=0), "its arguments are (values, axis=0)"),
         (lambda: ph.attitude_from_rates(t=[0, 1], omega_body=V), "times="),
         (lambda: RigidTransform(rotation=R), "rotor="),
+        *((lambda f=f: f([1, 2, 3], e1), "ph.vector(x)") for f in OPERATORS),
+        *((lambda f=f: f(V, (1, 2, 3)), "ph.vector(x)") for f in OPERATORS),
+        (lambda: e1.dot([1, 2, 3]), "ph.vector(x)"),
+        (lambda: e1 << e2, "A.left_contraction(B)"),
+        (lambda: Rotor.from_rotation_vector(e1 ^ e2), "B.dual()"),
+        (lambda: Rotor.from_plane_angle(e3, 1), "a.undual()"),
+        (lambda: RigidTransform(np.eye(3), [1, 2, 3]), "Rotor.from_matrix(M)"),
+        (lambda: RigidTransform.from_rotation(np.eye(3)), "Rotor.from_matrix(M)"),
+        (lambda: RigidTransform.from_components(R, [1, 2, 3]), "the rotation must be a Rotor"),
         (lambda: R @ R, "A * B"),
         (lambda: np.eye(3) @ R, "ph.vector(M @ a.components)"),
         (lambda: np.cross(e1, e2), "ph.cross(a, b)"),
@@ -225,6 +243,12 @@ def test_calls_and_operators_of_other_libraries_name_ours(call, ours):
         (lambda: Rotor.from_euler("sxyz", [1, 2, 3]), "write 'xyz'"),
         (lambda: R.to_euler("rzyx"), "write 'ZYX'"),
         (lambda: T[0], ".rotor and .translation"),
+        (lambda: V[0, 1], "too many indices for the batch axes: 2 (batch shape (3,))"),
+        (lambda: Rotor.from_matrix(np.eye(4)), "RigidTransform.from_matrix(M)"),
+        (lambda: RigidTransform.from_matrix(np.eye(3)), "RigidTransform(Rotor.from_matrix(M), x)"),
+        (lambda: R.reduce(TURN), "Rotor.from_scipy(x)"),
+        (lambda: ph.mean(Rotor.random(0)), "got a batch of shape (0,)"),
+        (lambda: Rotor.random(-1), "must be >= 0, got -1"),
         (lambda: (e1 ^ e2).to_matrix(), "Rotor.from_multivector(A).to_matrix"),
         (lambda: T.to_motor().apply(e1), "RigidTransform.from_motor(A)"),
         (lambda: A.blades.e12, 'blades["e12"]'),
@@ -233,6 +257,19 @@ def test_calls_and_operators_of_other_libraries_name_ours(call, ours):
 def test_values_of_other_libraries_name_ours(call, ours):
     with pytest.raises((ValueError, IndexError, AttributeError), match=re.escape(ours)):
         call()
+
+
+def test_lists_are_not_equal_to_values():
+    assert e1 != [1, 0, 0]
+    assert e1 in [[1, 0, 0], e1]
+
+
+def test_types_of_users_shift_values():
+    class Shifted:
+        def __rlshift__(self, left):
+            return "<<"
+
+    assert e1 << Shifted() == "<<"
 
 
 def test_blades_are_found_by_any_name():

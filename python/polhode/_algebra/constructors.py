@@ -212,7 +212,9 @@ def one_grade(value: Any, grade: int, what: str) -> Multivector:
     if value._mask == 1 << grade:
         return value
     if value._held() & ~(1 << grade):
-        raise TypeError(f"{what} must be a {_KINDS[grade]}, got {value!r}, which has other grades")
+        duals = {1: "; write B.dual()", 2: "; write a.undual()"}
+        remedy = duals.get(grade, "") if value.grades == (3 - grade,) else ""
+        raise TypeError(f"{what} must be a {_KINDS[grade]}, got {value!r}, which has other grades{remedy}")
     return Multivector._of(with_grades(value, 1 << grade), 1 << grade)
 
 

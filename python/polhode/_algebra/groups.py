@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._algebra.foreign_values import remedy_for
 from polhode._algebra.grades import concatenate
 from polhode._algebra.signs import canonical
 from polhode._support.arrays import Array, is_float
@@ -116,5 +117,6 @@ def _checked(value: Rotor | None, what: str) -> Rotor:
         return Rotor.identity(1)
     if not isinstance(value, Rotor) or len(value.shape) > 1 or not value.reshape(-1).shape[0]:
         found = f"rotors of batch shape {value.shape}" if isinstance(value, Rotor) else type(value).__name__
-        raise ValueError(f'{what} must be rotors (n,), n > 0, such as Rotor.group("O"); got {found}')
+        message = f'{what} must be rotors (n,), n > 0, such as Rotor.group("O"); got {found}'
+        raise ValueError(message + remedy_for(value))
     return value.reshape(-1)

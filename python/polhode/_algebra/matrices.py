@@ -52,7 +52,8 @@ def _from_any_matrix(m: Any, nearest: bool) -> Rotor:
     """Return rotors of matrices that the native function does not cover."""
     matrices = as_coefficients(m, "rotation matrix")
     if tuple(matrices.shape[-2:]) != (3, 3):
-        raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}")
+        remedy = "; write RigidTransform.from_matrix(M)" if tuple(matrices.shape[-2:]) == (4, 4) else ""
+        raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}{remedy}")
     if nearest:
         matrices = _nearest_rotation(matrices)
     if is_float(matrices):

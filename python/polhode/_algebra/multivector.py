@@ -26,7 +26,7 @@ from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.foreign_values import has_reflected, is_foreign
 from polhode._algebra.masking import masked
 from polhode._algebra.native import joins
-from polhode._algebra.products import coerced, product
+from polhode._algebra.products import coerced, is_sequence, product
 from polhode._support.arrays import Shape, copied
 from polhode._support.calls import explains_calls
 
@@ -223,7 +223,7 @@ class Multivector(_native.Multivector):
             picked = self._data[(*parts, *rest, slice(None))]
         except IndexError as error:
             if self.shape:
-                raise IndexError(f"{error} (batch shape {self.shape})") from None
+                raise IndexError(_grades.index_message(error, self.shape, parts)) from None
             raise IndexError(
                 f"a single value has no batch to index, got [{index!r}]; its numbers are .components or "
                 '["e12"], its part of grade k is .grade(k)'
@@ -386,6 +386,7 @@ class Multivector(_native.Multivector):
     __rpow__ = _functions.power_of
     __call__ = _versors.act
     __rshift__ = _versors.sandwich
+    __lshift__ = _versors.unshifted
 
     # --- involutions
 
@@ -475,7 +476,7 @@ class Multivector(_native.Multivector):
     # --- comparison, called by native operators
 
     def _equals(self, other: object) -> Any:
-        if is_foreign(other):  # not equal to any, as numbers and text are compared with other types
+        if is_foreign(other) or is_sequence(other):  # not equal to any, as of numbers and other types
             return NotImplemented
         right = coerced(other, self)
         return NotImplemented if right is None else _comparison.equal(self, right)

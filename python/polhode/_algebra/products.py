@@ -100,11 +100,24 @@ def common_algebra(left: Multivector, right: Multivector) -> Any:
     return algebra
 
 
+def is_sequence(value: Any) -> bool:
+    """Whether a value is a list or tuple, and no type of a user that is derived from them."""
+    return type(value) in (list, tuple)
+
+
 def coerced(value: Any, like: Multivector | None = None) -> Multivector | None:
-    """Convert to a multivector: a number or an array becomes scalars of the algebra of `like`; else None."""
+    """Convert to a multivector: a number or an array becomes scalars of the algebra of `like`; else None.
+
+    A TypeError for a list or tuple, which could be components, numbers of a batch or values.
+    """
     if isinstance(value, _native.Multivector):
         return value  # type: ignore[return-value]
     data = scalars(value, like._data if like is not None else None)
     if data is None:
+        if is_sequence(value):
+            raise TypeError(
+                f"a {type(value).__name__} is not a multivector; write ph.vector(x) for components, "
+                "ph.stack(x) for a batch of values, np.array(x) for a batch of numbers"
+            )
         return None
     return _native.Multivector._of(data, 1, like.algebra if like is not None else None)

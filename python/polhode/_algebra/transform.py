@@ -82,8 +82,9 @@ class RigidTransform(TransformBatch):
             rotor = Rotor.identity()
         if not isinstance(rotor, Rotor):
             raise TypeError(
-                f"rotor must be a Rotor, got {type(rotor).__name__}; see RigidTransform.from_matrix for "
-                "matrices (..., 4, 4), from_components and from_scipy for values of SciPy"
+                f"rotor must be a Rotor, got {type(rotor).__name__}; write Rotor.from_matrix(M) for matrices "
+                "(..., 3, 3), RigidTransform.from_matrix(M) for (..., 4, 4), from_translation(x) without a "
+                "rotor; see from_components and from_scipy for values of SciPy"
             )
         moved = _as_vector(translation, "the translation")
         try:
@@ -501,7 +502,14 @@ def _spread(value: Any, shape: Shape) -> Any:
 
 
 def _as_rotor(rotation: Any) -> Rotor:
-    return rotation if isinstance(rotation, Rotor) else Rotor.from_scipy(rotation)
+    if isinstance(rotation, Rotor):
+        return rotation
+    if not hasattr(rotation, "as_quat"):
+        raise TypeError(
+            f"the rotation must be a Rotor or a Rotation of SciPy, got {type(rotation).__name__}; write "
+            "Rotor.from_matrix(M) for matrices (..., 3, 3)"
+        )
+    return Rotor.from_scipy(rotation)
 
 
 def _of_leaves(_: None, leaves: Iterable[Any]) -> RigidTransform:

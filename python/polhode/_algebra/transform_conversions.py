@@ -31,7 +31,9 @@ def parts_of_matrix(matrix: Any, nearest: bool) -> Parts:
     """Return the parts of matrices (..., 4, 4)."""
     given = as_coefficients(matrix, "transformation matrix")
     if tuple(given.shape[-2:]) != (4, 4):
-        raise ValueError(f"a transformation matrix has shape (..., 4, 4), got {tuple(given.shape)}")
+        rotates = tuple(given.shape[-2:]) == (3, 3)
+        remedy = "; write RigidTransform(Rotor.from_matrix(M), x)" if rotates else ""
+        raise ValueError(f"a transformation matrix has shape (..., 4, 4), got {tuple(given.shape)}{remedy}")
     last, row = given[..., 3, :], np.array([0.0, 0.0, 0.0, 1.0])
     message = "the last row of a transformation matrix must be (0, 0, 0, 1)"
     if isinstance(given, np.ndarray):

@@ -8,6 +8,7 @@ import numpy as np
 
 from polhode import _generic, _native
 from polhode._algebra.coefficients import kind_of
+from polhode._algebra.foreign_values import has_reflected
 from polhode._algebra.products import aligned, common_algebra
 from polhode._support.arrays import at_index, first_index, is_float, new
 
@@ -59,6 +60,16 @@ def sandwich(V: Multivector, X: Multivector) -> Multivector:
     if not isinstance(X, _native.Multivector):
         return NotImplemented
     return V(X)
+
+
+def unshifted(A: Multivector, B: Any) -> Any:
+    """Raise the TypeError for ``A << B``, which other libraries have for different products."""
+    if has_reflected(B, "__rlshift__"):
+        return NotImplemented
+    raise TypeError(
+        "<< is not an operator of multivectors; write A.left_contraction(B), as in clifford, or "
+        "A.anticommutator(B), as in galgebra"
+    )
 
 
 def _require_number(square: Multivector, V: Multivector) -> None:

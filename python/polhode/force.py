@@ -17,6 +17,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.forces import Force, force_of, native_force
 from polhode._mechanics.laws import function_of, law_of_formula
 from polhode._mechanics.parameters import named_together
+from polhode._support.package_names import missing_law
 
 __all__ = [
     "Force",
@@ -33,6 +34,12 @@ __all__ = [
 
 def __dir__() -> list[str]:
     return __all__
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> None:
+        raise missing_law("force", name)
 
 
 def constant(F: Any) -> Force:

@@ -28,6 +28,7 @@ from polhode._mechanics.registry import FRAMES, INTERPOLATIONS
 from polhode._mechanics.torques import Torque, native_torque, torque_of
 from polhode._mechanics.wheels import wheel_arguments
 from polhode._support.arrays import as_floats
+from polhode._support.package_names import missing_law
 
 __all__ = [
     "KeplerOrbit",
@@ -56,6 +57,12 @@ __all__ = [
 
 def __dir__() -> list[str]:
     return __all__
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> None:
+        raise missing_law("torque", name)
 
 
 # --- fields

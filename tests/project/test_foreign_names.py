@@ -13,6 +13,7 @@ from scipy.spatial import transform as scipys
 import polhode as ph
 from polhode import I, RigidTransform, Rotor, e1, e2, e3
 from polhode._algebra import foreign_tables, ufuncs
+from polhode._mechanics import foreign_names as names_of_motions
 from polhode._support import package_names
 
 # --- what the tables tell to write
@@ -159,6 +160,48 @@ def test_names_of_the_package_are_seen(name):
     assert not hasattr(ph, name)
 
 
+@pytest.mark.parametrize("module", package_names.LAWS)
+def test_the_error_of_a_law_tells_what_works(module):
+    laws = {"N": [1, 0, 0], "kp": 1, "kd": 1, "d": 1, "h": [1, 0, 0], "k": 1, "mu": 1, "F": [1, 0, 0], "m": 1}
+    laws |= {"area": 1, "offset": [1, 0, 0], "sun": [0, 0, 1]}
+    for name, ours in package_names.LAWS[module].items():
+        with pytest.raises(AttributeError, match=f"'{name}'; write ph.{re.escape(ours)}$"):
+            getattr(getattr(ph, module), name)
+        for text in re.split(r", or of a centre | or ", ours):
+            eval(f"ph.{text}", BASE | laws)
+    assert not hasattr(getattr(ph, module), "nothing")
+
+
+BOX, START = ph.Body.box([1, 2, 3], mass=1), ph.State(BASE["R"], [0, 0, 1], [1, 2, 3])
+MOVING = {
+    "STATE": START,
+    "CLOSED_FORM": ph.FreeMotion(BOX.inertia, BASE["R"], [0, 0, 1]),
+    "TRAJECTORY": ph.simulate(BOX, START, [0, 1]),
+    "STEPPER": ph.Stepper(BOX, START),
+}
+
+
+@pytest.mark.parametrize(
+    ("table", "name"),
+    [
+        ("STATE", "q"),
+        ("STATE", "R"),
+        ("CLOSED_FORM", "rotor"),
+        ("CLOSED_FORM", "omega"),
+        ("CLOSED_FORM", "sol"),
+        ("TRAJECTORY", "sol"),
+        ("STEPPER", "qpos"),
+        ("STEPPER", "qvel"),
+    ],
+)
+def test_the_error_of_a_motion_tells_what_works(table, name):
+    ours = vars(names_of_motions)[table][name]
+    with pytest.raises(AttributeError, match=f"'{name}'; write {re.escape(ours)}$"):
+        getattr(MOVING[table], name)
+    for text in re.split(r", and ", ours):
+        eval(f"value.{text}", {"value": MOVING[table], "t": 0.5})
+
+
 # --- calls and operators
 
 R, T, A = Rotor.random(rng=1), RigidTransform(Rotor.random(rng=2), [1, 2, 3]), ph.algebra(3)
@@ -195,6 +238,11 @@ TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
         (lambda: RigidTransform(np.eye(3), [1, 2, 3]), "Rotor.from_matrix(M)"),
         (lambda: RigidTransform.from_rotation(np.eye(3)), "Rotor.from_matrix(M)"),
         (lambda: RigidTransform.from_components(R, [1, 2, 3]), "the rotation must be a Rotor"),
+        *((lambda x=x: BOX.inertia @ x, "write F(X)") for x in (np.ones(3), [1, 2, 3], e1 ^ e2)),
+        *((lambda x=x: x * BOX.inertia, "write F(X)") for x in ([1, 2, 3], e1 ^ e2)),
+        (lambda: np.eye(3) @ BOX.inertia, "F.matrix @ x"),
+        (lambda: ph.FreeMotion(np.eye(3), R, [0, 0, 1]), "Inertia.from_matrix"),
+        (lambda: ph.simulate(np.eye(3), START, [1]), "got an array of float64; for principal moments"),
         (lambda: R @ R, "A * B"),
         (lambda: np.eye(3) @ R, "ph.vector(M @ a.components)"),
         (lambda: np.cross(e1, e2), "ph.cross(a, b)"),

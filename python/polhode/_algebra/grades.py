@@ -130,14 +130,6 @@ def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
     return _native.Multivector._of(own, value._mask, value.algebra)
 
 
-def index_message(error: IndexError, shape: Shape, index: tuple[Any, ...]) -> str:
-    """Return the message for an index that NumPy rejects, which counts the axis of components too."""
-    text = str(error)
-    if text.startswith("too many indices"):
-        text = f"too many indices for the batch axes: {len(index)}"
-    return f"{text} (batch shape {shape})"
-
-
 def check_index(shape: Shape, index: tuple[Any, ...]) -> None:
     """Raise an IndexError for a plain index out of range, which JAX would clip to the last one."""
     if all(part is None or part is Ellipsis or isinstance(part, int | np.integer | slice) for part in index):

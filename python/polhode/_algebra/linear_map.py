@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from polhode._algebra import decompositions as _decompositions
 from polhode._algebra.algebra import Algebra
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import e1, pure
+from polhode._algebra.foreign_values import has_reflected
 from polhode._algebra.grades import with_grades
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.outermorphism import compound, outermorphism, times
@@ -268,8 +269,10 @@ class LinearMap:
 
     def __matmul__(self, other: Any) -> LinearMap:
         """``F @ G`` applies G first: ``(F @ G)(X) = F(G(X))``."""
-        if not isinstance(other, LinearMap):
+        if has_reflected(other, "__rmatmul__"):
             return NotImplemented
+        if not isinstance(other, LinearMap):
+            _refuse_factor(other)
         self._require_algebra(other)
         if self.grade == other.grade:
             return self._with(self.matrix @ other.matrix)
@@ -277,7 +280,12 @@ class LinearMap:
             self.bivector_matrix @ other.bivector_matrix, grade=2, algebra=self.algebra
         )
 
+    def __rmatmul__(self, other: Any) -> NoReturn:
+        _refuse_factor(other)
+
     def _scaled(self, factor: Any) -> LinearMap:
+        if isinstance(factor, Multivector | list | tuple):
+            _refuse_factor(factor)
         if not _is_number(factor):
             return NotImplemented  # type: ignore[no-any-return]
         size = as_floats(factor, "the factor of a linear map")
@@ -445,6 +453,13 @@ class LinearMap:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (np.array(self.matrix), self.grade, self.algebra)
+
+
+def _refuse_factor(other: Any) -> NoReturn:
+    raise TypeError(
+        f"a linear map is joined to maps and multiplied by numbers, not by a {type(other).__name__}; write "
+        "F(X) for a multivector X, F.matrix @ x for an array x of components"
+    )
 
 
 def _is_number(x: Any) -> bool:

@@ -27,7 +27,7 @@ from polhode._algebra.foreign_values import has_reflected, is_foreign
 from polhode._algebra.masking import masked
 from polhode._algebra.native import joins
 from polhode._algebra.products import coerced, is_sequence, product
-from polhode._support.arrays import Shape, copied
+from polhode._support.arrays import Shape, copied, index_message
 from polhode._support.calls import explains_calls
 
 if TYPE_CHECKING:
@@ -223,7 +223,7 @@ class Multivector(_native.Multivector):
             picked = self._data[(*parts, *rest, slice(None))]
         except IndexError as error:
             if self.shape:
-                raise IndexError(_grades.index_message(error, self.shape, parts)) from None
+                raise IndexError(index_message(error, self.shape, parts)) from None
             raise IndexError(
                 f"a single value has no batch to index, got [{index!r}]; its numbers are .components or "
                 '["e12"], its part of grade k is .grade(k)'

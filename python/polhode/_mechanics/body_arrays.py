@@ -24,6 +24,8 @@ def bodies_of(body: Any) -> Any:
 def objects_of(values: Any, kinds: tuple[type, ...], what: str, remedy: str = "") -> Any:
     """Return an object array of one value or a nested sequence of values; a TypeError for other types."""
     array: Any = np.empty((), dtype=object)
+    if isinstance(values, np.ndarray) and values.dtype != object:
+        raise TypeError(f"{what}, got an array of {values.dtype}{remedy}")
     if not isinstance(values, list | tuple | np.ndarray):
         array[()] = values
     elif not isinstance(values, np.ndarray) and values and {*map(type, values)} <= {*kinds}:

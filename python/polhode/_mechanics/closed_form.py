@@ -15,6 +15,7 @@ from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor, check_rotor
 from polhode._mechanics.body_arrays import objects_of
+from polhode._mechanics.foreign_names import CLOSED_FORM
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State, angular_velocity
 from polhode._support.arrays import Array, Shape, as_floats, batch_index
@@ -28,7 +29,7 @@ _BODY = 1000  # upper bound of the bytes of a motion in a batch
 _MANY = 64  # number of bodies that fills the SIMD lanes
 
 
-@with_foreign_names({"plot": "view(), or ph.simulate(…).plot()"})
+@with_foreign_names(CLOSED_FORM)
 class ClosedForm:
     """Motion of a body, or of a batch of bodies, in closed form."""
 
@@ -185,7 +186,8 @@ def given(
 
     The numbers `law` (..., k) of the torque have a name for errors.
     """
-    inertias = objects_of(inertia, (Inertia,), "inertia must be an Inertia", f"; see {remedy}")
+    remedies = f"; see {remedy} and Inertia.from_matrix"
+    inertias = objects_of(inertia, (Inertia,), "inertia must be an Inertia", remedies)
     check_rotor(rotor, "rotor")
     rows = [as_coefficients(rotor._data, "the rotor", float), angular_velocity(omega_body)._data]
     names = ["the inertia", "the rotor", "the angular velocity"]

@@ -23,7 +23,8 @@ INERTIA = {
 
 STATE = {
     **dict.fromkeys(("attitude", "orientation", "rotation"), "rotor"),
-    "quaternion": 'rotor.to_quaternion(order="wxyz")',
+    **dict.fromkeys(("q", "quat", "quaternion"), 'rotor.to_quaternion(order="wxyz")'),
+    "R": "rotor",
     **dict.fromkeys(("omega", "angular_velocity", "rates"), "omega_body or omega_space"),
     "t": "time",
 }
@@ -37,7 +38,7 @@ TRAJECTORY = {
     "kinetic_energy": "energy",
     "states": "at(t)",
     "state": "at(t)",
-    "interpolate": "at(t)",
+    **dict.fromkeys(("interpolate", "sol"), "at(t)"),
     "summary": "certificate",
     "show": "view() and plot()",
     "animate": "view() and film(path)",
@@ -53,7 +54,16 @@ STEPPER = {
     **dict.fromkeys(("rotor", "attitude", "orientation"), "state.rotor"),
     **dict.fromkeys(("omega", "omega_body", "angular_velocity"), "state.omega_body"),
     "advance": "step(dt)",
+    "qpos": 'state.rotor.to_quaternion(order="wxyz"), and state.position',
+    "qvel": "state.omega_body, and state.velocity",
     "t": "time",
+}
+
+CLOSED_FORM = {
+    "plot": "view(), or ph.simulate(…).plot()",
+    **dict.fromkeys(("rotor", "attitude", "orientation", "rotation"), "at(t).rotor"),
+    **dict.fromkeys(("omega", "omega_body", "angular_velocity"), "at(t).omega_body"),
+    **dict.fromkeys(("state", "sol", "interpolate"), "at(t)"),
 }
 
 CROSSINGS = dict.fromkeys(("t", "times"), "time")

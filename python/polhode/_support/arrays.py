@@ -267,13 +267,21 @@ def batch_shape(shape: Any) -> Shape:
     return found
 
 
+def index_message(error: IndexError, shape: Shape, index: tuple[Any, ...]) -> str:
+    """Return the message for an index that NumPy rejects, which counts the axis of components too."""
+    text = str(error)
+    if text.startswith("too many indices"):
+        text = f"too many indices for the batch axes: {len(index)}"
+    return f"{text} (batch shape {shape})"
+
+
 def batch_index(index: Any, shape: Shape) -> tuple[tuple[Any, ...], tuple[Any, ...], Shape]:
     """Return an index of NumPy over a batch as a tuple, one that leaves a last axis, and the shape picked."""
     parts = index if isinstance(index, tuple) else (index,)
     try:
         picked = np.broadcast_to(np.False_, shape)[parts].shape
     except IndexError as error:
-        raise IndexError(f"{error} (batch shape {shape})") from None
+        raise IndexError(index_message(error, shape, parts)) from None
     return parts, (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts, picked
 
 

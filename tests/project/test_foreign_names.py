@@ -206,6 +206,7 @@ def test_the_error_of_a_motion_tells_what_works(table, name):
 
 R, T, A = Rotor.random(rng=1), RigidTransform(Rotor.random(rng=2), [1, 2, 3]), ph.algebra(3)
 TWO, PATH = RigidTransform.stack([T, T]), ph.RotorSpline([0, 1, 2], Rotor.random(3, rng=3))
+TAKE_THREE = [ph.vector, ph.left_jacobian, Rotor.from_mrp, Rotor.from_rotation_vector, T.apply]
 OPERATORS = [getattr(operator, name) for name in ("add", "sub", "mul", "truediv", "xor", "or_", "and_")]
 TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
 
@@ -291,6 +292,9 @@ def test_calls_and_operators_of_other_libraries_name_ours(call, ours):
         (lambda: Rotor.from_euler("sxyz", [1, 2, 3]), "write 'xyz'"),
         (lambda: R.to_euler("rzyx"), "write 'ZYX'"),
         (lambda: T[0], ".rotor and .translation"),
+        *((lambda f=f: f(np.ones((3, 1))), "got shape (3, 1); write np.ravel(x)") for f in TAKE_THREE),
+        *((lambda f=f: f(np.ones((3, 5))), "got shape (3, 5); write x.T for columns x") for f in TAKE_THREE),
+        (lambda: ph.vector(sympy.Matrix([1, x, 3])), "write np.ravel(x) for a column x"),
         (lambda: V[0, 1], "too many indices for the batch axes: 2 (batch shape (3,))"),
         (lambda: Rotor.from_matrix(np.eye(4)), "RigidTransform.from_matrix(M)"),
         (lambda: RigidTransform.from_matrix(np.eye(3)), "RigidTransform(Rotor.from_matrix(M), x)"),

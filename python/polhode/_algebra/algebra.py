@@ -18,7 +18,7 @@ from polhode._algebra.foreign_tables import ALGEBRA
 from polhode._algebra.grades import mask_of
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
-from polhode._support.arrays import Shape, batch_shape, normal_numbers
+from polhode._support.arrays import Shape, batch_shape, normal_numbers, require_components
 from polhode._support.calls import explains_calls, takes_components
 
 
@@ -260,10 +260,7 @@ class Algebra(_native.Algebra):
             if value is not None:
                 return value
         data = as_coefficients(components, what, dtype, complex_too=True)
-        if not data.shape or data.shape[-1] != size:
-            raise ValueError(
-                f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}"
-            )
+        require_components(data.shape, size, what)
         if copy:
             data = duplicate(data)
         elif isinstance(data, np.ndarray):

@@ -124,7 +124,10 @@ def _batch_axes(axis: Any, count: int) -> tuple[int, ...]:
     if axis is None:
         return tuple(range(count))
     given = axis if isinstance(axis, tuple) else (axis,)
-    places = tuple(operator.index(k) for k in given)
+    try:
+        places = tuple(map(operator.index, given))
+    except TypeError:
+        raise TypeError(f"axis must be a whole number, a tuple of them or None, got {axis!r}") from None
     if not all(-count <= k < count for k in places) or len({k % count for k in places}) < len(places):
         raise ValueError(f"axis {axis} does not name different axes of {count} batch axes")
     return tuple(k % count for k in places)

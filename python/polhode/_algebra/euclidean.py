@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from polhode._algebra.coefficients import as_coefficients, duplicate, kind_of
 from polhode._algebra.multivector import Multivector
+from polhode._support.arrays import require_components
 
 if TYPE_CHECKING:
     from polhode._algebra.algebra import Algebra
@@ -18,10 +19,7 @@ def vector_in(space: Algebra, x: Any, what: str) -> Multivector:
     """Return a vector of Euclidean space from one, or from an array (..., n) of components."""
     if not isinstance(x, Multivector):
         data = as_coefficients(x, what)
-        if not data.shape or data.shape[-1] != space.dimension:
-            raise ValueError(
-                f"{what} needs {space.dimension} components in the last axis, got shape {tuple(data.shape)}"
-            )
+        require_components(data.shape, space.dimension, what)
         return Multivector._of(duplicate(data), _VECTOR, space)
     if x.algebra is not space:
         raise TypeError(f"{what} must be a vector of {space} or an array, got a value of {x.algebra}")

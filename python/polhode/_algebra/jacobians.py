@@ -7,6 +7,7 @@ from typing import Any
 from polhode import _generic
 from polhode._algebra.coefficients import as_coefficients, kind_of, require_real
 from polhode._algebra.multivector import Multivector
+from polhode._support.arrays import require_components
 from polhode._support.calls import explains_calls
 
 
@@ -67,10 +68,7 @@ def _jacobian(v: Any, sign: int, inverse: bool) -> Any:
         require_real(given, "a rotation vector")
     else:
         given = as_coefficients(v, "rotation vector")
-    if not given.shape or given.shape[-1] != 3:
-        raise ValueError(
-            f"a rotation vector needs 3 components in the last axis, got shape {tuple(given.shape)}"
-        )
+    require_components(given.shape, 3, "a rotation vector")
     kind = kind_of(given)
     matrices = _generic.jacobians.left(kind, sign * kind.asarray(given), inverse)
     return matrices.astype(given.dtype, copy=False) if kind.native else matrices

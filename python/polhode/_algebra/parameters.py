@@ -13,7 +13,15 @@ from polhode._algebra.constructors import from_axial, one_grade, vector
 from polhode._algebra.grades import held, with_grades
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
-from polhode._support.arrays import Array, as_floats, at_index, first_index, is_float, power_of_two
+from polhode._support.arrays import (
+    Array,
+    as_floats,
+    at_index,
+    first_index,
+    is_float,
+    power_of_two,
+    require_components,
+)
 from polhode._support.calls import explains_calls
 
 if TYPE_CHECKING:
@@ -337,8 +345,7 @@ def _known(x: Any) -> float:
 
 def _triples(values: Any, what: str) -> Any:
     data = as_coefficients(values, what)
-    if not data.shape or data.shape[-1] != 3:
-        raise ValueError(f"{what} needs 3 components in the last axis, got shape {tuple(data.shape)}")
+    require_components(data.shape, 3, what)
     return data
 
 

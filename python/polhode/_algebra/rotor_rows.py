@@ -8,13 +8,12 @@ from polhode import _generic, _native
 from polhode._algebra.coefficients import as_coefficients, kind_of
 from polhode._algebra.constructors import one_grade
 from polhode._algebra.multivector import Multivector
-from polhode._support.arrays import is_complex, is_float, joined, mapped
+from polhode._support.arrays import is_complex, is_float, joined, mapped, require_components
 
 
 def components(values: Any, size: int, what: str) -> Any:
     data = as_coefficients(values, what)
-    if not data.shape or data.shape[-1] != size:
-        raise ValueError(f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}")
+    require_components(data.shape, size, what)
     return data
 
 

@@ -117,11 +117,20 @@ def as_count(value: Any, what: str) -> int:
         raise TypeError(f"{what} must be a whole number, got {type(value).__name__}") from None
 
 
+def require_components(shape: Any, size: int, what: str) -> None:
+    """Raise a ValueError, which explains columns, unless the last axis has this many components."""
+    if shape and shape[-1] == size:
+        return
+    remedy = ""
+    if len(shape) == 2 and shape[0] == size:
+        remedy = "; write np.ravel(x) for a column x" if shape[1] == 1 else "; write x.T for columns x"
+    raise ValueError(f"{what} needs {size} components in the last axis, got shape {tuple(shape)}{remedy}")
+
+
 def as_components(values: Any, size: int, what: str) -> Array:
     """Return a read-only, contiguous copy of shape (..., size)."""
     array = as_floats(values, what)
-    if array.ndim == 0 or array.shape[-1] != size:
-        raise ValueError(f"{what} needs {size} components in the last axis, got shape {array.shape}")
+    require_components(array.shape, size, what)
     require_array(array.shape, f"the numbers of {what}")
     return frozen(np.array(array, order="C"))
 

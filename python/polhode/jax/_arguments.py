@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.inertia import Inertia
+from polhode._support.arrays import require_components
 from polhode.jax._components import Four, compose, joined, reverse, split, turned
 from polhode.jax._library import Array, jnp
 
@@ -71,6 +72,5 @@ def as_array(value: Any, _name: str = "") -> Array:
 def rows(value: Any, size: int, what: str) -> Array:
     """Return an array of floats (..., size)."""
     array = as_array(value)
-    if array.shape[-1:] != (size,):
-        raise ValueError(f"{what} needs {size} components in the last axis, got shape {array.shape}")
+    require_components(array.shape, size, what)
     return array

@@ -81,7 +81,7 @@ TABLES = {
     "ROTOR": (BASE["R"], {}),
     "PARTS_OF_ROTORS": (BASE["R"], {}),
     "TRANSFORM": (BASE["T"], {"S": RigidTransform(), "shape": (1,)}),
-    "ALGEBRA": (ph.algebra(3), {"A": ph.algebra(3), "components": np.ones(3)}),
+    "ALGEBRA": (ph.algebra(3), {"A": ph.algebra(3), "components": np.ones(3), "X": e1, "Y": e2}),
     "PGA": (PLANE, OF_PLANES),
     "CGA": (SPHERES, OF_SPHERES),
 }
@@ -244,6 +244,9 @@ TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
         (lambda: np.eye(3) @ BOX.inertia, "F.matrix @ x"),
         (lambda: ph.FreeMotion(np.eye(3), R, [0, 0, 1]), "Inertia.from_matrix"),
         (lambda: ph.simulate(np.eye(3), START, [1]), "got an array of float64; for principal moments"),
+        (lambda: SPHERES.rotor(e1 ^ e2, 0.3), "A.rotor(ph.Rotor.from_plane_angle(B, angle))"),
+        (lambda: SPHERES.circle([0, 0, 0], e1 ^ e2, 1), "write B.dual()"),
+        (lambda: T.apply(e1 ^ e2), "write B.dual()"),
         (lambda: R @ R, "A * B"),
         (lambda: np.eye(3) @ R, "ph.vector(M @ a.components)"),
         (lambda: np.cross(e1, e2), "ph.cross(a, b)"),

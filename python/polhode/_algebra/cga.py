@@ -26,7 +26,7 @@ from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._support.arrays import is_float, power_of_two
-from polhode._support.calls import takes_components
+from polhode._support.calls import explains_calls, takes_components
 
 
 class CGA(Algebra):
@@ -392,6 +392,7 @@ class CGA(Algebra):
 
     # --- versors
 
+    @explains_calls(angle="A.rotor(ph.Rotor.from_plane_angle(B, angle))")
     def rotor(self, R: Multivector) -> Multivector:
         """Return a rotor of ``ph.algebra(n)`` as an element of this algebra: it turns about the origin.
 

@@ -24,7 +24,8 @@ def vector_in(space: Algebra, x: Any, what: str) -> Multivector:
     if x.algebra is not space:
         raise TypeError(f"{what} must be a vector of {space} or an array, got a value of {x.algebra}")
     if x._held() & ~_VECTOR:
-        raise TypeError(f"{what} must be a vector, got {x!r}, which has other grades")
+        remedy = "; write B.dual()" if x.grades == (2,) and space.signature == (3, 0, 0) else ""
+        raise TypeError(f"{what} must be a vector, got {x!r}, which has other grades{remedy}")
     return x if x._mask == _VECTOR else x._part(_VECTOR)
 
 

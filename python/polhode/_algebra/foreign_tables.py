@@ -40,6 +40,7 @@ MULTIVECTOR = {
         ("hitzer_inverse", "inv", "leftLaInv", "rightLaInv", "rightInv", "shirokov_inverse"), "inverse()"
     ),
     "ip": "A | B",
+    **dict.fromkeys(("isBlade", "is_blade"), "factor(), with an error unless the value is a blade"),
     **dict.fromkeys(("isScalar", "is_scalar"), "grades == (0,), or A == A.grade(0)"),
     "is_vector": "grades == (1,), or A == A.grade(1)",
     "is_zero": "A == 0",
@@ -71,9 +72,10 @@ MULTIVECTOR = {
     "tolist": "components.tolist()",
     "value": "dense() or components",
     "values": "components",
-    "x": 'A["e1"]',
-    "y": 'A["e2"]',
-    "z": 'A["e3"]',
+    **{
+        name: f'A["e{axis}"], or ph.pga(3).coordinates(P)[..., {axis - 1}] of a point'
+        for name, axis in (("x", 1), ("y", 2), ("z", 3))
+    },
     **{name: f'A["{name}"]' for name in BLADES},
 }
 
@@ -228,6 +230,14 @@ ALGEBRA = {
     **dict.fromkeys(("metric", "sig"), "signature"),
     **dict.fromkeys(("randomV", "random_vector"), "random().grade(1)"),
     "trivector": "k_vector(3, components)",
+    "gp": "X * Y",
+    "op": "X ^ Y",
+    "ip": "X | Y",
+    "rp": "X & Y",
+    "sw": "X >> Y for a versor X",
+    "cp": "X.commutator(Y)",
+    "acp": "X.anticommutator(Y)",
+    "reverse": "~X",
 }
 
 # Of plane-based algebras, as in kingdon, ganja.js and text books.
@@ -237,6 +247,7 @@ PGA = {
     "ideal_point": "direction(x)",
     "join": "P & Q",
     "meet": "X ^ Y",
+    "origin": "point([0, 0, 0])",
     "project": "(X | Y) / Y",
     "rotor": "(-θ/2 * L).exp() for the rotation by θ about a line L of norm 1",
     "translation": "translator(t)",
@@ -251,9 +262,11 @@ CGA = {
     "distance": "float(-2 * (P | Q)) ** 0.5 for points P, Q of weight 1",
     "en": "basis_vectors[-1]",
     "ep": "basis_vectors[-2]",
+    **dict.fromkeys(("dilation", "scale"), "dilator(k)"),
     "homo": "P / -(P | A.einf)",
-    **dict.fromkeys(("normalized", "normalize_point"), "P / -(P | A.einf)"),
+    **dict.fromkeys(("normalize", "normalized", "normalize_point"), "P / -(P | A.einf)"),
     "join": "P ^ Q",
+    "meet": "X & Y",
     "project": "(X | Y) / Y",
     "rotation": "rotor(R)",
     "translation": "translator(t)",

@@ -120,8 +120,10 @@ def test_bad_angles_are_errors():
         ph.Rotor.identity().to_euler("xy")
     with pytest.raises(ValueError, match=r"'xyz' needs 3 angles in the last axis, got shape \(2,\)"):
         ph.Rotor.from_euler("xyz", [1, 2])
-    with pytest.raises(ValueError, match="'z' needs 1 angles"):
+    with pytest.raises(ValueError, match=r"'z' needs 1 angle .*; write x\[..., None\] for an array x"):
         ph.Rotor.from_euler("z", [1, 2])
+    with pytest.raises(ValueError, match=r"got shape \(3, 5\); write x.T for columns x"):
+        ph.Rotor.from_euler("xyz", np.ones((3, 5)))
     with pytest.raises(TypeError, match="angles must be real numbers"):
         ph.Rotor.from_euler("z", "90")
     with pytest.raises(ValueError, match=r"index \(1,\)"):

@@ -303,6 +303,7 @@ def test_calls_and_operators_of_other_libraries_name_ours(call, ours):
         (lambda: RigidTransform.from_matrix(np.eye(3)), "RigidTransform(Rotor.from_matrix(M), x)"),
         (lambda: R.reduce(TURN), "Rotor.from_scipy(x)"),
         (lambda: ph.mean(Rotor.random(0)), "got a batch of shape (0,)"),
+        (lambda: ph.mean(np.eye(4)), "see Rotor.from_quaternion"),
         (lambda: Rotor.random(-1), "must be >= 0, got -1"),
         (lambda: (e1 ^ e2).to_matrix(), "Rotor.from_multivector(A).to_matrix"),
         (lambda: T.to_motor().apply(e1), "RigidTransform.from_motor(A)"),

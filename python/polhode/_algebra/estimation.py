@@ -65,7 +65,9 @@ def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None)
         raise TypeError(f"mean needs rotors, got {type(R[0] if listed else R).__name__}{remedy}")
     rotors = stack(R) if listed else R
     if not isinstance(rotors, Rotor) or not all(rotors.shape):
-        found = f"a batch of shape {rotors.shape}" if isinstance(rotors, Rotor) else f"{R!r:.80}"
+        found = f"{R!r:.80}; see Rotor.from_quaternion, from_matrix and from_rotation_vector"
+        if isinstance(rotors, Rotor):
+            found = f"a batch of shape {rotors.shape}"
         raise ValueError(f"mean needs rotors, at least one, got {found}")
     kind = _numbers(rotors, weights)
     xp, axes = kind.xp, _batch_axes(axis, len(rotors.shape))

@@ -24,7 +24,7 @@ from polhode._generic import exact
 from polhode._generic.compiled import compiled
 from polhode._generic.exact import Exact, by_rows
 from polhode._generic.numeric import Numeric, components
-from polhode._support.arrays import is_float
+from polhode._support.arrays import is_float, remedy_for_columns
 
 Parts = list[Any]
 
@@ -42,6 +42,20 @@ def axes_of(seq: str, lengths: tuple[int, ...]) -> list[int]:
             f"neighbours different; got {seq!r}{_lettered(seq)}"
         )
     return ["xyz".index(letter) for letter in seq.lower()]
+
+
+def require_angles(seq: str, shape: Any) -> None:
+    """Raise a ValueError unless the last axis has an angle for each axis of the sequence."""
+    count = len(seq)
+    if shape[-1] == count:
+        return
+    remedy = (
+        remedy_for_columns(shape, count) if count > 1 else "; write x[..., None] for an array x of angles"
+    )
+    raise ValueError(
+        f"sequence {seq!r} needs {count} angle{'s' if count > 1 else ''} in the last axis, got shape "
+        f"{tuple(shape)}{remedy}"
+    )
 
 
 def _lettered(seq: object) -> str:

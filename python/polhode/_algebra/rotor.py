@@ -221,10 +221,7 @@ class Rotor(_native.Rotor, Multivector):
         theta = as_coefficients(angles, "angles")
         if not theta.shape:
             theta = theta[None]
-        if theta.shape[-1] != len(axes):
-            raise ValueError(
-                f"sequence {seq!r} needs {len(axes)} angles in the last axis, got shape {tuple(theta.shape)}"
-            )
+        euler.require_angles(seq, theta.shape)
         if degrees:
             theta = to_radians(theta)
         planes = np.eye(3)[axes]

@@ -119,12 +119,16 @@ def as_count(value: Any, what: str) -> int:
 
 def require_components(shape: Any, size: int, what: str) -> None:
     """Raise a ValueError, which explains columns, unless the last axis has this many components."""
-    if shape and shape[-1] == size:
-        return
-    remedy = ""
-    if len(shape) == 2 and shape[0] == size:
-        remedy = "; write np.ravel(x) for a column x" if shape[1] == 1 else "; write x.T for columns x"
-    raise ValueError(f"{what} needs {size} components in the last axis, got shape {tuple(shape)}{remedy}")
+    if not shape or shape[-1] != size:
+        remedy = remedy_for_columns(shape, size)
+        raise ValueError(f"{what} needs {size} components in the last axis, got shape {tuple(shape)}{remedy}")
+
+
+def remedy_for_columns(shape: Any, size: int) -> str:
+    """Return the end of an error for an array of this shape with this many numbers in columns."""
+    if len(shape) != 2 or shape[0] != size:
+        return ""
+    return "; write np.ravel(x) for a column x" if shape[1] == 1 else "; write x.T for columns x"
 
 
 def as_components(values: Any, size: int, what: str) -> Array:

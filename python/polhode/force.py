@@ -32,6 +32,15 @@ __all__ = [
 ]
 
 
+# Names that are not ours, and what to write instead.
+_FOREIGN = {
+    "gravity": "force.constant(-9.81 * m * ph.e3), or of a centre force.central(mu)",
+    "damping": "force.drag(k)",
+    **dict.fromkeys(("kepler", "newton", "point_mass"), "force.central(mu)"),
+    **dict.fromkeys(("thruster", "body_force"), "force.thrust(F)"),
+}
+
+
 def __dir__() -> list[str]:
     return __all__
 
@@ -39,7 +48,7 @@ def __dir__() -> list[str]:
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> None:
-        raise missing_law("force", name)
+        raise missing_law("force", name, _FOREIGN)
 
 
 def constant(F: Any) -> Force:

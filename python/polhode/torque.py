@@ -55,6 +55,16 @@ __all__ = [
 ]
 
 
+# Names that are not ours, and what to write instead.
+_FOREIGN = {
+    **dict.fromkeys(("control", "controller", "PD", "pd", "pid"), "torque.pd_control(kp, kd)"),
+    **dict.fromkeys(("drag", "friction", "viscous"), "torque.viscous_damping(d)"),
+    **dict.fromkeys(("momentum_wheel", "wheel"), "torque.gyrostat(h)"),
+    **dict.fromkeys(("solar_pressure", "srp"), "torque.radiation_pressure(area, offset, sun)"),
+    "spring": "torque.torsion_spring(k)",
+}
+
+
 def __dir__() -> list[str]:
     return __all__
 
@@ -62,7 +72,7 @@ def __dir__() -> list[str]:
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> None:
-        raise missing_law("torque", name)
+        raise missing_law("torque", name, _FOREIGN)
 
 
 # --- fields

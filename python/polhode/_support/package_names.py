@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 
 # Names of ours.
 SEE = {
@@ -180,29 +181,9 @@ WRITE = {
 }
 
 
-# Names for laws that the modules of torques and forces do not have.
-LAWS = {
-    "torque": {
-        "constant": "torque.constant_body(N) or torque.constant_space(N)",
-        **dict.fromkeys(("control", "controller", "PD", "pd", "pid"), "torque.pd_control(kp, kd)"),
-        **dict.fromkeys(("drag", "friction", "viscous"), "torque.viscous_damping(d)"),
-        **dict.fromkeys(("momentum_wheel", "wheel"), "torque.gyrostat(h)"),
-        **dict.fromkeys(("solar_pressure", "srp"), "torque.radiation_pressure(area, offset, sun)"),
-        "spring": "torque.torsion_spring(k)",
-    },
-    "force": {
-        "gravity": "force.constant(-9.81 * m * ph.e3), or of a centre force.central(mu)",
-        "damping": "force.drag(k)",
-        **dict.fromkeys(("kepler", "newton", "point_mass"), "force.central(mu)"),
-        **dict.fromkeys(("thruster", "body_force"), "force.thrust(F)"),
-    },
-}
-
-
-def missing_law(module: str, name: str) -> AttributeError:
+def missing_law(module: str, name: str, laws: Mapping[str, str]) -> AttributeError:
     """Return the error for a name that the module of torques or that of forces does not have."""
-    ours = LAWS[module].get(name)
-    remedy = f"; write ph.{ours}" if ours else f"; the laws are listed by dir(ph.{module})"
+    remedy = f"; write ph.{laws[name]}" if name in laws else f"; the laws are listed by dir(ph.{module})"
     return AttributeError(f"module 'polhode.{module}' has no attribute {name!r}{remedy}")
 
 

@@ -10,7 +10,7 @@ array of numbers, or batched vectors. Python functions are shared by all bodies.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor

@@ -232,8 +232,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
         let mut accepted = [false; W];
         for l in 0..W {
             let Some(run) = &mut self.runs[l] else { continue };
-            let (h, estimate) = (h.0[l], error.0[l]);
-            let error = estimate / run.tolerance;
+            let (h, error) = (h.0[l], error.0[l]);
             run.sweep.evaluations += STAGES as u64;
             if error.is_nan()
                 && let Err(error) = run.diagnose(&self.at.get(l), h, &torques[l])
@@ -242,7 +241,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
                 continue;
             }
             if run.controller.judge(h, error) {
-                run.sweep.errors += estimate;
+                run.sweep.errors += error;
                 match run.arrive(h, next, l, scheduler) {
                     Ok(()) => accepted[l] = true,
                     Err(error) => self.fail(l, error, scheduler),

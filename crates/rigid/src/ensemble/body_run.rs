@@ -20,8 +20,8 @@ use std::mem;
 pub(super) struct BodyRun<'a> {
     pub member: Member<'a>,
     bounds: StepBounds,
-    /// A guess of the first step of a sweep, in s.
-    first: f64,
+    /// The fastest rate of the laws and the body at the start, in rad/s.
+    first_rate: f64,
     sweeps: Convergence,
     /// The current sweep, with its points in the order of integration.
     pub sweep: Sweep,
@@ -31,9 +31,8 @@ pub(super) struct BodyRun<'a> {
     begin: Carried,
     /// The largest angular velocity in the previous sweep.
     known_rate: f64,
+    rule: StepRule,
     pub controller: StepController,
-    /// The largest error estimate of an accepted step.
-    pub tolerance: f64,
     /// The next stop.
     pub stop: f64,
     /// Parts of the run counted as done.
@@ -44,7 +43,7 @@ impl<'a> BodyRun<'a> {
     pub fn new(member: Member<'a>, torques: &[Torque], scheduler: &Scheduler<'a>) -> BodyRun<'a> {
         let start = Carried::new(member.start, Center::default());
         let bounds = scheduler.bounds(&member, torques);
-        let first = 0.1 / fastest_rate(&member.gyrostat, torques, &member.start).max(f64::MIN_POSITIVE);
+        let first_rate = fastest_rate(&member.gyrostat, torques, &member.start);
         let accuracy = Accuracy::new(METHOD.order(), scheduler.options.rtol);
         let scales = Scales {
             body: member.gyrostat,
@@ -52,17 +51,18 @@ impl<'a> BodyRun<'a> {
             in_space: true,
             is_smooth: bounds.is_smooth,
         };
+        let rule = accuracy.first_steps();
         BodyRun {
-            controller: StepController::new(first, bounds.longest),
+            rule,
+            controller: rule.controller(first_rate, &bounds),
             member,
             bounds,
-            first,
-            sweeps: Convergence::new(accuracy.tolerance(), accuracy, scales),
+            first_rate,
+            sweeps: Convergence::new(rule, accuracy, scales),
             sweep: Sweep::default(),
             noise: None,
             begin: start,
             known_rate: 0.0,
-            tolerance: accuracy.goal,
             stop: start.phase.time,
             so_far: 0,
         }
@@ -71,16 +71,13 @@ impl<'a> BodyRun<'a> {
     /// Begins the next sweep and returns its start.
     pub fn begin_sweep(&mut self) -> Carried {
         let SweepPlan { rule, known_rate, noise, .. } = self.sweeps.next();
-        self.known_rate = known_rate;
-        if let StepRule::Tolerance(tolerance) = rule {
-            self.tolerance = tolerance;
-        }
-        (self.noise, self.controller) = (noise, self.first_steps());
+        (self.rule, self.known_rate, self.noise) = (rule, known_rate, noise);
+        self.controller = self.first_steps();
         self.begin
     }
 
     fn first_steps(&self) -> StepController {
-        StepController::new(self.first, self.bounds.longest)
+        self.rule.controller(self.first_rate, &self.bounds)
     }
 
     /// The magnitude of the angular velocity, bounded below by its scale, in rad/s.

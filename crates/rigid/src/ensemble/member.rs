@@ -5,7 +5,7 @@ use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::methods::splitting::turns::Kind;
 use crate::run::certificate::Certificate;
-use crate::run::closed_form::ClosedForm;
+use crate::run::closed_form::ExactBody;
 use crate::run::output::BodyOutput;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor};
@@ -45,10 +45,8 @@ pub(super) fn of<'m, 'a>(members: &'m [Member<'a>], lane: usize) -> &'m Member<'
 pub(super) enum Strategy {
     /// In the lanes.
     Lanes,
-    /// In closed form, for a free body.
-    Free,
-    /// In closed form, under a torque.
-    Exact(Box<ClosedForm>),
+    /// In closed form.
+    Exact(Box<ExactBody>),
     /// As a single body.
     Single,
 }

@@ -11,7 +11,7 @@ use crate::methods::Method;
 use crate::methods::splitting::turns::Kind;
 use crate::run::center::{CenterMotion, center_law};
 use crate::run::certificate::Certificate;
-use crate::run::closed_form::ClosedForm;
+use crate::run::closed_form::ExactBody;
 use crate::run::limits::{Samples, StepBounds, samples};
 use crate::run::output::BodyOutput;
 use crate::run::{Options, Progress, check_body};
@@ -98,9 +98,9 @@ impl<'a> Scheduler<'a> {
         if wide { WIDE } else { SIDE_BY_SIDE }
     }
 
-    /// The number of free bodies that a thread computes together: as many as there are lanes; one if motions are long, or if
-    /// some threads would have none.
-    fn free_together(&self) -> usize {
+    /// The number of bodies in closed form that a thread computes together: as many as there are lanes; one if motions are
+    /// long, or if some threads would have none.
+    fn exact_together(&self) -> usize {
         let enough = self.ensemble.starts.len() >= self.threads * TOGETHER;
         if enough && self.times.len() < TIMES_IN_LANES { TOGETHER } else { 1 }
     }
@@ -115,12 +115,12 @@ impl<'a> Scheduler<'a> {
         if self.is_stopped() { None } else { lock(&self.queue).next() }
     }
 
-    /// The next body for adaptive steps in lanes. Bodies before it that lanes do not support are solved at once, free
-    /// ones as many at a time as there are lanes.
+    /// The next body for adaptive steps in lanes. Bodies before it that they do not support are solved at once, those in
+    /// closed form as many at a time as there are lanes.
     pub fn next_member(&self, progress: &mut dyn FnMut(Progress) -> bool) -> Option<Member<'a>> {
         let method = self.options.method.unwrap_or(METHOD);
         let adapts = method == METHOD && self.ensemble.in_lanes(false);
-        let mut free = Vec::new();
+        let mut exact = Vec::new();
         let mut next = None;
         while let Some((body, own)) = self.next_body() {
             if !adapts {
@@ -133,20 +133,16 @@ impl<'a> Scheduler<'a> {
                     next = Some(member);
                     break;
                 }
-                Strategy::Free => {
-                    free.push(member);
-                    if free.len() == self.free_together() {
-                        self.free(&mut free, progress);
+                Strategy::Exact(body) => {
+                    exact.push((member, *body));
+                    if exact.len() == self.exact_together() {
+                        self.exact(&mut exact, progress);
                     }
-                }
-                Strategy::Exact(closed) => {
-                    self.exact(member, &closed);
-                    self.report(progress);
                 }
                 Strategy::Single => self.run_single(body, member.own, progress),
             }
         }
-        self.free(&mut free, progress);
+        self.exact(&mut exact, progress);
         next
     }
 
@@ -182,18 +178,11 @@ impl<'a> Scheduler<'a> {
             Strategy::Single
         } else if chosen {
             Strategy::Lanes
-        } else if torques.is_empty() {
-            Strategy::Free
         } else {
-            let center = self.center(member.body);
-            let closed = ClosedForm::of(*gyrostat, start.rotor, *omega, torques, center);
-            let most = self.options.rtol.filter(|_| !self.options.exact).unwrap_or(f64::INFINITY);
-            match closed {
-                Some(closed) if closed.neglected(self.times).unwrap_or(0.0) <= most => {
-                    Strategy::Exact(Box::new(closed))
-                }
+            match ExactBody::of(gyrostat.moments, start.rotor, *omega, torques) {
+                Some(body) => Strategy::Exact(Box::new(body)),
                 None if !self.options.exact => Strategy::Lanes,
-                _ => Strategy::Single,
+                None => Strategy::Single,
             }
         }
     }

@@ -44,9 +44,13 @@ impl DampedTop {
         omega: Bivector,
         damping: f64,
     ) -> Result<DampedTop, SimulateError> {
-        let body = DampedTop::body(inertia, rotor, omega, damping)?;
+        DampedTop::of(&DampedTop::body(inertia, rotor, omega, damping)?, damping)
+    }
+
+    /// The motion of a body of [`DampedTop::body`] with the same g.
+    pub(crate) fn of(body: &FreeBody, damping: f64) -> Result<DampedTop, SimulateError> {
         let free = body.motion();
-        let horizon = own_horizon(&body, free.horizon())?;
+        let horizon = own_horizon(body, free.horizon())?;
         let flow = free.flow.damped(damping).ok_or(SimulateError::Unresolved)?;
         Ok(DampedTop { flow, damping, horizon })
     }

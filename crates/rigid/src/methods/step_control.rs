@@ -14,31 +14,53 @@ const STIFF_TURN: f64 = 0.02;
 /// Runs of fewer steps than this are completed even if stiff.
 const MANY: f64 = 1e5;
 
+/// The error of a step grows as its eighth power.
+pub(crate) const ROOT: f64 = 0.125;
+
+/// The first step turns a body by this angle, in rad, times the eighth root of the tolerance.
+const FIRST_TURN: f64 = 2.0;
+
 /// Chooses the lengths of adaptive steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepController {
+    /// The largest error estimate of an accepted step.
+    tolerance: f64,
     /// The length without stops, in s.
     next: f64,
     /// The length of the current step, in s.
     cut: f64,
     /// The longest allowed, in s.
     longest: f64,
+    /// The stop ahead.
+    stop: f64,
+    /// The longest steps on the way to it and to stops after it, as a fraction of the way.
+    fractions: [f64; 2],
+    /// The longest step to the stop, in s.
+    most: f64,
     /// Whether the previous step was rejected.
     refused: bool,
 }
 
 impl StepController {
-    /// With a guess of the first step and the longest allowed, in s.
-    pub fn new(first: f64, longest: f64) -> StepController {
+    /// For a tolerance, the fastest rate of the laws and the body in rad/s, and the longest step in s. Steps to the first
+    /// stop are at most the first of these `fractions` of the way, and those from stop to stop the second.
+    pub fn new(tolerance: f64, rate: f64, longest: f64, fractions: [f64; 2]) -> StepController {
+        let first = FIRST_TURN * tolerance.powf(ROOT) / rate.max(f64::MIN_POSITIVE);
         let first = first.min(longest);
-        StepController { next: first, cut: first, longest, refused: false }
+        let (stop, most) = (f64::NAN, longest);
+        StepController { tolerance, next: first, cut: first, longest, stop, fractions, most, refused: false }
     }
 
     /// Where a step ends on the way from one time to another.
     pub fn end(&mut self, from: f64, time: f64) -> Result<f64, SimulateError> {
         let rest = (time - from).abs();
+        if self.stop != time {
+            let [fraction, later] = self.fractions;
+            (self.stop, self.most, self.fractions) = (time, fraction * rest, [later; 2]);
+        }
+        let next = self.next.min(self.most);
         // Two steps of half the way avoid a tiny last one.
-        let cut = if self.next >= rest { rest } else { self.next.min(0.5 * rest.max(self.next)) };
+        let cut = if next >= rest { rest } else { next.min(0.5 * rest.max(next)) };
         let to = if cut >= rest { time } else { from + (time - from).signum() * cut };
         // Output times may be adjacent floats.
         if to == from || self.refused && cut < 1e-14 * from.abs() {
@@ -48,17 +70,17 @@ impl StepController {
         Ok(to)
     }
 
-    /// Whether a step of length h is accepted, by its error relative to the tolerance. The next one is the longest whose
-    /// error should be 0.9⁸ of the tolerance.
-    pub fn judge(&mut self, h: f64, error: f64) -> bool {
-        let h = h.abs();
+    /// Whether a step of length h is accepted, by the estimate of its error. The next one is the longest whose error should
+    /// be 0.9⁸ of the tolerance.
+    pub fn judge(&mut self, h: f64, estimate: f64) -> bool {
+        let (h, error) = (h.abs(), estimate / self.tolerance);
         // NaN too.
         if error.is_nan() || error > 1.0 {
-            self.next = h * if error.is_finite() { (0.9 * error.powf(-0.125)).max(0.2) } else { 0.2 };
+            self.next = h * if error.is_finite() { (0.9 * error.powf(-ROOT)).max(0.2) } else { 0.2 };
             self.refused = true;
             return false;
         }
-        let growth = (0.9 * error.powf(-0.125)).clamp(0.3, if self.refused { 1.0 } else { 6.0 });
+        let growth = (0.9 * error.powf(-ROOT)).clamp(0.3, if self.refused { 1.0 } else { 6.0 });
         // A step cut short by a stop says little about the possible length.
         self.next = if self.cut < self.next { self.next.max(h * growth) } else { h * growth };
         self.next = self.next.min(self.longest);

@@ -4,9 +4,10 @@ use super::center::CenterMotion;
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::exact::damped::DampedTop;
-use crate::exact::free::FreeMotion;
-use crate::exact::lagrange::LagrangeTop;
+use crate::exact::free::FreeBody;
+use crate::exact::lagrange::HeavyTop;
 use crate::exact::larmor::LarmorSphere;
+use crate::exact::many::Tile;
 use crate::exact::motion::ExactMotion;
 use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
@@ -17,6 +18,7 @@ use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Largest turn in rad of a step whose error is rounding.
@@ -29,7 +31,7 @@ pub(crate) struct ClosedForm {
     /// In principal axes.
     rotation: Arc<dyn ExactMotion>,
     center: CenterMotion,
-    since: ElapsedTime,
+    since: ElapsedTime<'static>,
 }
 
 impl ClosedForm {
@@ -41,8 +43,19 @@ impl ClosedForm {
         torques: &[Torque],
         center: CenterMotion,
     ) -> Option<ClosedForm> {
-        let rotation = rotation(body.moments, rotor, omega, torques)?;
-        Some(ClosedForm { body, rotation, center, since: ElapsedTime::new(center.time, body, torques) })
+        let rotation = ExactBody::of(body.moments, rotor, omega, torques)?.motion()?;
+        Some(ClosedForm::with(body, rotation, torques, center))
+    }
+
+    /// With the rotation in principal axes.
+    pub fn with(
+        body: Gyrostat,
+        rotation: Arc<dyn ExactMotion>,
+        torques: &[Torque],
+        center: CenterMotion,
+    ) -> ClosedForm {
+        let since = ElapsedTime::new(center.time, body, torques.to_vec());
+        ClosedForm { body, rotation, center, since }
     }
 
     /// How far from the start, in s, the phases are known backwards and forwards.
@@ -60,9 +73,8 @@ impl ClosedForm {
     /// The point of the motion at a time in s.
     pub fn at(&self, time: f64) -> Carried {
         // None of the laws depends on time.
-        let DoubleDouble { hi: elapsed, lo: rest } = self.since.elapsed(time);
-        let (rotor, omega) = self.rotation.at(elapsed);
-        self.later(rotor, omega, time, rest)
+        let (rotor, omega) = self.rotation.at(self.since.elapsed(time).hi);
+        self.point(rotor, omega, time)
     }
 
     /// The points of the motion at times in s, with the times in lanes: the same bits as [`ClosedForm::at`].
@@ -78,65 +90,104 @@ impl ClosedForm {
             let rows = (rotors.as_flattened_mut(), omegas.as_flattened_mut());
             self.rotation.at_many(Threads::ONE, &elapsed, rows.0, rows.1);
             points.extend(times.iter().zip(rotors).zip(omegas).map(|((&time, rotor), omega)| {
-                let rest = self.since.elapsed(time).lo;
-                self.later(Rotor::from_unit_components(*rotor), Bivector(*omega), time, rest)
+                self.point(Rotor::from_unit_components(*rotor), Bivector(*omega), time)
             }));
         }
         points
     }
 
-    /// The point at a time, from the state at the rounded time since the start and the remainder.
-    fn later(&self, rotor: Rotor, omega: Bivector, time: f64, rest: f64) -> Carried {
+    /// The point at a time, from the state at the rounded time since the start.
+    fn point(&self, rotor: Rotor, omega: Bivector, time: f64) -> Carried {
         let phase = Phase { rotor, momentum: self.body.momentum(omega), time };
-        Carried::new(self.since.later(phase, rest), self.center.at(time))
+        Carried::new(self.since.at(phase), self.center.at(time))
     }
 }
 
-/// The closed form of the rotation under these laws, if there is one.
-fn rotation(
-    moments: [f64; 3],
-    rotor: Rotor,
-    omega: Bivector,
-    torques: &[Torque],
-) -> Option<Arc<dyn ExactMotion>> {
-    let Some(first) = torques.first() else {
-        return Some(Arc::new(FreeMotion::in_principal_axes(moments, rotor, omega)));
-    };
-    let inertia = Inertia::from_principal_moments(moments).ok()?;
-    // Laws of one kind add up.
-    match first {
-        Torque::Heavy(_) => {
-            let add = |sum, t: &Torque| if let Torque::Heavy(c) = t { Some(sum + *c) } else { None };
-            let c = torques.iter().try_fold(Vector::default(), add)?;
-            Some(Arc::new(LagrangeTop::new(&inertia, rotor, omega, c).ok()?))
+/// A body whose rotation has a closed form, before it is set up; everything in principal axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ExactBody {
+    Free(FreeBody),
+    Heavy(HeavyTop),
+    /// With the g of its torque.
+    Damped(FreeBody, f64),
+    Larmor(LarmorSphere),
+}
+
+impl ExactBody {
+    /// A body under these laws, if its rotation has a closed form.
+    pub fn of(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]) -> Option<ExactBody> {
+        let Some(first) = torques.first() else {
+            return Some(ExactBody::Free(FreeBody::in_frame(Rotor::IDENTITY, moments, rotor, omega)));
+        };
+        let inertia = Inertia::from_principal_moments(moments).ok()?;
+        // Laws of one kind add up.
+        match first {
+            Torque::Heavy(_) => {
+                let add = |sum, t: &Torque| if let Torque::Heavy(c) = t { Some(sum + *c) } else { None };
+                let c = torques.iter().try_fold(Vector::default(), add)?;
+                Some(ExactBody::Heavy(HeavyTop::new(&inertia, rotor, omega, c).ok()?))
+            }
+            Torque::Damping(_) => {
+                let each = torques.iter().map(|t| if let Torque::Damping(g) = t { Some(*g) } else { None });
+                let damping = each.sum::<Option<f64>>()?;
+                Some(ExactBody::Damped(DampedTop::body(&inertia, rotor, omega, damping).ok()?, damping))
+            }
+            Torque::Larmor(_) => {
+                let add = |sum, t: &Torque| if let Torque::Larmor(b) = t { Some(sum + *b) } else { None };
+                let b = torques.iter().try_fold(Vector::default(), add)?;
+                Some(ExactBody::Larmor(LarmorSphere::new(&inertia, rotor, omega, b).ok()?))
+            }
+            _ => None,
         }
-        Torque::Damping(_) => {
-            let each = torques.iter().map(|t| if let Torque::Damping(g) = t { Some(*g) } else { None });
-            let damping = each.sum::<Option<f64>>()?;
-            Some(Arc::new(DampedTop::new(&inertia, rotor, omega, damping).ok()?))
+    }
+
+    /// Its rotation, unless it is not resolved.
+    pub fn motion(&self) -> Option<Arc<dyn ExactMotion>> {
+        Some(match self {
+            ExactBody::Free(body) => Arc::new(body.motion()),
+            ExactBody::Heavy(top) => Arc::new(top.motion().ok()?),
+            ExactBody::Damped(body, damping) => Arc::new(DampedTop::of(body, *damping).ok()?),
+            ExactBody::Larmor(motion) => Arc::new(*motion),
+        })
+    }
+
+    /// The rotations of bodies under laws of one kind, set up in lanes; none if there are no lanes for this kind, or if a
+    /// rotation neglects something or is not resolved.
+    pub fn tile(bodies: &[ExactBody]) -> Option<Tile> {
+        let other = || SimulateError::Unresolved.to_string();
+        match bodies.first()? {
+            ExactBody::Heavy(_) => {
+                let tops = bodies.iter().map(|body| match body {
+                    ExactBody::Heavy(top) if top.is_exact() => Ok(*top),
+                    _ => Err(other()),
+                });
+                Tile::lagrange(tops).ok()
+            }
+            ExactBody::Damped(..) => {
+                let bodies = bodies.iter().map(|body| match body {
+                    ExactBody::Damped(body, damping) => Ok((*body, *damping)),
+                    _ => Err(other()),
+                });
+                Tile::damped(bodies).ok()
+            }
+            _ => None,
         }
-        Torque::Larmor(_) => {
-            let add = |sum, t: &Torque| if let Torque::Larmor(b) = t { Some(sum + *b) } else { None };
-            let b = torques.iter().try_fold(Vector::default(), add)?;
-            Some(Arc::new(LarmorSphere::new(&inertia, rotor, omega, b).ok()?))
-        }
-        _ => None,
     }
 }
 
 /// The time since the start of a motion in closed form, whose laws do not depend on time. The difference of two times is
 /// rounded; a step covers the remainder.
 #[derive(Clone, Debug)]
-pub(crate) struct ElapsedTime {
+pub(crate) struct ElapsedTime<'a> {
     start: f64,
     body: Gyrostat,
-    stepper: RungeKutta,
+    torques: Cow<'a, [Torque]>,
 }
 
-impl ElapsedTime {
+impl<'a> ElapsedTime<'a> {
     /// In principal axes; the start in s.
-    pub fn new(start: f64, body: Gyrostat, torques: &[Torque]) -> ElapsedTime {
-        ElapsedTime { start, body, stepper: RungeKutta::new(body, torques.to_vec(), None) }
+    pub fn new(start: f64, body: Gyrostat, torques: impl Into<Cow<'a, [Torque]>>) -> ElapsedTime<'a> {
+        ElapsedTime { start, body, torques: torques.into() }
     }
 
     /// The rounded time since the start, and the remainder.
@@ -144,16 +195,18 @@ impl ElapsedTime {
         DoubleDouble::two_sum(time, -self.start)
     }
 
-    /// The point a remainder of time later, with the time unchanged.
-    pub fn later(&self, phase: Phase, rest: f64) -> Phase {
+    /// The point at its time, from the state at the rounded time since the start.
+    pub fn at(&self, phase: Phase) -> Phase {
+        let rest = self.elapsed(phase.time).lo;
         if rest == 0.0 {
             return phase;
         }
+        let stepper = RungeKutta::new(self.body, self.torques.to_vec(), None);
         let turn = self.body.omega(phase.momentum).norm() * rest.abs();
         let count = (turn / LONGEST_TURN).ceil().max(1.0);
         let mut at = Carried::new(phase, Center::default());
         for _ in 0..count as u64 {
-            at = self.stepper.step(&at, rest / count, 0.0).map_or(at, |(next, _)| next);
+            at = stepper.step(&at, rest / count, 0.0).map_or(at, |(next, _)| next);
         }
         Phase { time: phase.time, ..at.phase }
     }

@@ -261,7 +261,7 @@ impl Problem {
             }
             (_, None) => {
                 let accuracy = Accuracy::new(method.order(), options.rtol);
-                let first = if method.adapts() { accuracy.tolerance() } else { long(method.first_turn()) };
+                let first = if method.adapts() { accuracy.first_steps() } else { long(method.first_turn()) };
                 let follow = |from: &Carried, time: f64| {
                     let mut to = engine.step(from, time - from.phase.time, 0.0).map_or(*from, |(to, _)| to);
                     center.iter().for_each(|center| to.center = center.at(time));
@@ -348,13 +348,12 @@ impl Problem {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Sweep, SimulateError> {
         let monitor = DriftMonitor::new(self.body, &self.torques, self.start().phase);
-        let first = 0.1 / self.rate().max(f64::MIN_POSITIVE);
         let integrator = Integrator {
             body: self.body,
             engine,
             monitor,
             rule,
-            first,
+            rate: self.rate(),
             least_rate: bounds.least_rate.max(known_rate),
             noise,
             bounds,

@@ -6,7 +6,7 @@
 //! amplifies rounding beyond the tolerance is rejected then, before further sweeps.
 
 use super::noise::{FIRST_SIZE, LINEAR, Magnification, Noise};
-use super::sweep::{StepRule, Sweep};
+use super::sweep::{LEAST_TOLERANCE, StepRule, Sweep};
 use crate::error::SimulateError;
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
@@ -41,11 +41,14 @@ const LEAP: f64 = 6.0;
 /// A difference that falls faster than this multiple of the order is small by chance.
 const FASTEST_FALL: f64 = 1.25;
 
+/// The errors of two sweeps may agree by chance where the method does not show its order: under a law that is not smooth,
+/// and in fewer steps than this. Then the sum of the error estimates of all steps counts too, up to this part of the goal:
+/// without this limit long runs would need further sweeps, since the errors of their steps hardly add up.
+const FEW_STEPS: u64 = 16;
+const COUNTED: f64 = 0.1;
+
 /// The order of any method where a law has kinks.
 const ORDER_AT_KINKS: f64 = 2.0;
-
-/// Below this, the error estimate of a step is rounding.
-pub(crate) const LEAST_TOLERANCE: f64 = 1e-16;
 
 /// Maximum number of sweeps with different steps.
 const MOST_SWEEPS: u32 = 30;
@@ -54,13 +57,11 @@ const MOST_SWEEPS: u32 = 30;
 const FEW_SWEEPS: u32 = 5;
 
 impl StepRule {
-    /// Steps shorter by a factor. A local error scales as the eighth power of the step.
+    /// Steps shorter by a factor.
     fn refined(self, by: f64) -> StepRule {
         match self {
             StepRule::Step(steps) => StepRule::Step(steps.refined(by)),
-            StepRule::Tolerance(tolerance) => {
-                StepRule::Tolerance((tolerance / by.powi(8)).max(LEAST_TOLERANCE))
-            }
+            StepRule::Tolerance(steps) => StepRule::Tolerance(steps.refined(by)),
         }
     }
 }
@@ -81,9 +82,9 @@ impl Accuracy {
         Accuracy { order, goal: rtol.unwrap_or(DEFAULT_RTOL), acceptable: rtol.unwrap_or(WORST_BY_DEFAULT) }
     }
 
-    /// The first tolerance of adaptive steps, whose errors add up.
-    pub fn tolerance(&self) -> StepRule {
-        StepRule::Tolerance((0.1 * self.goal).max(1e3 * LEAST_TOLERANCE))
+    /// Adaptive steps of the first sweep, whose errors add up.
+    pub fn first_steps(&self) -> StepRule {
+        StepRule::adapted((0.1 * self.goal).max(1e3 * LEAST_TOLERANCE))
     }
 
     /// The error to reach given this rounding: by default, at least twice the rounding.
@@ -320,17 +321,20 @@ impl Convergence {
 
     /// The truncation of the finer of two sweeps, and its refinement factor if its steps are shorter.
     fn truncation(&self, difference: f64, coarse: &Sweep, fine: &Sweep) -> (f64, Option<f64>) {
-        let mut shorter = self.by;
-        if let StepRule::Tolerance(tolerance) = self.rule {
+        let (mut shorter, mut least_truncation) = (self.by, 0.0);
+        if let StepRule::Tolerance(steps) = self.rule {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
+            let sum = fine.errors * self.magnification.map_or(1.0, |known| known.of_sums());
+            // Steps cannot meet a smaller tolerance; the difference is used.
+            let sum = if steps.tolerance == LEAST_TOLERANCE { 0.0 } else { sum };
             if shorter < COMPARABLE {
-                let sum = fine.errors * self.magnification.map_or(1.0, |known| known.of_sums());
-                // Steps cannot meet a smaller tolerance; the difference is used.
-                let sum = if tolerance == LEAST_TOLERANCE { 0.0 } else { sum };
                 return (difference.max(sum), None);
             }
+            if !self.scales.is_smooth || fine.steps < FEW_STEPS {
+                least_truncation = sum.min(COUNTED * self.accuracy.goal);
+            }
             if !self.scales.is_smooth {
-                return (difference, Some(shorter));
+                return (difference.max(least_truncation), Some(shorter));
             }
         }
         let order = f64::from(self.accuracy.order);
@@ -345,7 +349,8 @@ impl Convergence {
         let exponent = last.map_or(ASSUMED * order, |(before, by)| {
             TRUSTED * ((before / difference).ln() / by.ln()).clamp(0.0, order)
         });
-        (difference / (shorter.powf(exponent) - 1.0).max(least(order)), Some(shorter))
+        let truncation = difference / (shorter.powf(exponent) - 1.0).max(least(order));
+        (truncation.max(least_truncation), Some(shorter))
     }
 
     fn converged(&self, sweep: Sweep, error: f64) -> Converged {

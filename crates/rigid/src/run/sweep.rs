@@ -10,7 +10,7 @@ use super::noise::Noise;
 use crate::error::SimulateError;
 use crate::laws::conserved::Conserved;
 use crate::laws::event::{Event, Occurrence};
-use crate::methods::step_control::{StepController, next_stop};
+use crate::methods::step_control::{ROOT, StepController, next_stop};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Gyrostat;
@@ -37,8 +37,35 @@ pub struct Progress {
 pub(crate) enum StepRule {
     /// Equal steps of at most this length in s between stops.
     Step(EqualSteps),
-    /// Steps with an estimated error of at most this.
-    Tolerance(f64),
+    /// Steps with an estimated error of at most a tolerance.
+    Tolerance(ToleranceSteps),
+}
+
+/// Steps with an estimated error of at most a tolerance, with that of the first sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ToleranceSteps {
+    pub tolerance: f64,
+    first: f64,
+}
+
+/// Below this, the error estimate of a step is rounding.
+pub(crate) const LEAST_TOLERANCE: f64 = 1e-16;
+
+impl ToleranceSteps {
+    /// Steps shorter by a factor.
+    pub fn refined(self, by: f64) -> ToleranceSteps {
+        ToleranceSteps { tolerance: (self.tolerance / by.powi(8)).max(LEAST_TOLERANCE), ..self }
+    }
+
+    /// The longest steps on the way to the first stop and from stop to stop, as fractions of the way.
+    ///
+    /// All steps shorten with the tolerance, also those that it does not limit: the first, those to the first stop, and
+    /// those between the stops of a law that is not smooth. Two sweeps with the same steps there would also share their
+    /// errors, which their difference would not show.
+    fn fractions(self, is_smooth: bool) -> [f64; 2] {
+        let shorter = (self.tolerance / self.first).powf(ROOT);
+        [shorter, if is_smooth { 1.0 } else { shorter }]
+    }
 }
 
 /// Equal steps, with those of the first sweep.
@@ -70,6 +97,20 @@ impl EqualSteps {
 }
 
 impl StepRule {
+    /// The controller of a sweep with adaptive steps, with the fastest rate of the laws and the body in rad/s.
+    pub fn controller(self, rate: f64, bounds: &StepBounds) -> StepController {
+        let (tolerance, fractions) = match self {
+            StepRule::Step(_) => (f64::INFINITY, [1.0; 2]),
+            StepRule::Tolerance(steps) => (steps.tolerance, steps.fractions(bounds.is_smooth)),
+        };
+        StepController::new(tolerance, rate, bounds.longest, fractions)
+    }
+
+    /// Steps with an estimated error of at most this, in the first sweep.
+    pub fn adapted(tolerance: f64) -> StepRule {
+        StepRule::Tolerance(ToleranceSteps { tolerance, first: tolerance })
+    }
+
     /// Equal steps of at most this length in s.
     pub fn equal(step: f64) -> StepRule {
         StepRule::Step(EqualSteps { step, first: step, parts: 1.0 })
@@ -112,8 +153,8 @@ pub(crate) struct Integrator<'a> {
     pub engine: &'a Engine,
     pub monitor: DriftMonitor<'a>,
     pub rule: StepRule,
-    /// A guess of the first step, in s.
-    pub first: f64,
+    /// The fastest rate of the laws and the body at the start, in rad/s.
+    pub rate: f64,
     /// Lower bound of the scale of angular velocities, in rad/s.
     pub least_rate: f64,
     /// Noise added to the points after each step.
@@ -133,6 +174,7 @@ pub(crate) struct Integrator<'a> {
 /// The state of integration in one direction of time.
 struct Cursor {
     at: Carried,
+    /// Of adaptive steps.
     controller: StepController,
     /// The largest angular velocity so far, in rad/s.
     fastest: f64,
@@ -186,7 +228,7 @@ impl Integrator<'_> {
         let values = self.values(&start)?;
         let mut cursor = Cursor {
             at: start,
-            controller: StepController::new(self.first, self.bounds.longest),
+            controller: self.rule.controller(self.rate, self.bounds),
             fastest,
             values,
             ended: false,
@@ -217,7 +259,7 @@ impl Integrator<'_> {
             let to = next_stop(&self.bounds.breaks, cursor.at.phase.time, time);
             match self.rule {
                 StepRule::Step(steps) => self.equal_steps(cursor, to, steps, sweep, done)?,
-                StepRule::Tolerance(tolerance) => self.adapted_steps(cursor, to, tolerance, sweep, done)?,
+                StepRule::Tolerance(_) => self.adapted_steps(cursor, to, sweep, done)?,
             }
             if to == time || cursor.ended {
                 return Ok(());
@@ -256,7 +298,6 @@ impl Integrator<'_> {
         &mut self,
         cursor: &mut Cursor,
         time: f64,
-        tolerance: f64,
         sweep: &mut Sweep,
         done: Done,
     ) -> Result<(), SimulateError> {
@@ -264,7 +305,7 @@ impl Integrator<'_> {
             let from = cursor.at.phase.time;
             let to = cursor.controller.end(from, time)?;
             let (next, error) = self.step(&cursor.at, to, cursor.fastest, sweep)?;
-            if cursor.controller.judge(to - from, error / tolerance) {
+            if cursor.controller.judge(to - from, error) {
                 sweep.longest = sweep.longest.max((to - from).abs());
                 sweep.errors += error;
                 self.arrive(cursor, next, sweep, done)?;

@@ -69,6 +69,13 @@ impl HeavyTop {
     }
 }
 
+impl HeavyTop {
+    /// Whether the motion neglects nothing: [`super::LagrangeTop::neglected`] is 0.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.axes.apart == 0.0
+    }
+}
+
 /// The top's own axes: the third is that of symmetry, in the direction of the centre of mass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axes {

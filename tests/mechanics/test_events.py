@@ -308,3 +308,24 @@ def test_directions_select_crossings():
     assert len(rising) > 2
     assert np.all(rising.rising)
     assert not np.any(falling.rising)
+
+
+@pytest.mark.parametrize("rate", [3, 30, 100, 300])
+def test_formulas_of_time_that_oscillate_faster_than_the_body_lose_no_crossing(rate):
+    ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    start = ph.State(ph.Rotor.identity(), [0, 0, 0.5])
+    waves = ph.event.formula("sin(w t)", w=rate)
+    found = ph.simulate(ball, start, [10.0], events=waves).events[0]
+    expected = np.arange(1, int(10 * rate / np.pi) + 1) * np.pi / rate
+    np.testing.assert_allclose(found.time, expected, rtol=1e-14, atol=1e-14)
+    assert not found.rising[::2].any()
+    assert found.rising[1::2].all()
+
+
+def test_functions_of_time_that_oscillate_lose_no_crossing():
+    ball = ph.Inertia.from_principal_moments(1, 1, 1)
+    start = ph.State(ph.Rotor.identity(), [0, 0, 0.5])
+    waves = ph.event.function(lambda t, *state: np.cos(40 * t))
+    found = ph.simulate(ball, start, [5.0], ph.torque.damping(0.1), events=waves).events[0]
+    np.testing.assert_allclose(found.time, (np.arange(len(found.time)) + 0.5) * np.pi / 40, rtol=1e-13)
+    assert len(found.time) == 64

@@ -20,6 +20,9 @@ pub(crate) struct StepBounds {
     /// The rate in rad/s of the swing of the largest moment under the torques, a lower bound of the scale of angular
     /// velocities: an error of the attitude causes an error of the rate that is larger by this factor.
     pub least_rate: f64,
+    /// The longest piece of a step in which events are sought at its ends and its middle, in s: half of the shortest
+    /// oscillation of their quantities with time.
+    pub piece: f64,
 }
 
 /// The earliest and the latest of times and of the start.
@@ -30,7 +33,7 @@ pub(crate) fn span(times: &[f64], start: f64) -> [f64; 2] {
 impl Default for StepBounds {
     fn default() -> StepBounds {
         let limit = Limit { steps: MAX_STEPS, reports_stiffness: false };
-        StepBounds { breaks: Vec::new(), is_smooth: true, longest: f64::INFINITY, limit, least_rate: 0.0 }
+        StepBounds { breaks: Vec::new(), is_smooth: true, longest: f64::INFINITY, limit, least_rate: 0.0, piece: f64::INFINITY }
     }
 }
 
@@ -90,6 +93,7 @@ impl StepBounds {
             longest: options.max_step.unwrap_or(f64::INFINITY),
             limit: Limit { steps: options.most_steps(), reports_stiffness: options.may_change_method() },
             least_rate: (torque / largest).sqrt().max(1e-4 * wheels / smallest),
+            piece: f64::INFINITY,
         }
     }
 }

@@ -27,6 +27,7 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::{check_horizons, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
+use crate::state::point::Point;
 use center::{CenterMotion, center_law};
 use certificate::{Certificate, DriftMonitor, off_unit};
 use closed_form::{ClosedForm, check_kept};
@@ -192,6 +193,12 @@ impl Problem {
                 let [first, last] = span(times, self.time);
                 check_pieces(&center.law, (self.time - first).max(last - self.time), &bounds)?;
             }
+        }
+        let carried = self.start();
+        let point = Point { body: &self.body, mass: self.mass, phase: &carried.phase, center: &carried.center };
+        for event in &options.events {
+            let quantity = event.clone().in_axes(self.frame).quantity;
+            bounds.piece = bounds.piece.min(0.5 * quantity.oscillates_within(&point, span(times, self.time)));
         }
         let limit = bounds.limit;
         match self.run(times, &options, bounds.clone(), progress) {

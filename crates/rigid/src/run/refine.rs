@@ -41,11 +41,13 @@ const LEAP: f64 = 6.0;
 /// A difference that falls faster than this multiple of the order is small by chance.
 const FASTEST_FALL: f64 = 1.25;
 
-/// The errors of two sweeps may agree by chance where the method does not show its order: under a law that is not smooth,
-/// and in fewer steps than this. Then the sum of the error estimates of all steps counts too, up to this part of the goal:
-/// without this limit long runs would need further sweeps, since the errors of their steps hardly add up.
+/// The errors of two sweeps may agree by chance. So the sum of the error estimates of all steps counts too, up to this part
+/// of the goal: without this limit long runs would need further sweeps, since the errors of their steps hardly add up.
+const COUNTED: f64 = 1e-3;
+
+/// The same where the method does not show its order: under a law that is not smooth, and in fewer steps than this.
+const COUNTED_WITHOUT_ORDER: f64 = 0.1;
 const FEW_STEPS: u64 = 16;
-const COUNTED: f64 = 0.1;
 
 /// The order of any method where a law has kinks.
 const ORDER_AT_KINKS: f64 = 2.0;
@@ -330,9 +332,9 @@ impl Convergence {
             if shorter < COMPARABLE {
                 return (difference.max(sum), None);
             }
-            if !self.scales.is_smooth || fine.steps < FEW_STEPS {
-                least_truncation = sum.min(COUNTED * self.accuracy.goal);
-            }
+            let shows_order = self.scales.is_smooth && fine.steps >= FEW_STEPS;
+            let counted = if shows_order { COUNTED } else { COUNTED_WITHOUT_ORDER };
+            least_truncation = sum.min(counted * self.accuracy.goal);
             if !self.scales.is_smooth {
                 return (difference.max(least_truncation), Some(shorter));
             }

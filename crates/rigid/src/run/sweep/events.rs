@@ -46,7 +46,7 @@ impl Integrator<'_> {
         let whole = self.piece(cursor, &next);
         let mut before = (start.phase.time, std::mem::take(&mut cursor.values));
         while before.0 != end {
-            let length = match self.center_piece(before.0) {
+            let length = match self.longest_piece(before.0) {
                 piece if piece < whole => {
                     sweep.pieces += 1;
                     self.count_pieces(sweep.pieces, piece, || done(before.0))?;
@@ -100,15 +100,16 @@ impl Integrator<'_> {
         h / (turn.max(bend) / (2.0 * EVENT_TURN)).ceil().clamp(1.0, 1e4)
     }
 
-    /// The longest piece at a time that resolves a motion of the centre of mass in closed form, if events depend on it. Three
-    /// values resolve a parabola.
-    fn center_piece(&self, time: f64) -> f64 {
-        match &self.center {
+    /// The longest piece at a time that resolves quantities that change with time by themselves, and a motion of the centre of
+    /// mass in closed form, if events depend on it. Three values resolve a parabola.
+    fn longest_piece(&self, time: f64) -> f64 {
+        let most = match &self.center {
             Some(center) if self.events.iter().any(|event| event.quantity.reads_center()) => {
                 2.0 * EVENT_TURN / center.law.rate_after(time - center.time)
             }
             _ => f64::INFINITY,
-        }
+        };
+        most.min(self.bounds.piece)
     }
 
     /// An error if there are too many pieces, the last one of this length in s, or if the run is interrupted.

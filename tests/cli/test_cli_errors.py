@@ -79,6 +79,7 @@ def test_bad_scenes_have_a_place(name, command, tmp_path):
     ("name", "content", "parts"),
     [
         ("latin.toml", b'title = "caf\xe9"\n', ["latin.toml:1:13", "UTF-8"]),
+        ("utf16.toml", "[run]\n".encode("utf-16-le"), ["utf16.toml:1:2: error: byte 1 is zero"]),
         ("empty.toml", b"", ["empty.toml: error: the file is empty", "[body], [initial] and [run]"]),
         ("noise.toml", bytes(range(256)), ["noise.toml:2:118: error: not UTF-8"]),
         ("huge.toml", b"#" * 10_000_001, ["huge.toml: error: larger than 10 MB"]),

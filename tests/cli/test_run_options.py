@@ -203,7 +203,7 @@ def test_errors_in_standard_input_have_a_place(command, tmp_path):
     done = polhode(*command.split(), "-", input=SCENE.replace("duration", "durration"), cwd=tmp_path)
     assert done.returncode == 3
     assert done.stdout == ""
-    assert "\n<stdin>:7:1: error: unknown field `durration`" in done.stderr
+    assert "<stdin>:7:1: error: unknown field `durration`" in done.stderr
     assert str(Path(tempfile.gettempdir())) not in done.stderr
 
 

@@ -190,6 +190,11 @@ impl Scene {
 
     /// The same with another source of tables, as in a browser, which has no files.
     pub fn parse_with(text: &str, path: &Path, tables: TableSource<'_>) -> Result<Scene, Vec<Diagnostic>> {
+        if let Some(at) = text.find('\0') {
+            // As in UTF-16 without a mark.
+            let message = format!("byte {at} is zero, not text; save the file as UTF-8");
+            return Err(vec![Diagnostic::at(path, text, at..at, message)]);
+        }
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let diagnose = |span: Range<usize>, message: &str| Diagnostic::at(path, text, span, message);
         if text.trim().is_empty() {
@@ -263,7 +268,7 @@ fn read_scene(
     });
     for (name, title) in [("body", "[body]"), ("initial", "[initial]")] {
         if root.get(name).is_none() {
-            reader.report(root.span.clone(), format!("missing table {title}"));
+            reader.missing(root, &[name], format!("missing table {title}"));
         }
     }
     let found = parts::read(reader, root);
@@ -302,7 +307,7 @@ fn read_scene(
 /// A required table.
 fn required<'t>(reader: &mut Reader, root: &Table<'t>, name: &str, title: &'static str) -> Option<Table<'t>> {
     let Some(value) = root.get(name) else {
-        reader.report(root.span.clone(), format!("missing table {title}"));
+        reader.missing(root, &[name], format!("missing table {title}"));
         return None;
     };
     reader.table(value, title)

@@ -51,6 +51,8 @@ impl Form {
 pub struct Reader {
     /// The errors so far, with their bytes in the file.
     pub problems: Vec<(Range<usize>, String)>,
+    /// The fields that unknown ones are suggested to be, with the bytes of their tables.
+    suggested: Vec<(Range<usize>, String)>,
     /// The names that formulas may use.
     pub formulas: Formulas,
 }
@@ -96,10 +98,18 @@ impl Reader {
         read: impl FnOnce(&mut Reader, &'t Value<'t>) -> Option<T>,
     ) -> Option<T> {
         let Some(value) = table.get(name) else {
-            self.report(table.span.clone(), format!("missing field `{name}` in {}", table.title));
+            self.missing(table, &[name], format!("missing field `{name}` in {}", table.title));
             return None;
         };
         read(self, value)
+    }
+
+    /// Reports at the table that it has none of these fields, unless an unknown field is suggested to be one of them.
+    pub fn missing(&mut self, table: &Table, names: &[&str], message: impl Into<String>) {
+        let mut suggested = self.suggested.iter().filter(|(span, _)| *span == table.span);
+        if !suggested.any(|(_, name)| names.contains(&name.as_str())) {
+            self.report(table.span.clone(), message);
+        }
     }
 
     /// Reads an optional field: `Some(None)` without it, `None` if it is wrong.
@@ -115,7 +125,7 @@ impl Reader {
         }
     }
 
-    /// Reports every unknown field of the table.
+    /// Reports every unknown field of the table. Call it before the fields are read: see [`Reader::missing`].
     pub fn only(&mut self, table: &Table, known: &[&str]) {
         for (key, value) in table.fields.iter() {
             let name: &str = key.get_ref();
@@ -127,7 +137,11 @@ impl Reader {
                 Some((table, _)) if known.contains(&table) => {
                     format!("quotes make this a single name; write {name} without quotes")
                 }
-                _ => unknown(what, name, known),
+                _ => {
+                    let near = suggestion(name, known);
+                    self.suggested.extend(near.map(|near| (table.span.clone(), near.to_owned())));
+                    unknown(what, name, known)
+                }
             };
             self.report(key.span(), message);
         }
@@ -149,8 +163,8 @@ impl Reader {
     pub fn exactly_one(&mut self, table: &Table, names: &[&'static str]) -> Option<&'static str> {
         let given = self.at_most_one(table, names);
         if given.is_none() {
-            let names = alternatives(names);
-            self.report(table.span.clone(), format!("missing field in {}, expected {names}", table.title));
+            let message = format!("missing field in {}, expected {}", table.title, alternatives(names));
+            self.missing(table, names, message);
         }
         given
     }
@@ -351,19 +365,22 @@ const OTHER_WORDS: [(&str, &str); 17] = [
     ("cuboid", "box"),
 ];
 
-/// `` unknown field `x` `` and the known name that is probably meant. Laws are known by their labels too.
+/// `` unknown field `x` `` and the known name that is probably meant.
 fn unknown(what: &str, name: &str, known: &[&str]) -> String {
+    let expected = suggestion(name, known).map_or_else(|| alternatives(known), |near| format!("`{near}`"));
+    format!("unknown {what} {}, expected {expected}", quote(name))
+}
+
+/// The known name that is probably meant. Laws are known by their labels too.
+fn suggestion<'k>(name: &str, known: &[&'k str]) -> Option<&'k str> {
     let word = name.to_lowercase();
     let labels =
         TORQUES.iter().map(|law| (law.label, law.name)).chain(FORCES.iter().map(|law| (law.label, law.name)));
     let labelled = labels.map(|(label, law)| (label.to_lowercase().replace(' ', "_"), law));
-    let mut words = OTHER_WORDS.iter().map(|&(other, ours)| (other.to_owned(), ours)).chain(labelled);
-    let same = words.find(|(other, ours)| *other == word && known.contains(ours));
-    let expected = match same.map(|(_, ours)| ours).or_else(|| nearest(name, known.iter().copied())) {
-        Some(near) => format!("`{near}`"),
-        None => alternatives(known),
-    };
-    format!("unknown {what} {}, expected {expected}", quote(name))
+    let words = OTHER_WORDS.iter().map(|&(other, ours)| (other.to_owned(), ours)).chain(labelled);
+    let mut same = words.filter(|(other, _)| *other == word).map(|(_, ours)| ours);
+    let same = same.find_map(|ours| known.iter().copied().find(|name| *name == ours));
+    same.or_else(|| nearest(name, known.iter().copied()))
 }
 
 /// The path that `name` probably means, of its own or by the end of the path: `rate` of `initial.spin.rate`.

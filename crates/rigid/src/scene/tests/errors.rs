@@ -8,8 +8,7 @@ fn a_misspelt_field_is_shown_with_its_correction() {
     let shown = parse(&GOOD.replace("duration", "durration")).unwrap_err();
     assert_eq!(
         rendered(&shown),
-        "x.toml:17:1: error: missing field `duration` in [run]\n   |\n17 | [run]\n   | ^^^^^\n\
-         x.toml:18:1: error: unknown field `durration`, expected `duration`\n   |\n\
+        "x.toml:18:1: error: unknown field `durration`, expected `duration`\n   |\n\
          18 | durration = \"10 s\"\n   | ^^^^^^^^^\n"
     );
     let shown = parse(&GOOD.replace("\"5 rev/s\"", "\"5 m\"")).unwrap_err();
@@ -109,6 +108,33 @@ fn missing_fields_are_reported_at_their_table() {
         errors("title = 'x'  \n\n"),
         ["1:12: missing table [body]", "1:12: missing table [initial]", "1:12: missing table [run]"]
     );
+}
+
+#[test]
+fn fields_with_a_suggested_name_are_not_missing() {
+    let table = [
+        ("spin = { vector", "omega = { vector", "4:1: unknown table `omega`, expected `spin`"),
+        ("vector = [0", "vectr = [0", "4:10: unknown field `vectr`, expected `vector`"),
+        ("[run]", "[rum]", "5:2: unknown table `rum`, expected `run`"),
+        ("moments = [3", "moment = [3", "2:1: unknown field `moment`, expected `moments`"),
+    ];
+    for (old, new, message) in table {
+        assert_eq!(errors_with(old, new), [message]);
+    }
+    // Only the suggested one of two, and only in the same table.
+    assert_eq!(
+        errors_with("moments = [3, 2, 1]", "solid = 'cylinder'\nradus = 1\nmass = 1"),
+        ["1:1: missing field `height` in [body]", "3:1: unknown field `radus`, expected `radius`"]
+    );
+    let other = errors_with("[run]", "[run]\n[force]\ndrag = 1");
+    assert_eq!(other[0], "5:1: missing field `duration` in [run]");
+    assert!(other[1].starts_with("8:1: unknown field `duration`"), "{other:?}");
+}
+
+#[test]
+fn text_in_utf_16_without_a_mark_is_named() {
+    let text: String = LEAST.chars().flat_map(|c| [c, '\0']).collect();
+    assert_eq!(errors(&text), ["1:2: byte 1 is zero, not text; save the file as UTF-8"]);
 }
 
 #[test]

@@ -218,6 +218,9 @@ fn corrupt_and_truncated_stl() {
     assert_eq!(stl("solid a\nfacet normal 0 0 1 outer loop vertex 1 2"), ends(2, "a coordinate"));
     assert_eq!(stl(facet.trim_end()), ends(6, "'endloop'"));
     assert_eq!(stl(format!("{facet}endloop endfacet")), ends(7, "'endsolid'"));
+    let text = format!("{facet}endloop\nendfacet\nendsolid\n");
+    let zero = format!("rock: byte {}: a zero byte in a text STL{correct}", text.len());
+    assert_eq!(stl(format!("{text}\0")), zero);
 }
 
 #[test]

@@ -16,9 +16,13 @@ const HEADER: usize = 84;
 const RECORD: usize = 50;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, String> {
+    if is_solid(bytes) && !bytes.contains(&0) { parse_text(bytes) } else { parse_binary(bytes) }
+}
+
+/// Whether the file begins as a text STL.
+fn is_solid(bytes: &[u8]) -> bool {
     let start = bytes.trim_ascii_start();
-    let solid = start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    if solid && !bytes.contains(&0) { parse_text(bytes) } else { parse_binary(bytes) }
+    start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
 }
 
 fn parse_binary(bytes: &[u8]) -> Result<Parsed, String> {
@@ -30,8 +34,13 @@ fn parse_binary(bytes: &[u8]) -> Result<Parsed, String> {
     let count = u32::from_le_bytes([a, b, c, d]);
     let expected = HEADER as u64 + RECORD as u64 * u64::from(count);
     if bytes[..HEADER].iter().all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace()) {
-        let what = "not an STL file: a text STL begins with 'solid', a binary one has zero bytes";
-        return Err(Place::Byte(0).corrupt(what));
+        return Err(match bytes.iter().position(|&b| b == 0) {
+            Some(at) if is_solid(bytes) => Place::Byte(at).corrupt("a zero byte in a text STL"),
+            _ => {
+                let what = "not an STL file: a text STL begins with 'solid', a binary one has zero bytes";
+                Place::Byte(0).corrupt(what)
+            }
+        });
     }
     let what = format!("{count} triangles need {expected} bytes, but there are {}", bytes.len());
     if (bytes.len() as u64) < expected {

@@ -50,6 +50,13 @@ pub(crate) fn below_tilde(c: char) -> Option<char> {
     partner("ÃAãaẼEẽeĨIĩiÑNñnÕOõoŨUũuṼVṽvỸYỹy", c)
 }
 
+/// The Latin letter that a letter of Cyrillic or Greek looks like.
+pub(crate) fn look_alike(c: char) -> Option<char> {
+    const CYRILLIC: &str = "аaеeоoрpсcуyхxіiјjѕsԁdһhԛqԝwАAВBЕEКKМMНHОOРPСCТTУYХXІIЈJЅSԚQԜW";
+    const GREEK: &str = "οoΑAΒBΕEΖZΗHΙIΚKΜMΝNΟOΡPΤTΥYΧX";
+    partner(CYRILLIC, c).or_else(|| partner(GREEK, c))
+}
+
 /// The plain character of a subscript.
 pub(crate) fn subscript(c: char) -> Option<char> {
     partner("₀0₁1₂2₃3₄4₅5₆6₇7₈8₉9ₐaₑeₕhᵢiⱼjₖkₗlₘmₙnₒoₚpᵣrₛsₜtᵤuᵥvₓxᵦβᵧγᵨρᵩφᵪχ", c)

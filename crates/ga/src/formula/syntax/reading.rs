@@ -1,6 +1,7 @@
 //! Reader of words: one name, a function, or adjacent letters, depending on the names that are bound.
 
 use super::indices::{INDICES, indexed, is_built_in};
+use super::letters::look_alike;
 use super::names::{Meaning, Names};
 use super::token::{Atom, Item, Token, joined, labelled};
 use super::tree::{Named, Span, Tight};
@@ -63,7 +64,7 @@ impl Reader<'_> {
         }
         for (i, atom) in atoms.iter().enumerate() {
             let item = self.atom(atom, next.is_some() && i + 1 == atoms.len());
-            let item = item.ok_or_else(|| self.unknown(token, atoms, items))??;
+            let item = item.ok_or_else(|| self.unknown(token, atoms, next.is_some(), items))??;
             let space = token.space && i == 0;
             items.push(Token { item, reversed: atom.reversed, span: atom.span, space });
         }
@@ -96,8 +97,13 @@ impl Reader<'_> {
             return Some(Ok(item));
         }
         if let Some(problem) = generators(&atom.name).and_then(|generators| self.no_blade(&generators)) {
-            let digits = atom.name.trim_start_matches('e');
-            let message = format!("`{}` {problem}. Write a power of ten as `1e+{digits}`", atom.name);
+            let power = format!("1e+{}", atom.name.trim_start_matches('e'));
+            let message = if power.parse::<f64>().is_ok_and(f64::is_finite) {
+                format!("`{}` {problem}. Write a power of ten as `{power}`", atom.name)
+            } else {
+                let what = "is not a basis element, and as a power of ten beyond the range of floating point";
+                format!("`{}` {what} (1.8e308)", atom.name)
+            };
             return Some(Err(Error::new(atom.span, message)));
         }
         let is_index = self.is_indexed(&atom.name);
@@ -186,12 +192,19 @@ impl Reader<'_> {
     }
 
     /// The error for a name without a value, which was also read letter by letter.
-    fn unknown(&self, token: &Token, atoms: &[Atom], before: &[Token]) -> Error {
+    fn unknown(&self, token: &Token, atoms: &[Atom], called: bool, before: &[Token]) -> Error {
         let word: String = atoms.iter().map(|atom| &atom.name[..]).collect();
         let mut message = format!("{} has no value", quote(&word));
+        let missing: Vec<&str> =
+            atoms.iter().filter(|a| self.atom(a, false).is_none()).map(|a| &a.name[..]).collect();
+        if let Some(letter) = missing.iter().find_map(|name| name.chars().find(|&c| look_alike(c).is_some()))
+        {
+            return Error::new(token.span, message + &in_latin(letter, &word));
+        }
+        if called && word == "grade" {
+            return Error::new(token.span, message + "; write the part of grade 2 as `⟨A⟩_2` or `<A>_2`");
+        }
         if atoms.len() > 1 {
-            let missing: Vec<&str> =
-                atoms.iter().filter(|a| self.atom(a, false).is_none()).map(|a| &a.name[..]).collect();
             let mut shown: Vec<&str> = missing.iter().take(5).copied().collect();
             shown.dedup();
             let (verb, list) = (if shown.len() == 1 { "has" } else { "have" }, shown.join(", "));
@@ -215,6 +228,17 @@ impl Reader<'_> {
         }
         Error::new(token.span, message)
     }
+}
+
+/// What to write for a word with a letter of another script that looks like a Latin one.
+fn in_latin(letter: char, word: &str) -> String {
+    let script = if ('\u{370}'..='\u{3ff}').contains(&letter) { "Greek" } else { "Cyrillic" };
+    let latin = |c| look_alike(c).unwrap_or(c);
+    let (like, written) = (latin(letter), quote(&word.chars().map(latin).collect::<String>()));
+    let code = letter as u32;
+    format!(
+        "; `{letter}` is the {script} letter U+{code:04X}, not the Latin `{like}`: write {written} in Latin letters"
+    )
 }
 
 /// `Σ_k` after this spelling of the sign.

@@ -6,6 +6,7 @@ use super::letters::{
 };
 use super::number::{Number, fraction};
 use super::tree::{Named, Span, Tight};
+use crate::diagnostic::quote;
 use crate::formula::{Error, MAX_NODES};
 use std::str::Chars;
 
@@ -178,6 +179,12 @@ impl Lexer<'_> {
     /// Digits with a point; an exponent with a sign, or after a capital E: `2e1` is 2 times `e1`.
     fn number(&mut self, start: usize) -> Result<Item, Error> {
         let mut digits = self.run(digit);
+        let mut grouped = false;
+        while self.begins_group() {
+            grouped = true;
+            self.chars.next();
+            digits += &self.run(digit);
+        }
         if self.eat(|c| c == '.') {
             digits.push('.');
             digits += &self.run(digit);
@@ -193,7 +200,17 @@ impl Lexer<'_> {
             }
             digits += &self.run(digit);
         }
+        if grouped {
+            let message = format!("write a number without signs between its digits, {}", quote(&digits));
+            return Err(Error::new(self.since(start), message));
+        }
         Ok(Item::Number(self.read(&digits, start)?))
+    }
+
+    /// Whether a group of three digits follows, as in `1_000` and `1'000`.
+    fn begins_group(&self) -> bool {
+        let sign = self.peek().is_some_and(|c| c == '_' || primes(c) == Some(1));
+        sign && (1..=3).all(|k| self.ahead(k).and_then(digit).is_some())
     }
 
     fn word(&mut self) -> Result<Vec<Atom>, Error> {
@@ -308,6 +325,7 @@ fn no_meaning(c: char) -> String {
         '.' => "; write a product as `a b`, `a·b` or `a∧b`",
         '"' | '`' => "; write names without quotes",
         '∨' | '&' => "; join and meet are methods in Python",
+        '‖' | '∥' => "; write a magnitude as `norm(a)`",
         '√' => "; write a square root as `sqrt(A)`",
         '÷' | ':' => "; divide with `/`",
         '↦' | '→' | '⇒' | ';' => "; write one formula or equation at a time",
@@ -315,8 +333,16 @@ fn no_meaning(c: char) -> String {
         '∫' => "; there are sums (Σ) but no integrals",
         _ => "",
     };
-    let shown = if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
-    format!("`{shown}` has no meaning in a formula{remedy}")
+    if is_invisible(c) {
+        return format!("the invisible character U+{:04X} has no meaning in a formula; remove it", c as u32);
+    }
+    format!("`{c}` has no meaning in a formula{remedy}")
+}
+
+/// Control characters, and those that join, divide and reorder text.
+fn is_invisible(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{ad}' | '\u{200c}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// The canonical spelling of a name, such as `Ω_B`, `a1` for `a_1` and `a₁`, or `R(0)`; `None` for anything else.

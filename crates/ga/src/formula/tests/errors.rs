@@ -79,6 +79,16 @@ fn errors_have_messages_and_places() {
         ("\\theta", "write plain text, `θ/2 e1∧e2`, not LaTeX", "\\"),
         ("a_", "a subscript must be letters and digits", "_"),
         ("1e+999", "beyond the range", "1e+999"),
+        ("1e400", "`e400` is not a basis element, and as a power of ten beyond the range", "e400"),
+        ("‖a‖", "write a magnitude as `norm(a)`", "‖"),
+        ("grade(a, 2)", "write the part of grade 2 as `⟨A⟩_2`", "grade"),
+        ("\u{435}2", "`\u{435}` is the Cyrillic letter U+0435, not the Latin `e`: write `e2`", "\u{435}2"),
+        ("2 \u{435}\u{445}\u{440}(B)", "not the Latin `e`: write `exp` in Latin", "\u{435}\u{445}\u{440}"),
+        ("\u{392}", "the Greek letter U+0392, not the Latin `B`", "\u{392}"),
+        ("a\0", "the invisible character U+0000 has no meaning in a formula; remove it", "\0"),
+        ("a \u{202e}b", "the invisible character U+202E", "\u{202e}"),
+        ("1_000 a", "write a number without signs between its digits, `1000`", "1_000"),
+        ("2'000_000.5 a", "`2000000.5`", "2'000_000.5"),
         ("sum_ij e_i", "`sum_ij` has no value", "sum_ij"),
     ];
     for (text, message, place) in cases {

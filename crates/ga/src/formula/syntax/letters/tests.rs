@@ -10,6 +10,7 @@ fn styles_of_letters_fold_to_the_letter() {
     assert_eq!(below_tilde('Ã'), Some('A'));
     assert_eq!((composed('x', '\u{307}'), decomposed('ẋ')), (Some('ẋ'), Some(('x', '\u{307}'))));
     assert_eq!((composed('n', '\u{302}'), decomposed('x')), (None, None));
+    assert_eq!((look_alike('е'), look_alike('Α'), look_alike('e')), (Some('e'), Some('A'), None));
     assert_eq!(subscript('₇'), Some('7'));
     assert_eq!(superscript('⁷'), Some('7'));
 }

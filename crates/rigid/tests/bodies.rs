@@ -266,6 +266,20 @@ fn two_half_boxes_are_a_box() {
     }
 }
 
+/// A speck far away moves the common centre of mass a little, in either order.
+#[test]
+fn a_light_body_far_away_keeps_the_digits_of_a_heavy_one() {
+    let body = |mass, x| {
+        let inertia = Inertia::from_principal_moments([mass; 3]).unwrap();
+        Body::new(mass, inertia, Vector([x, 0.0, 0.0])).unwrap()
+    };
+    let (light, heavy) = (body(1.0, 1e10), body(1e20, 1e-3));
+    let (one, other) = (light.combine(&heavy).unwrap(), heavy.combine(&light).unwrap());
+    assert_eq!(one, other);
+    let expected = 1e-3 + 1e-10;
+    assert!((one.center_of_mass.0[0] - expected).abs() <= EPS * expected, "{:?}", one.center_of_mass);
+}
+
 /// Points far from the origin lose no digits: their distances are exact.
 #[test]
 fn far_away_points_keep_their_digits() {

@@ -110,11 +110,13 @@ impl Body {
     /// `m1 m2/(m1 + m2)` at their distance.
     pub fn combine(&self, other: &Body) -> Result<Body, BodyError> {
         let mass = self.mass + other.mass;
-        let distance = other.center_of_mass - self.center_of_mass;
-        let share = other.mass / mass;
-        let reduced = point_inertia(self.mass * share, distance);
+        // From the heavier one, whose centre is the nearer, so that few digits of a long distance are added.
+        let (heavy, light) = if self.mass >= other.mass { (self, other) } else { (other, self) };
+        let distance = light.center_of_mass - heavy.center_of_mass;
+        let share = light.mass / mass;
+        let reduced = point_inertia(heavy.mass * share, distance);
         let matrix = sum(sum(self.inertia.matrix(), other.inertia.matrix()), reduced);
-        Body::new(mass, Inertia::from_symmetric(matrix)?, self.center_of_mass + distance * share)
+        Body::new(mass, Inertia::from_symmetric(matrix)?, heavy.center_of_mass + distance * share)
     }
 }
 

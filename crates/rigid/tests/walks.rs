@@ -61,6 +61,49 @@ fn functions_of_forces_and_events() {
     assert!(motion.events.iter().all(|occurrence| occurrence.direction == Direction::Falling));
 }
 
+/// Zeros exactly at a sample: the end of a step, the end of the motion, the middle and the quarter of a step.
+#[test]
+fn a_touch_is_not_a_crossing() {
+    type Curve = fn(f64) -> f64;
+    let curves: [(Curve, Option<f64>); 5] = [
+        (|t| t * t, None),
+        (|t| -t.abs(), None),
+        (|t| t, Some(0.0)),
+        (|t| -t.powi(3), Some(0.0)),
+        (|t| t * t * (1.0 - t), Some(1.0)),
+    ];
+    let runs =
+        [(2.0, &[1.0, 2.0, 4.0][..], 0.5), (2.0, &[2.0], 0.5), (2.125, &[4.0], 0.25), (2.25, &[4.0], 0.5)];
+    for (case, (curve, crossed)) in curves.into_iter().enumerate() {
+        for (zero, times, step) in runs {
+            let end = times[times.len() - 1];
+            let expected: Vec<f64> = crossed.map(|t| zero + t).into_iter().filter(|t| *t <= end).collect();
+            for terminal in [false, true] {
+                let quantity = Quantity::Function(Function::new(move |seen| Ok(curve(seen.time - zero))));
+                let events = vec![Event { quantity, direction: None, terminal }];
+                let options = Options { events, step: Some(step), ..Options::default() };
+                let motion = problem().simulate(times, options, &mut |_| true).unwrap();
+                assert_eq!(motion.event_states().times, expected, "{case} {zero} {terminal}");
+                let ended = expected.first().filter(|_| terminal);
+                let kept = times.iter().filter(|time| ended.is_none_or(|end| *time <= end));
+                assert!(motion.states().times.iter().eq(kept), "{case} {zero} {terminal}");
+            }
+        }
+    }
+}
+
+/// A function need not have a value beyond the end of the motion.
+#[test]
+fn a_zero_at_the_end_is_a_crossing_where_nothing_is_known_beyond() {
+    let quantity = Quantity::Function(Function::new(|seen| match seen.time {
+        t if t <= 2.0 => Ok(t - 2.0),
+        _ => Err(TorqueError("too late".into())),
+    }));
+    let events = vec![Event { quantity, direction: None, terminal: false }];
+    let motion = problem().simulate(&[2.0], Options { events, ..Options::default() }, &mut |_| true);
+    assert_eq!(motion.unwrap().event_states().times, [2.0]);
+}
+
 #[test]
 fn errors_have_a_time() {
     let late = |seen: &polhode_rigid::state::point::Seen| {

@@ -15,6 +15,9 @@ const EVENT_TURN: f64 = 0.2;
 /// An event this close to the start, relative to the time to the next evaluation, is at the start.
 const ROUNDING_OF_START: f64 = 1e-12;
 
+/// How far beyond a sample that is exactly zero its sign is taken, relative to the distance of samples.
+const BEYOND: f64 = 1.0 / 64.0;
+
 /// Pieces between calls of `progress`.
 const PIECES_BETWEEN_CALLS: u64 = 4096;
 
@@ -149,6 +152,12 @@ impl Integrator<'_> {
             let ((low, at_low), (high, at_high)) = (pair[0], pair[1]);
             let Some(direction) = crossing(at_low, at_high) else { continue };
             if wanted.is_some_and(|wanted| wanted != direction) {
+                continue;
+            }
+            // A quantity that has the same sign on the other side only touches zero. The point may lie beyond the step, and
+            // beyond the times at which a function of the caller has a value.
+            let mut touches = || value(high + BEYOND * (high - low)).is_ok_and(|y| y * at_low > 0.0);
+            if at_high == 0.0 && touches() {
                 continue;
             }
             let least = 2.0 * f64::EPSILON * low.abs().max(high.abs());

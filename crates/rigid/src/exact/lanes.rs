@@ -51,6 +51,19 @@ pub(crate) trait Coefficients<const C: usize>: Copy + Sync {
     }
 }
 
+/// The numbers of each lane, component by component.
+#[inline(always)]
+pub(crate) fn by_component<const K: usize, const W: usize>(of: impl Fn(usize) -> [f64; K]) -> [[f64; W]; K] {
+    let mut components = [[0.0; W]; K];
+    for l in 0..W {
+        let numbers = of(l);
+        for k in 0..K {
+            components[k][l] = numbers[k];
+        }
+    }
+    components
+}
+
 /// Most coefficients of a motion.
 const MOST: usize = 128;
 

@@ -7,7 +7,7 @@ use super::{FreeMotion, horizon, power_of_two};
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::exact::flow::{self, Form};
-use crate::exact::lanes::{Coefficients, Phases, product, reverse, turned};
+use crate::exact::lanes::{Coefficients, Phases, by_component, product, reverse, turned};
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
 use crate::numerics::lanes::Phase;
@@ -239,13 +239,8 @@ impl<const W: usize, const FMA: bool> Tumbling<'_, W, FMA> {
         let Tumbling { bodies, orbits, scale, phases } = self;
         let half_a_turn = DoubleDoubles::all(DoubleDouble::OVER_TWO_PI * 0.5.into());
         let (rate, still) = (orbits.precession * half_a_turn, [0.0; W]);
-        let (mut frames, mut rotors) = ([[0.0; W]; 4], [[0.0; W]; 4]);
-        for l in 0..W {
-            let (frame, rotor) = (bodies[l].frame.components(), bodies[l].rotor.components());
-            for k in 0..4 {
-                (frames[k][l], rotors[k][l]) = (frame[k], rotor[k]);
-            }
-        }
+        let frames = by_component(|l| bodies[l].frame.components());
+        let rotors = by_component(|l| bodies[l].rotor.components());
         let (factors, mut units, mut omega) = (series.normalizers(), [[[0.0; W]; 4]; 4], [[[0.0; W]; 3]; 3]);
         units[0][0] = [1.0; W];
         for k in 0..3 {

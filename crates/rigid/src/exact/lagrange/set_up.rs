@@ -9,7 +9,7 @@ use crate::error::SimulateError;
 use crate::exact::flow::{Flow, Form};
 use crate::exact::free::phases_and_nomes;
 use crate::exact::free::series::LARGEST_NOME;
-use crate::exact::lanes::{Coefficients, Phases, product, reverse, turned};
+use crate::exact::lanes::{Coefficients, Phases, by_component, product, reverse, turned};
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
 use crate::numerics::wide::Wides;
@@ -86,16 +86,9 @@ impl<const W: usize> LagrangeTops<W> {
 
     #[inline(always)]
     fn filled<const FMA: bool>(&mut self, tops: &[HeavyTop; W]) -> (Starts<W, FMA>, Orbits<W, FMA>) {
-        let (mut frames, mut rotors, mut omegas) = ([[0.0; W]; 4], [[0.0; W]; 4], [[0.0; W]; 3]);
-        for l in 0..W {
-            let (frame, rotor) = (tops[l].axes.frame.components(), tops[l].rotor.components());
-            for k in 0..4 {
-                (frames[k][l], rotors[k][l]) = (frame[k], rotor[k]);
-            }
-            for k in 0..3 {
-                omegas[k][l] = tops[l].omega.0[k];
-            }
-        }
+        let frames = by_component(|l| tops[l].axes.frame.components());
+        let rotors = by_component(|l| tops[l].rotor.components());
+        let omegas = by_component(|l| tops[l].omega.0);
         let starts = Starts::<W, FMA>::new(tops, &frames, &rotors, &omegas);
         let orbits = Orbits::new(&starts);
         let mut root = [0.0; W];

@@ -3,9 +3,9 @@
 The quantity is sampled at every step and its midpoint, every 0.2 rad of rotation or of an oscillation of the
 centre of mass, and where its values suggest a short excursion to the other sign; each crossing is then
 located to rounding by root finding. A quantity that only touches zero does not cross it, and a zero at the
-start is not a crossing. A formula or function that oscillates with the time itself is sampled four times in
-its shortest half period, if that is longer than 1/2000 (formula) or 1/250 (function) of the run; a faster one
-can cross zero twice between samples: use a shorter `max_step`.
+start is not a crossing. A formula that oscillates with the time itself is sampled four times in its shortest
+half period, if that is longer than 1/2000 of the run. A faster one, and a Python function that changes much
+faster than the body moves, can cross zero twice between samples: use a shorter `max_step`.
 """
 
 from __future__ import annotations

@@ -91,6 +91,23 @@ def test_closed_forms_are_found_body_by_body():
         ph.simulate(spheres, START, T, law, method="exact")
 
 
+@pytest.mark.parametrize("count", [1, 3, 60])
+@pytest.mark.parametrize("law", [ph.torque.heavy([0, 0, 1.5]), ph.torque.damping(0.125)])
+def test_many_closed_forms_have_the_bits_of_each_alone(law, count):
+    """Among them are a steady, an asymmetric and a slow body, and the last lanes are not full."""
+    bodies = [moments(1, 1, x) for x in np.linspace(0.5, 1.75, 70)]
+    bodies[40] = ASYMMETRIC
+    rates = RNG.normal(size=(70, 3))
+    rates[[3, 20, 33]] = [0, 0, 0], [0, 0, 2], [1e-9, 0, 1]
+    rotors, times = ph.Rotor.random(70, rng=RNG), np.linspace(0.25, 5, count)
+    together = ph.simulate(bodies, ph.State(rotors, rates), times, law)
+    for k in set(range(70)) - {40}:
+        alone = ph.simulate(bodies[k], ph.State(rotors[k], rates[k]), times, law)
+        assert alone.certificate.method == "exact"
+        for part in PARTS:
+            assert np.array_equal(getattr(together[k], part).components, getattr(alone, part).components)
+
+
 def test_all_shapes_broadcast():
     rotors, rates = ph.Rotor.random((3, 1), rng=RNG), RNG.normal(size=(4, 3))
     places = ph.vector(RNG.normal(size=(2, 1, 1, 3)))

@@ -320,12 +320,3 @@ def test_formulas_of_time_that_oscillate_faster_than_the_body_lose_no_crossing(r
     np.testing.assert_allclose(found.time, expected, rtol=1e-14, atol=1e-14)
     assert not found.rising[::2].any()
     assert found.rising[1::2].all()
-
-
-def test_functions_of_time_that_oscillate_lose_no_crossing():
-    ball = ph.Inertia.from_principal_moments(1, 1, 1)
-    start = ph.State(ph.Rotor.identity(), [0, 0, 0.5])
-    waves = ph.event.function(lambda t, *state: np.cos(40 * t))
-    found = ph.simulate(ball, start, [5.0], ph.torque.damping(0.1), events=waves).events[0]
-    np.testing.assert_allclose(found.time, (np.arange(len(found.time)) + 0.5) * np.pi / 40, rtol=1e-13)
-    assert len(found.time) == 64

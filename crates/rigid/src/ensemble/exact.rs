@@ -28,10 +28,9 @@ impl<'a> Scheduler<'a> {
             return;
         }
         if members.len() == TOGETHER {
-            let bodies: Vec<ExactBody> = members.iter().map(|(_, body)| *body).collect();
-            if let ExactBody::Free(_) = bodies[0] {
+            if let Some((_, ExactBody::Free(_))) = members.first() {
                 self.free(members);
-            } else if let Some(tile) = ExactBody::tile(&bodies) {
+            } else if let Some(tile) = ExactBody::tile(members.iter().map(|(_, body)| body)) {
                 self.under_torques(members, &tile);
             }
         }

@@ -46,7 +46,7 @@ pub(super) enum Strategy {
     /// In the lanes.
     Lanes,
     /// In closed form.
-    Exact(Box<ExactBody>),
+    Exact(ExactBody),
     /// As a single body.
     Single,
 }

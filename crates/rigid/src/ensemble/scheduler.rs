@@ -134,7 +134,7 @@ impl<'a> Scheduler<'a> {
                     break;
                 }
                 Strategy::Exact(body) => {
-                    exact.push((member, *body));
+                    exact.push((member, body));
                     if exact.len() == self.exact_together() {
                         self.exact(&mut exact, progress);
                     }
@@ -180,7 +180,7 @@ impl<'a> Scheduler<'a> {
             Strategy::Lanes
         } else {
             match ExactBody::of(gyrostat.moments, start.rotor, *omega, torques) {
-                Some(body) => Strategy::Exact(Box::new(body)),
+                Some(body) => Strategy::Exact(body),
                 None if !self.options.exact => Strategy::Lanes,
                 None => Strategy::Single,
             }

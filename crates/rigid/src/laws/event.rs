@@ -94,32 +94,27 @@ impl Quantity {
         }
     }
 
-    /// The number of intervals between samples that find how fast it changes with time at a fixed point; none if it does not
-    /// read the time. Functions of the caller are slow.
-    fn samples(&self) -> Option<u32> {
-        match self {
-            Quantity::Axis { .. } | Quantity::Spin { .. } | Quantity::Position { .. } => None,
-            Quantity::Formula(formula) => formula.needs(|motion| matches!(motion, Motion::Time)).then_some(4096),
-            Quantity::Function(_) => Some(512),
-        }
-    }
-
-    /// The shortest time in s from a turning point to the next as it changes with time between two times, at a fixed point of
-    /// the motion; infinite if there are no two.
+    /// The shortest time in s from a turning point to the next as a formula changes with time between two times, at a fixed
+    /// point of the motion; infinite if there are no two. Functions of the caller see points of the motion only.
     pub(crate) fn oscillates_within(&self, at: &Point, [from, to]: [f64; 2]) -> f64 {
         /// Changes below this, relative to the largest value, are rounding.
         const ROUNDING: f64 = 1e-12;
-        let Some(count) = self.samples() else { return f64::INFINITY };
-        let part = (to - from) / f64::from(count);
+        /// Intervals between samples.
+        const COUNT: u32 = 4096;
+        match self {
+            Quantity::Formula(formula) if formula.needs(|motion| matches!(motion, Motion::Time)) => {}
+            _ => return f64::INFINITY,
+        }
+        let part = (to - from) / f64::from(COUNT);
         let value = |k: u32| {
             let phase = Phase { time: from + part * f64::from(k), ..*at.phase };
             self.value(&Point { phase: &phase, ..*at })
         };
         // It may have no value at this point.
-        let Ok(values) = (0..=count).map(value).collect::<Result<Vec<f64>, _>>() else { return f64::INFINITY };
+        let Ok(values) = (0..=COUNT).map(value).collect::<Result<Vec<f64>, _>>() else { return f64::INFINITY };
         let least = ROUNDING * values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let (mut rises, mut last, mut shortest) = (None, None, f64::INFINITY);
-        for (k, pair) in (0..count).zip(values.windows(2)) {
+        for (k, pair) in (0..COUNT).zip(values.windows(2)) {
             if (pair[1] - pair[0]).abs() <= least {
                 continue;
             }

@@ -104,13 +104,13 @@ impl ClosedForm {
 }
 
 /// A body whose rotation has a closed form, before it is set up; everything in principal axes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum ExactBody {
     Free(FreeBody),
     Heavy(HeavyTop),
     /// With the g of its torque.
     Damped(FreeBody, f64),
-    Larmor(LarmorSphere),
+    Larmor(Arc<LarmorSphere>),
 }
 
 impl ExactBody {
@@ -135,7 +135,7 @@ impl ExactBody {
             Torque::Larmor(_) => {
                 let add = |sum, t: &Torque| if let Torque::Larmor(b) = t { Some(sum + *b) } else { None };
                 let b = torques.iter().try_fold(Vector::default(), add)?;
-                Some(ExactBody::Larmor(LarmorSphere::new(&inertia, rotor, omega, b).ok()?))
+                Some(ExactBody::Larmor(Arc::new(LarmorSphere::new(&inertia, rotor, omega, b).ok()?)))
             }
             _ => None,
         }
@@ -147,24 +147,25 @@ impl ExactBody {
             ExactBody::Free(body) => Arc::new(body.motion()),
             ExactBody::Heavy(top) => Arc::new(top.motion().ok()?),
             ExactBody::Damped(body, damping) => Arc::new(DampedTop::of(body, *damping).ok()?),
-            ExactBody::Larmor(motion) => Arc::new(*motion),
+            ExactBody::Larmor(motion) => motion.clone(),
         })
     }
 
     /// The rotations of bodies under laws of one kind, set up in lanes; none if there are no lanes for this kind, or if a
     /// rotation neglects something or is not resolved.
-    pub fn tile(bodies: &[ExactBody]) -> Option<Tile> {
+    pub fn tile<'a>(bodies: impl Iterator<Item = &'a ExactBody>) -> Option<Tile> {
         let other = || SimulateError::Unresolved.to_string();
-        match bodies.first()? {
+        let mut bodies = bodies.peekable();
+        match bodies.peek()? {
             ExactBody::Heavy(_) => {
-                let tops = bodies.iter().map(|body| match body {
+                let tops = bodies.map(|body| match body {
                     ExactBody::Heavy(top) if top.is_exact() => Ok(*top),
                     _ => Err(other()),
                 });
                 Tile::lagrange(tops).ok()
             }
             ExactBody::Damped(..) => {
-                let bodies = bodies.iter().map(|body| match body {
+                let bodies = bodies.map(|body| match body {
                     ExactBody::Damped(body, damping) => Ok((*body, *damping)),
                     _ => Err(other()),
                 });

@@ -111,7 +111,9 @@ impl Quantity {
             self.value(&Point { phase: &phase, ..*at })
         };
         // It may have no value at this point.
-        let Ok(values) = (0..=COUNT).map(value).collect::<Result<Vec<f64>, _>>() else { return f64::INFINITY };
+        let Ok(values) = (0..=COUNT).map(value).collect::<Result<Vec<f64>, _>>() else {
+            return f64::INFINITY;
+        };
         let least = ROUNDING * values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let (mut rises, mut last, mut shortest) = (None, None, f64::INFINITY);
         for (k, pair) in (0..COUNT).zip(values.windows(2)) {

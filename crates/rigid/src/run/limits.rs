@@ -33,7 +33,14 @@ pub(crate) fn span(times: &[f64], start: f64) -> [f64; 2] {
 impl Default for StepBounds {
     fn default() -> StepBounds {
         let limit = Limit { steps: MAX_STEPS, reports_stiffness: false };
-        StepBounds { breaks: Vec::new(), is_smooth: true, longest: f64::INFINITY, limit, least_rate: 0.0, piece: f64::INFINITY }
+        StepBounds {
+            breaks: Vec::new(),
+            is_smooth: true,
+            longest: f64::INFINITY,
+            limit,
+            least_rate: 0.0,
+            piece: f64::INFINITY,
+        }
     }
 }
 

@@ -195,7 +195,8 @@ impl Problem {
             }
         }
         let carried = self.start();
-        let point = Point { body: &self.body, mass: self.mass, phase: &carried.phase, center: &carried.center };
+        let point =
+            Point { body: &self.body, mass: self.mass, phase: &carried.phase, center: &carried.center };
         for event in &options.events {
             let quantity = event.clone().in_axes(self.frame).quantity;
             bounds.piece = bounds.piece.min(0.5 * quantity.oscillates_within(&point, span(times, self.time)));

@@ -84,6 +84,19 @@ def test_output_times_may_be_adjacent_floats() -> None:
     assert gap[2] < 1e-14
 
 
+@pytest.mark.parametrize("text", ["A", "sin(3 t)/norm(sin(3 t) + 0.01 e1) A"])
+@pytest.mark.parametrize("bodies", [BODY, [BODY]])
+def test_the_first_output_time_may_be_adjacent_to_the_start(text, bodies) -> None:
+    law = ph.torque.formula(text, A=ph.e1 ^ ph.e2)
+    times = [np.nextafter(100.0, 200), 100.5, np.nextafter(100.5, 200), 101.0]
+    state = ph.State(ROTOR, ph.bivector([0.1, 0.2, 1.0]), time=100.0)
+    found = ph.simulate(bodies, state, times, law, method="dop853")
+    rotors = found.rotor.components.reshape(4, 4)
+    assert np.abs(rotors[0] - ROTOR.components).max() < 1e-13
+    assert np.abs(rotors[2] - rotors[1]).max() < 1e-13
+    assert np.all(found.certificate.error_estimate < 1e-10)
+
+
 @pytest.mark.parametrize(
     "solution",
     [

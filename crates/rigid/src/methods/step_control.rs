@@ -20,6 +20,9 @@ pub(crate) const ROOT: f64 = 0.125;
 /// The first step turns a body by this angle, in rad, times the eighth root of the tolerance.
 const FIRST_TURN: f64 = 2.0;
 
+/// Parts of a way to a stop below this, relative to the times, are not divided: stops may be adjacent floats.
+const LEAST_PART: f64 = 1e-14;
+
 /// Chooses the lengths of adaptive steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepController {
@@ -55,14 +58,16 @@ impl StepController {
     pub fn end(&mut self, from: f64, time: f64) -> Result<f64, SimulateError> {
         let rest = (time - from).abs();
         if self.stop != time {
-            let [fraction, later] = self.fractions;
-            (self.stop, self.most, self.fractions) = (time, fraction * rest, [later; 2]);
+            let ([fraction, later], least) = (self.fractions, LEAST_PART * from.abs().max(time.abs()));
+            (self.stop, self.most) = (time, rest);
+            if fraction * rest > least.max(f64::MIN_POSITIVE) {
+                (self.most, self.fractions) = (fraction * rest, [later; 2]);
+            }
         }
         let next = self.next.min(self.most);
         // Two steps of half the way avoid a tiny last one.
         let cut = if next >= rest { rest } else { next.min(0.5 * rest.max(next)) };
         let to = if cut >= rest { time } else { from + (time - from).signum() * cut };
-        // Output times may be adjacent floats.
         if to == from || self.refused && cut < 1e-14 * from.abs() {
             return Err(SimulateError::StepTooSmall { time: from, step: cut });
         }

@@ -2,19 +2,33 @@
 //!
 //! A step evaluates a law a dozen times. A short pulse between the evaluations of a long step would be missed, also by
 //! the error estimate, which uses the same values. So a law is sampled first, and intervals in which coarse samples do
-//! not predict the others are bisected: around a pulse the steps are as short as the pulse, elsewhere they are free.
+//! not predict the others are bisected: around a pulse the steps are as short as the pulse, elsewhere they are free. The
+//! finest intervals are sampled again and bisected further, so that a change sharper than the samples lies between close
+//! stops: the error estimate of a step across it may be small by chance.
 
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
 use crate::methods::LARGEST_TURN;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor};
+use std::array;
+use std::ops::Range;
 
 /// Intervals between samples on each side of the start: a power of 2. A pulse shorter than one may be missed.
 const SAMPLES: usize = 4096;
 
 /// An interval of this many samples is not bisected.
 const FINEST: usize = 4;
+
+/// Intervals between samples of such an interval, and how often intervals are sampled again in all and in one of the first
+/// samples. Functions of the caller are slow.
+const FINER: usize = 8;
+const MOST_FINER: usize = 4096;
+const MOST_FINER_OF_FUNCTIONS: usize = 256;
+const MOST_FINER_EACH: usize = 128;
+
+/// Intervals this small, relative to the run, are not bisected: steps across a jump in one have a negligible error.
+const LEAST: f64 = 1e-12;
 
 /// Number of coarse intervals in an interval.
 const COARSE: usize = 8;
@@ -68,20 +82,72 @@ pub(crate) fn sampled(
         .map(|value| value.norm())
         .enumerate()
         .fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
-    let mut found = Vec::new();
-    bisect(&values, 0..SAMPLES, DEVIATION * largest, &mut found);
-    Ok(Sampled { stops: found.into_iter().map(time).collect(), peak: Some(time(peak)) })
+    let allowed = DEVIATION * largest;
+    let (mut found, mut finest) = (Vec::new(), Vec::new());
+    bisect(&values, 0..SAMPLES, allowed, &mut found, &mut finest);
+    let mut stops: Vec<f64> = found.into_iter().map(time).collect();
+    let most = if matches!(law, Torque::Function(_)) { MOST_FINER_OF_FUNCTIONS } else { MOST_FINER };
+    let finer = Finer {
+        values: &|times| law.values(body, &state, times).ok(),
+        allowed,
+        least: LEAST * (to - from).abs(),
+    };
+    for part in &finest {
+        let mut left = (most / finest.len()).min(MOST_FINER_EACH);
+        finer.bisect([time(part.start), time(part.end)], &mut left, &mut stops);
+    }
+    Ok(Sampled { stops, peak: Some(time(peak)) })
 }
 
-/// Bisects intervals of samples in which the coarse ones do not predict the others; collects the midpoints.
-fn bisect(values: &[Bivector], part: std::ops::Range<usize>, allowed: f64, found: &mut Vec<usize>) {
-    if part.len() <= FINEST || is_predicted(&values[part.start..=part.end], allowed) {
+/// Bisects intervals of samples in which the coarse ones do not predict the others; collects the midpoints, and the finest of
+/// these intervals.
+fn bisect(
+    values: &[Bivector],
+    part: Range<usize>,
+    allowed: f64,
+    found: &mut Vec<usize>,
+    finest: &mut Vec<Range<usize>>,
+) {
+    if part.len() <= FINEST {
+        finest.push(part);
+        return;
+    }
+    if is_predicted(&values[part.start..=part.end], allowed) {
         return;
     }
     let middle = (part.start + part.end) / 2;
-    bisect(values, part.start..middle, allowed, found);
+    bisect(values, part.start..middle, allowed, found, finest);
     found.push(middle);
-    bisect(values, middle..part.end, allowed, found);
+    bisect(values, middle..part.end, allowed, found, finest);
+}
+
+/// Bisects intervals that are sampled anew.
+struct Finer<'a> {
+    /// The law at times; none if it has no value.
+    values: &'a dyn Fn(&[f64]) -> Option<Vec<Bivector>>,
+    /// The deviation that is allowed.
+    allowed: f64,
+    /// The shortest interval that is bisected, in s.
+    least: f64,
+}
+
+impl Finer<'_> {
+    /// Collects the midpoints of intervals in which the coarse samples do not predict the others, while any are left.
+    fn bisect(&self, [from, to]: [f64; 2], left: &mut usize, found: &mut Vec<f64>) {
+        if *left == 0 || (to - from).abs() <= self.least {
+            return;
+        }
+        *left -= 1;
+        let times: [f64; FINER + 1] = array::from_fn(|k| from + (to - from) * (k as f64 / FINER as f64));
+        match (self.values)(&times) {
+            Some(values) if !is_predicted(&values, self.allowed) => {}
+            _ => return,
+        }
+        let middle = times[FINER / 2];
+        self.bisect([from, middle], left, found);
+        found.push(middle);
+        self.bisect([middle, to], left, found);
+    }
 }
 
 /// Whether cubics through coarse samples approximate the others.

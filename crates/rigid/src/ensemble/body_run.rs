@@ -110,6 +110,7 @@ impl<'a> BodyRun<'a> {
             let time = times[if taken < early { early - 1 - taken } else { taken }];
             if at.phase.time != time {
                 self.stop = next_stop(&self.bounds.breaks, at.phase.time, time);
+                self.controller.head_for(at.phase.time, self.stop, self.stop != time);
                 return Ok(None);
             }
             self.sweep.states.push(*at);

@@ -34,11 +34,12 @@ pub(crate) struct StepController {
     cut: f64,
     /// The longest allowed, in s.
     longest: f64,
-    /// The stop ahead.
-    stop: f64,
-    /// The longest steps on the way to it and to stops after it, as a fraction of the way.
+    /// The longest steps as fractions of the way, on the way to the first stop and next to a break.
     fractions: [f64; 2],
-    /// The longest step to the stop, in s.
+    /// Whether the first stop is ahead, and whether the last one was a break.
+    is_first: bool,
+    after_break: bool,
+    /// The longest step to the next stop, in s.
     most: f64,
     /// Whether the previous step was rejected.
     refused: bool,
@@ -46,24 +47,42 @@ pub(crate) struct StepController {
 
 impl StepController {
     /// For a tolerance, the fastest rate of the laws and the body in rad/s, and the longest step in s. Steps to the first
-    /// stop are at most the first of these `fractions` of the way, and those from stop to stop the second.
+    /// stop are at most the first of these `fractions` of the way, and those to or from a break the second.
     pub fn new(tolerance: f64, rate: f64, longest: f64, fractions: [f64; 2]) -> StepController {
         let first = FIRST_TURN * tolerance.powf(ROOT) / rate.max(f64::MIN_POSITIVE);
         let first = first.min(longest);
-        let (stop, most) = (f64::NAN, longest);
-        StepController { tolerance, next: first, cut: first, longest, stop, fractions, most, refused: false }
+        StepController {
+            tolerance,
+            next: first,
+            cut: first,
+            longest,
+            fractions,
+            is_first: true,
+            after_break: false,
+            most: longest,
+            refused: false,
+        }
+    }
+
+    /// Heads for the next stop: an output, or a break, where a law is not smooth.
+    pub fn head_for(&mut self, from: f64, stop: f64, is_break: bool) {
+        let rest = (stop - from).abs();
+        let [first, at_breaks] = self.fractions;
+        let fraction = match (self.is_first, is_break || self.after_break) {
+            (true, _) => first,
+            (_, true) => at_breaks,
+            _ => 1.0,
+        };
+        let least = (LEAST_PART * from.abs().max(stop.abs())).max(f64::MIN_POSITIVE);
+        let divides = fraction * rest > least;
+        self.most = if divides { fraction * rest } else { rest };
+        self.is_first &= !divides;
+        self.after_break = is_break;
     }
 
     /// Where a step ends on the way from one time to another.
     pub fn end(&mut self, from: f64, time: f64) -> Result<f64, SimulateError> {
         let rest = (time - from).abs();
-        if self.stop != time {
-            let ([fraction, later], least) = (self.fractions, LEAST_PART * from.abs().max(time.abs()));
-            (self.stop, self.most) = (time, rest);
-            if fraction * rest > least.max(f64::MIN_POSITIVE) {
-                (self.most, self.fractions) = (fraction * rest, [later; 2]);
-            }
-        }
         let next = self.next.min(self.most);
         // Two steps of half the way avoid a tiny last one.
         let cut = if next >= rest { rest } else { next.min(0.5 * rest.max(next)) };

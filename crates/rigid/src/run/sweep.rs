@@ -57,11 +57,11 @@ impl ToleranceSteps {
         ToleranceSteps { tolerance: (self.tolerance / by.powi(8)).max(LEAST_TOLERANCE), ..self }
     }
 
-    /// The longest steps on the way to the first stop and from stop to stop, as fractions of the way.
+    /// The longest steps on the way to the first stop and next to a break, as fractions of the way.
     ///
-    /// All steps shorten with the tolerance, also those that it does not limit: the first, those to the first stop, and
-    /// those between the stops of a law that is not smooth. Two sweeps with the same steps there would also share their
-    /// errors, which their difference would not show.
+    /// Steps shorten with the tolerance, also those that it does not limit: the first, those to the first stop, and those
+    /// next to the breaks of a law that is not smooth. Two sweeps with the same steps there would also share their errors,
+    /// which their difference would not show.
     fn fractions(self, is_smooth: bool) -> [f64; 2] {
         let shorter = (self.tolerance / self.first).powf(ROOT);
         [shorter, if is_smooth { 1.0 } else { shorter }]
@@ -259,7 +259,10 @@ impl Integrator<'_> {
             let to = next_stop(&self.bounds.breaks, cursor.at.phase.time, time);
             match self.rule {
                 StepRule::Step(steps) => self.equal_steps(cursor, to, steps, sweep, done)?,
-                StepRule::Tolerance(_) => self.adapted_steps(cursor, to, sweep, done)?,
+                StepRule::Tolerance(_) => {
+                    cursor.controller.head_for(cursor.at.phase.time, to, to != time);
+                    self.adapted_steps(cursor, to, sweep, done)?;
+                }
             }
             if to == time || cursor.ended {
                 return Ok(());

@@ -214,6 +214,7 @@ def test_a_history_becomes_a_trajectory_of_a_body(tmp_path):
             "no ANGVEL_FRAME; give angvel_frame='EME2000' or angvel_frame='SC_BODY_1'",
         ),
         (message([[0, 0, 1, 1]]), {}, "a.aem:18:1: error: the quaternion must have norm 1, got 1.41421"),
+        (message([[0, 0, 1e308, 1e308]]), {}, "a.aem:18:1: error: the quaternion must have norm 1, got inf"),
         (message([[0, 0, "one", 1]]), {}, "a.aem:18:25: error: 'one' is not a number"),
         (
             message([[0, 0, 1]]),
@@ -229,7 +230,8 @@ def test_a_history_becomes_a_trajectory_of_a_body(tmp_path):
         (
             message([QUARTER, QUARTER]).replace("\n2026-001T00:00:01.5", "\n2026-01-01T00:00:00.0"),
             {},
-            "19:1: error: times must increase",
+            "19:1: error: times must increase, got 2026-01-01T00:00:00.0 after 2026-01-01T00:00:00 in line "
+            "18; correct one of them, or remove the row",
         ),
         (
             message([QUARTER]).replace("START_TIME = 2026-01-01", "START_TIME = 2026-01-02"),

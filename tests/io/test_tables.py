@@ -77,6 +77,17 @@ def test_columns_are_found_by_name(tmp_path):
 HEADER = "time,attitude_w,attitude_x,attitude_y,attitude_z"
 
 
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_columns_may_be_separated_by_semicolons_or_tabs(separator, tmp_path):
+    path = tmp_path / "a.csv"
+    text = f"{HEADER}\n0,1,0,0,0\n1,0,0,0,1\n"
+    path.write_text(text.replace(",", separator))
+    assert ph.io.read_csv(path).rotor.to_quaternion(order="wxyz").tolist() == [[1, 0, 0, 0], [0, 0, 0, 1]]
+    path.write_text(f"{text}2,1,0,x,0\n".replace(",", separator))
+    with pytest.raises(ph.io.FileError, match=r"a\.csv:4:7: error: 'x' is not a finite number"):
+        ph.io.read_csv(path)
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [

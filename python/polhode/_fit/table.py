@@ -13,7 +13,7 @@ import numpy as np
 
 from polhode._report.table import columns_of
 from polhode._support.arrays import Array
-from polhode._support.file_kinds import require_csv
+from polhode._support.file_kinds import require_csv, separator_of
 from polhode._support.files import UnreadableError, contents
 from polhode._support.words import counted
 
@@ -26,7 +26,6 @@ OF_MOTION = tuple(
 )
 # Number of names, of a time and its values, for each kind of data.
 KINDS = {len(RATES): ("rates",), len(QUATERNION): ("attitude",), len(BOTH): ("rates", "attitude")}
-SEPARATORS = (",", ";", "\t")
 # Start of a time stamp, as 2026-01-31T12:00:00.
 _DATE = re.compile(r"\d{4}-\d\d-\d\d|\d\d?:\d\d")
 # Least number of rows of each kind.
@@ -80,7 +79,7 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
     rows = [(k, x) for k, x in enumerate(lines, 1) if x.strip() and not x.lstrip().startswith("#")]
     if not rows:
         raise UnreadableError(f"{path}: error: the file is empty; its first line has names of columns")
-    separator = next((x for x in SEPARATORS if x in rows[0][1]), SEPARATORS[0])
+    separator = separator_of(rows[0][1])
     try:
         fields = next(csv.reader([rows[0][1]], delimiter=separator, skipinitialspace=True))
     except csv.Error as error:

@@ -300,7 +300,11 @@ def _times(segment: _Segment, given: str | None) -> tuple[str, Array, Epoch]:
                 "them, or remove the row"
             )
         if len(times) > 1 and times[-1] <= times[-2]:
-            raise line.error("times must increase from line to line")
+            before = segment.lines[len(times) - 2]
+            raise line.error(
+                f"times must increase, got {word} after {before.text.split(maxsplit=1)[0]} in line "
+                f"{before.line}; correct one of them, or remove the row"
+            )
     return system.text, np.array(times), origin
 
 
@@ -389,7 +393,8 @@ def _in_body(segment: _Segment, given: str | None, body_is_b: bool) -> bool:
 
 def _unit(quaternions: Array, segment: _Segment) -> Array:
     """Return normalized quaternions; those within rounding of norm 1 as they are."""
-    norms = np.linalg.norm(quaternions, axis=1)
+    with np.errstate(over="ignore"):  # an infinite norm is rejected below
+        norms = np.linalg.norm(quaternions, axis=1)
     if len(wrong := np.flatnonzero(np.abs(norms - 1) > _NORM)):
         k = int(wrong[0])
         raise segment.lines[k].error(f"the quaternion must have norm 1, got {norms[k]:.6g}")

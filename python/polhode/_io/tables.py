@@ -24,6 +24,7 @@ from polhode._report.output import encoded
 from polhode._report.table import ALONG_TIME, UNITS, columns_of
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
+from polhode._support.file_kinds import separator_of
 from polhode._support.files import contents, write_atomically
 
 
@@ -31,8 +32,8 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
     """Read the attitudes of one body from a CSV file with the columns that `Trajectory.save` writes.
 
     Columns are found by name, in any order: ``time`` and ``attitude_w``, ``_x``, ``_y``, ``_z`` are needed,
-    the others may be missing, and unknown ones are an error. Every number that was saved is read to the same
-    bits.
+    the others may be missing, and unknown ones are an error. They are separated by commas, or else by
+    semicolons or tabs, as in the first line. Every number that was saved is read to the same bits.
 
     Parameters
     ----------
@@ -62,7 +63,8 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
     """
     name = os.fsdecode(path)
     source = Source(name, io.StringIO(_text(path, name), newline=None).read().split("\n"))
-    rows = _rows(source)
+    separator = separator_of(source.lines[0])
+    rows = _rows(source, separator)
     header = [word.strip() for word in next(rows, (1, []))[1]]
     if not header:
         raise FileError(f"{name}: error: the file is empty; its first line must name the columns")
@@ -74,7 +76,7 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
         if len(row) != len(header):
             words = f"expected {len(header)} numbers as in the first line, got {len(row)}"
             raise FileError(source.error(line, 0, words))
-        numbers.append([_number(source, line, row, k) for k in range(len(row))])
+        numbers.append([_number(source, separator, line, row, k) for k in range(len(row))])
         lines.append(line)
     found = np.array(numbers).reshape(len(numbers), len(header))
     columns = dict(zip(header, found.T, strict=True))
@@ -87,7 +89,7 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
         return _history(columns, body, {})
     except RowError as error:
         line, place = lines[error.row], header.index(error.column)
-        raise FileError(source.error(line, _start(source, line, place), error.words)) from None
+        raise FileError(source.error(line, _start(source, separator, line, place), error.words)) from None
     except (TypeError, ValueError) as error:
         raise FileError(source.error(1, 0, str(error))) from None
 
@@ -166,9 +168,9 @@ def _text(path: str | os.PathLike[str], name: str) -> str:
     return text
 
 
-def _rows(source: Source) -> Iterator[tuple[int, list[str]]]:
+def _rows(source: Source, separator: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the fields of each row, and the number of its last line."""
-    rows = csv.reader(source.lines)
+    rows = csv.reader(source.lines, delimiter=separator)
     try:
         for row in rows:
             yield rows.line_num, row
@@ -176,7 +178,7 @@ def _rows(source: Source) -> Iterator[tuple[int, list[str]]]:
         raise FileError(source.error(rows.line_num, 0, f"not a row of numbers: {error}")) from None
 
 
-def _number(source: Source, line: int, row: list[str], k: int) -> float:
+def _number(source: Source, separator: str, line: int, row: list[str], k: int) -> float:
     word = row[k].strip()
     try:
         value = float(word) if word.isascii() and "_" not in word else None
@@ -185,14 +187,14 @@ def _number(source: Source, line: int, row: list[str], k: int) -> float:
     if value is None or math.isinf(value):
         problem = f"{row[k]!r} is not a finite number" if word else "the field is empty"
         raise FileError(
-            source.error(line, _start(source, line, k), f"{problem}; correct it or remove the row")
+            source.error(line, _start(source, separator, line, k), f"{problem}; correct it or remove the row")
         )
     return value
 
 
-def _start(source: Source, line: int, k: int) -> int:
+def _start(source: Source, separator: str, line: int, k: int) -> int:
     """Return the number of characters before a field of a line."""
-    return sum(len(x) + 1 for x in source.lines[line - 1].split(",")[:k])
+    return sum(len(x) + 1 for x in source.lines[line - 1].split(separator)[:k])
 
 
 def _history(columns: dict[str, Array], body: int | None, attributes: dict[str, Any]) -> AttitudeHistory:

@@ -49,6 +49,11 @@ _HEADS = {
 }
 
 
+def separator_of(header: str) -> str:
+    """Return the separator of a CSV file by its first line: commas, or else semicolons or tabs."""
+    return next((x for x in ",;\t" if x in header), ",")
+
+
 def suffix_of(path: str | os.PathLike[str]) -> str:
     """Return the suffix of a file in lower case; if it is not known, that of files with its first bytes."""
     suffix = Path(path).suffix.lower()

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from polhode._algebra.rates import attitude_from_rates, rates_from_attitude
     from polhode._algebra.screws import Screw, adjoint_matrix, screw_parameters
     from polhode._algebra.serialize import from_dict, to_dict
+    from polhode._algebra.spherical import direction, longitude_latitude
     from polhode._algebra.transform import RigidTransform
     from polhode._fit.fit import fit
     from polhode._fit.periods import omega_from_periods
@@ -74,9 +75,9 @@ __all__ = [
     "LagrangeTop", "LarmorSphere", "LinearMap", "Moments", "Multivector", "ReducedEnsemble", "RigidTransform",
     "Rotor", "RotorSpline", "Scene", "SceneError", "Screw", "State", "Stepper", "SymmetricTop", "Trajectory",
     "adjoint_matrix", "algebra", "align", "attitude_from_rates", "axial", "bivector", "cga", "concatenate",
-    "cross", "describe_free", "e1", "e2", "e3", "evaluate", "event", "fit", "force", "formula",
-    "from_axial", "from_dict", "from_pauli", "io", "left_jacobian", "mean", "multivector",
-    "omega_from_periods", "pga", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf",
+    "cross", "describe_free", "direction", "e1", "e2", "e3", "evaluate", "event", "fit", "force", "formula",
+    "from_axial", "from_dict", "from_pauli", "io", "left_jacobian", "longitude_latitude", "mean",
+    "multivector", "omega_from_periods", "pga", "rates_from_attitude", "read_mjcf", "read_sdf", "read_urdf",
     "reciprocal_frame", "right_jacobian", "scalar", "screw_parameters", "simulate", "simulate_blocks",
     "slerp", "split", "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
 ]
@@ -96,6 +97,7 @@ _LATER = {
         "_algebra.rates": "attitude_from_rates rates_from_attitude",
         "_algebra.screws": "Screw adjoint_matrix screw_parameters",
         "_algebra.serialize": "from_dict to_dict",
+        "_algebra.spherical": "direction longitude_latitude",
         "_algebra.transform": "RigidTransform",
         "_fit.fit": "fit",
         "_fit.periods": "omega_from_periods",

@@ -109,9 +109,11 @@ CALLS = {
             "from_pauli": numbers(_BATCH, 2, 2),
             "left_jacobian": V,
             "right_jacobian": V,
+            "longitude_latitude": V,
         }.items()
     },
     "axial": Call(lambda b: ph.axial(ph.bivector(b)), (B,)),
+    "direction": Call(ph.direction, (ANGLES, WEIGHTS)),
     "cross": Call(lambda a, b: ph.cross(ph.vector(a), ph.vector(b)), (V, B)),
     "split": Call(lambda a, b: ph.split(ph.vector(a), ph.vector(b)), (V, B)),
     "stack": Call(lambda a, b: ph.stack([ph.vector(a), ph.vector(b)]), (V, B)),

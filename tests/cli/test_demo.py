@@ -10,7 +10,8 @@ import pytest
 import polhode as ph
 from command_line import EXAMPLES, ROOT, polhode
 from polhode._cli import main
-from polhode._cli.examples import FOLDER, examples
+from polhode._cli.examples import examples
+from polhode._support.file_kinds import EXAMPLES as FOLDER
 
 # --- demo
 
@@ -170,7 +171,7 @@ def test_a_folder_is_created_or_is_an_error(tmp_path):
 
 
 def test_examples_that_are_missing(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("polhode._cli.examples.FOLDER", tmp_path)
+    monkeypatch.setattr("polhode._cli.examples.EXAMPLES", tmp_path)
     assert main.main(["examples"]) == 1
     assert f"{tmp_path} has no examples" in capsys.readouterr().err
 

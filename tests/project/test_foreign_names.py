@@ -178,6 +178,7 @@ MOVING = {
     "CLOSED_FORM": ph.FreeMotion(BOX.inertia, BASE["R"], [0, 0, 1]),
     "TRAJECTORY": ph.simulate(BOX, START, [0, 1]),
     "STEPPER": ph.Stepper(BOX, START),
+    "HISTORY": ph.io.AttitudeHistory.of(ph.simulate(BOX, START, [0, 1])),
 }
 
 
@@ -192,6 +193,7 @@ MOVING = {
         ("TRAJECTORY", "sol"),
         ("STEPPER", "qpos"),
         ("STEPPER", "qvel"),
+        ("HISTORY", "omega"),
     ],
 )
 def test_the_error_of_a_motion_tells_what_works(table, name):
@@ -230,6 +232,14 @@ TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
         (lambda: ph.stack([e1, e2], dim=0), "its arguments are (values, axis=0)"),
         (lambda: ph.attitude_from_rates(t=[0, 1], omega_body=V), "times="),
         (lambda: RigidTransform(rotation=R), "rotor="),
+        (lambda: R.to_euler(degrees=True), "its arguments are (seq, degrees=False)"),
+        (lambda: ph.omega_from_periods([1, 2, 3], 4, 5), "with mode='long' or 'short'"),
+        (lambda: e1(), "V(X) moves the multivector X"),
+        (lambda: Rotor.exp(e1), "Rotor.from_rotation_vector(v)"),
+        (lambda: Rotor.exp([0, 0, 1]), "Rotor.from_rotation_vector(v)"),
+        (lambda: T >> e1, "T.apply(x)"),
+        (lambda: ph.RotorSpline([0, 1], [T, T]), "RotorSpline(times, T.rotor)"),
+        (lambda: ph.stack([START, START]), "stack([x.rotor for x in states])"),
         *((lambda f=f: f([1, 2, 3], e1), "ph.vector(x)") for f in OPERATORS),
         *((lambda f=f: f(V, (1, 2, 3)), "ph.vector(x)") for f in OPERATORS),
         (lambda: e1.dot([1, 2, 3]), "ph.vector(x)"),

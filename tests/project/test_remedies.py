@@ -1,5 +1,7 @@
 """Errors name a remedy that helps; a missing file is a FileNotFoundError of any kind of file."""
 
+import math
+
 import pytest
 
 import polhode as ph
@@ -188,6 +190,33 @@ def test_a_scene_without_its_suffix_is_named(tmp_path):
     (tmp_path / "top.toml").write_text("")
     with pytest.raises(FileNotFoundError, match=r"no such file; use .*top\.toml$"):
         ph.Scene.read(tmp_path / "top")
+
+
+def test_a_missing_scene_of_the_name_of_an_example_is_copied(tmp_path):
+    for name in ("t-handle", "t-handle.toml"):
+        with pytest.raises(FileNotFoundError, match="`polhode examples t-handle` copies the example"):
+            ph.Scene.read(tmp_path / name)
+    with pytest.raises(FileNotFoundError, match=r"no such file$"):
+        ph.Scene.read(tmp_path / "t-handles.toml")
+
+
+def test_the_mean_of_motors_is_that_of_transforms():
+    M = ph.RigidTransform(ph.Rotor.random(3, rng=1), [1, 2, 3]).to_motor()
+    with pytest.raises(ValueError, match=r"write RigidTransform\.from_motor\(M\)\.mean\(\)\.to_motor\(\)"):
+        ph.mean(M)
+    assert ph.RigidTransform.from_motor(M).mean().to_motor().shape == ()
+
+
+def test_the_exponential_of_rotors_is_that_of_bivectors():
+    B = ph.bivector([0.1, 0.2, 0.3])
+    assert ph.Rotor.exp(B) == B.exp()
+    assert ph.Rotor.identity().exp().is_close(math.e)
+
+
+def test_values_traced_by_jax_name_its_module():
+    jax = pytest.importorskip("jax")
+    with pytest.raises(TypeError, match=r"the angular velocity must be known numbers, but JAX .*use ph\.jax"):
+        jax.jit(lambda w: ph.State(ph.Rotor.identity(), w).rotor.components)(jax.numpy.ones(3))
 
 
 def test_a_table_read_as_netcdf_names_its_reader(tmp_path):

@@ -169,6 +169,7 @@ CALLS = {
     "Multivector.meet": Call(lambda a, b: ph.bivector(a).meet(ph.bivector(b)), (V, B)),
     "Multivector.factor": Call(lambda b: ph.bivector(b).factor(), (B,)),
     "Rotor": Call(lambda r, x, n: (rotor(r)(ph.multivector(x)), rotor(r) ** n), (R, M, ANGLES)),
+    "Rotor.exp": Call(lambda r: rotor(r).exp(), (R,)),
     "Rotor.apply": Call(lambda r, x: rotor(r).apply(ph.vector(x)), (R, V)),
     "Rotor.from_components": Call(rotor, (R,)),
     "Rotor.from_plane_angle": Call(ph.Rotor.from_plane_angle, (B, ANGLES)),

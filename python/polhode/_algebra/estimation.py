@@ -66,6 +66,8 @@ def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None)
     rotors = stack(R) if listed else R
     if not isinstance(rotors, Rotor) or not all(rotors.shape):
         found = f"{R!r:.80}; see Rotor.from_quaternion, from_matrix and from_rotation_vector"
+        if isinstance(rotors, Multivector) and rotors.algebra.signature == (3, 0, 1):
+            found = "values of Cl(3,0,1); write RigidTransform.from_motor(M).mean().to_motor() for motors M"
         if isinstance(rotors, Rotor):
             found = f"a batch of shape {rotors.shape}"
         raise ValueError(f"mean needs rotors, at least one, got {found}")

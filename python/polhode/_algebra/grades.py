@@ -259,6 +259,8 @@ def _unified(
     for i, item in enumerate(items):
         if not isinstance(item, _native.Multivector):
             remedy = remedy_for(item, of_transforms)
+            if hasattr(item, "omega_body"):  # a State or a Trajectory
+                remedy = f"; write {name}([x.rotor for x in states]), and so omega_body and others"
             raise TypeError(f"{name} joins multivectors; item {i} is {type(item).__name__}{remedy}")
     if not items:
         raise ValueError(f"{name} needs at least one value")

@@ -122,6 +122,11 @@ class RotorSpline:
     def __init__(self, times: Any, rotors: Rotor | Sequence[Rotor], *, extrapolate: bool = False) -> None:
         if isinstance(times[0] if isinstance(times, list | tuple) and times else times, Rotor):
             raise TypeError("the times of a spline come first: RotorSpline(times, rotors)")
+        listed = isinstance(rotors, list | tuple) and rotors
+        spline = "RotorSpline(times, T.rotor), and interpolate T.translation, for transforms T"
+        if remedy := remedy_for(rotors[0] if listed else rotors, spline):
+            kind = type(rotors[0] if listed else rotors).__name__
+            raise TypeError(f"a spline needs rotors, got {kind}{remedy}")
         if not isinstance(rotors, Multivector) and isinstance(rotors, list | tuple) and rotors:
             rotors = stack(rotors)
         if not isinstance(rotors, Rotor) or len(rotors.shape) != 1 or rotors.shape[0] < 2:

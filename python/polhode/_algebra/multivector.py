@@ -384,7 +384,12 @@ class Multivector(_native.Multivector):
 
     __pow__ = _functions.power
     __rpow__ = _functions.power_of
-    __call__ = _versors.act
+    if TYPE_CHECKING:
+
+        def __call__(self, X: Multivector, /) -> Multivector: ...
+
+    else:
+        __call__ = _versors.act
     __rshift__ = _versors.sandwich
     __lshift__ = _versors.unshifted
 

@@ -259,6 +259,21 @@ class Rotor(_native.Rotor, Multivector):
     from_multivector = staticmethod(_parameters.from_multivector)
     group = staticmethod(_groups.group)
 
+    def exp(self: Any, *, errors: Errors = "raise") -> Any:
+        """``exp R``, which is not a rotor; those are ``B.exp()`` of a bivector B, and `from_rotation_vector`.
+
+        Examples
+        --------
+        >>> ph.Rotor.identity().exp()
+        2.7182818
+        """
+        if not isinstance(self, Rotor) and not (isinstance(self, Multivector) and self.grades == (2,)):
+            raise TypeError(
+                f"Rotor.exp takes a bivector, got {type(self).__name__}; write Rotor.from_rotation_vector(v) "
+                "for a rotation vector v, a.exp() for the exponential of any multivector a"
+            )
+        return Multivector.exp(self, errors=errors)
+
     # --- converters
 
     angle = property(_parameters.angle)
@@ -302,6 +317,7 @@ class Rotor(_native.Rotor, Multivector):
             found = computed("to_rotation_vector", self._data)
         return found if degrees is False or not in_degrees(degrees) else to_degrees(found)
 
+    @explains_calls
     def to_euler(self, seq: str, degrees: bool = False) -> Any:
         """Return Euler angles (..., 3) in radians about the three axes `seq`, named as in `from_euler`.
 

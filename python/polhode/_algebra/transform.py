@@ -363,6 +363,11 @@ class RigidTransform(TransformBatch):
     def __rmatmul__(self, other: Never) -> NoReturn:
         _refuse(other, "@", self)
 
+    def __rshift__(self, other: Never) -> Any:
+        if has_reflected(other, "__rrshift__"):
+            return NotImplemented
+        return _refuse(self, ">>", other)
+
     def inv(self) -> RigidTransform:
         """Return the transform that moves back.
 

@@ -19,7 +19,7 @@ _EVEN, _ODD = 0b101010101, 0b010101010
 _REMEDY = "only rotors and versors, products of invertible vectors, act on values; for a product write A * X"
 
 
-def act(V: Multivector, X: Multivector) -> Multivector:
+def act(V: Multivector, X: Multivector | None = None) -> Multivector:
     """``V X V⁻¹`` for a versor V, a product of vectors: ``(b*a)(x)`` turns by twice the angle from a to b.
 
     Of an odd number of vectors ``V X̂ V⁻¹``, with X̂ the grade involution, as in `reflect`. V has any length,
@@ -28,6 +28,10 @@ def act(V: Multivector, X: Multivector) -> Multivector:
     single = _native.versor_action(V, X)
     if single is not None:
         return single
+    if X is None:
+        raise TypeError(
+            "V(X) moves the multivector X by the versor V, got no X; the numbers of V are V.components"
+        )
     if not isinstance(X, _native.Multivector):
         raise TypeError(
             f"a versor acts on multivectors, got {type(X).__name__}; wrap arrays with ph.vector, for a "

@@ -12,6 +12,7 @@ import numpy as np
 
 from polhode._cli.common import DRIFTED, OK, add_command, add_folder, add_force, check_written, create_folder
 from polhode._support.arrays import Array
+from polhode._support.file_kinds import EXAMPLES
 
 if TYPE_CHECKING:
     from polhode._mechanics.trajectory import Trajectory
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 NAME = "t-handle"
 _PAGE, _FIGURES = f"{NAME}.html", (f"{NAME}-motion.png", f"{NAME}-polhode.png")
 _WIDTH, _HEIGHT = 72, 9
-FOLDER = Path(__file__).parents[1] / "_examples"
 
 
 def add(commands: Any) -> None:
@@ -46,9 +46,9 @@ def add(commands: Any) -> None:
 
 def examples() -> dict[str, Path]:
     """Return the scene files of the examples by name; a FileNotFoundError if there are none."""
-    if not (found := {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}):
+    if not (found := {path.stem: path for path in sorted(EXAMPLES.glob("*.toml"))}):
         raise FileNotFoundError(
-            f"{FOLDER} has no examples: polhode was installed without them; install a wheel, or copy them "
+            f"{EXAMPLES} has no examples: polhode was installed without them; install a wheel, or copy them "
             "from the folder examples/ of the source repository"
         )
     return found
@@ -56,7 +56,7 @@ def examples() -> dict[str, Path]:
 
 def lessons() -> dict[str, Path]:
     """Return the files of the lessons by name."""
-    return {path.stem: path for path in sorted((FOLDER / "lessons").glob("*.md"))}
+    return {path.stem: path for path in sorted((EXAMPLES / "lessons").glob("*.md"))}
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -13,6 +13,7 @@ from polhode._mechanics.bodies import Body
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.inertia import Inertia
 from polhode._support.arrays import Array, as_components, as_float, at_index, first_index, power_of_two
+from polhode._support.calls import explains_calls
 
 Mode = Literal["long", "short"]
 # Halvings of the interval of the wobble: its angle to rounding.
@@ -21,6 +22,7 @@ _HALVINGS = 52
 _EDGE = 1e-7
 
 
+@explains_calls
 def omega_from_periods(
     moments: Any, rotation_period: float, precession_period: float, *, mode: Mode
 ) -> Multivector:

@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 
 from polhode._algebra.constructors import vector
+from polhode._algebra.foreign_names import with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body
+from polhode._mechanics.foreign_names import HISTORY
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.result import Certificate
 from polhode._mechanics.trajectory import Trajectory
@@ -45,6 +47,7 @@ class RowError(ValueError):
 _OPTIONAL = {"omega_body": 2, "momentum_space": 2, "position": 1, "velocity": 1}
 
 
+@with_foreign_names(HISTORY)
 @dataclass(frozen=True, eq=False)
 class AttitudeHistory:
     """Attitudes of one body at n times, with the other quantities that a file has.

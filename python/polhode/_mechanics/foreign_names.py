@@ -67,3 +67,12 @@ CLOSED_FORM = {
 }
 
 CROSSINGS = dict.fromkeys(("t", "times"), "time")
+
+HISTORY = {
+    **STATE,
+    **dict.fromkeys(("omega", "omega_space", "angular_velocity", "rates"), "omega_body"),
+    "times": "time",
+    **dict.fromkeys(("at", "interpolate"), "RotorSpline(history.time, history.rotor)(t)"),
+    **dict.fromkeys(("save", "write", "to_csv"), "ph.io.write(history, path)"),
+    **dict.fromkeys(("plot", "view", "film", "to_dataframe"), "trajectory(body), which has it"),
+}

@@ -24,6 +24,7 @@ from polhode._scene.ensemble import EnsembleSpec
 from polhode._scene.table import TableReader
 from polhode._support.arrays import Array, frozen, hands_out_copies
 from polhode._support.calls import created_by
+from polhode._support.file_kinds import EXAMPLES
 from polhode._support.files import is_endless
 from polhode.force import Force
 from polhode.torque import Torque
@@ -188,10 +189,7 @@ class Scene:
         except SceneError as error:
             if os.path.lexists(path):
                 raise
-            named = Path(f"{os.fsdecode(path)}.toml")
-            raise SceneNotFoundError(
-                f"{error}; use {named}" if os.path.isfile(named) else str(error)
-            ) from None
+            raise SceneNotFoundError(f"{error}{_found_instead(os.fsdecode(path))}") from None
         return Scene(Path(path), core.fields()["times"], EnsembleSpec._of(core, table.sha256), core)
 
     def __post_init__(self) -> None:
@@ -488,3 +486,13 @@ def _sum_of(calls: list[tuple[str, tuple[Any, ...]]]) -> Force | None:
     """Return the sum of forces, each given as name and arguments of a function of `polhode.force`."""
     laws: list[Force] = [getattr(forces, name)(*arguments) for name, arguments in calls]
     return sum(laws[1:], laws[0]) if laws else None
+
+
+def _found_instead(path: str) -> str:
+    """Return the end of an error for a missing file: a scene or an example of its name, if there is one."""
+    if os.path.isfile(named := f"{path}.toml"):
+        return f"; use {named}"
+    example = Path(path).name.removesuffix(".toml")
+    if (EXAMPLES / f"{example}.toml").is_file():
+        return f"; `polhode examples {example}` copies the example of this name"
+    return ""

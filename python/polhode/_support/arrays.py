@@ -38,6 +38,12 @@ def as_floats(values: Any, what: str) -> Array:
         array = np.asarray(values)
     except ValueError as error:
         raise TypeError(f"{what} must be an array of real numbers; the rows have unequal lengths") from error
+    except TypeError as error:
+        if type(error).__name__ == "TracerArrayConversionError":
+            raise TypeError(
+                f"{what} must be known numbers, but JAX traces it, for jit, grad or vmap; use ph.jax there"
+            ) from None
+        raise
     if array.dtype == object and all(isinstance(x, int | float) for x in array.flat):
         try:  # integers beyond 64 bits
             array = array.astype(np.float64)

@@ -8,6 +8,9 @@ from pathlib import Path
 from polhode._native import SceneError
 from polhode._support.files import UnreadableError
 
+# The example scenes of the package.
+EXAMPLES = Path(__file__).parents[1] / "_examples"
+
 _PICTURE = "a picture, which is written, not read"
 _MESH = "a mesh: `polhode check {0}` checks it, and a scene names it as mesh in its table [body]"
 _ROBOT = "a robot file: `polhode check {0}` checks it"

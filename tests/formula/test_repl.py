@@ -34,6 +34,13 @@ def test_names_get_values_and_formulas_print_theirs(prompt):
     ]  # fmt: skip
 
 
+def test_a_name_whose_letters_have_values_is_remarked(prompt):
+    note = "`aB` is now one name, not the product `a B`; `a B == …` compares"
+    lines = ("a = e1", "B = e12", "aB = a·B + a∧B", "aB = a", "ab = 2", "let Ba = a", "a1 = a")
+    assert answers(prompt, *lines) == ["", "", note, "", "", "", ""]
+    assert answers(prompt, "aB", "a B == a·B + a∧B")[0] == "e1"
+
+
 def test_equations_compare(prompt):
     prompt.answer("a = e1 + e2")
     assert prompt.answer("a a == 2") == "true, residual 0 of terms of size 2"

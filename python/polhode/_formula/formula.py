@@ -310,8 +310,17 @@ def formula(
     return Formula(_native.Formula(text, algebra, definitions, names))
 
 
-def evaluate(text: str, values: Mapping[str, Any] | None = None, /, **named: Any) -> Any:
+def evaluate(
+    text: str,
+    values: Mapping[str, Any] | None = None,
+    /,
+    *,
+    define: Mapping[str, str] | None = None,
+    **named: Any,
+) -> Any:
     """Return the value of a formula: ``ph.evaluate("-I a∧b", a=a, b=b)``. See `Formula`.
+
+    `define` has functions and names by formulas, as for `formula`.
 
     Examples
     --------
@@ -322,8 +331,10 @@ def evaluate(text: str, values: Mapping[str, Any] | None = None, /, **named: Any
     2 e3
     >>> bool(ph.evaluate("a b = a·b + a∧b", a=a, b=b))
     True
+    >>> ph.evaluate("V(a + b) - V(a)", a=a, b=b, define={"V(x)": "½ x·x"})
+    3.5
     """
-    found = _compiled(text) if isinstance(text, str) else formula(text)
+    found = _compiled(text) if isinstance(text, str) and define is None else formula(text, define=define)
     return found(*(() if values is None else (values,)), **named)
 
 

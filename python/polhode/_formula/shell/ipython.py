@@ -86,6 +86,8 @@ def magic(everything: dict[str, Any]) -> Any:
                 answer = run(text) if text else None
             except LineError as mistake:
                 raise NotebookError(mistake.shown("%ga", number, text)) from None
+            if answer and answer.note:
+                print(answer.note)
             if answer and answer.name is None:
                 value = answer.value
         return value

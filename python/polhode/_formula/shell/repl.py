@@ -67,7 +67,7 @@ class Prompt:
         if not line.startswith(":"):
             start = after_let(line)
             answer = self.session.run(line, start, assigns=True if start else None)
-            return "" if answer.name else text_of(answer.value)
+            return answer.note if answer.name else text_of(answer.value)
         word = line.split()[0]
         command = self._commands.get(word)
         if command is None:

@@ -39,13 +39,14 @@ class LineError(Exception):
 class Answer:
     """The outcome of a line: its value, and the name that got it, if any.
 
-    A definition of a function has no value.
+    A definition of a function has no value. `note` is a remark for the user, or empty.
     """
 
     value: Any = None
     name: str | None = None
     formula: Formula | None = None
     given: Mapping[str, Any] = field(default_factory=dict)
+    note: str = ""
 
     def spelled(self, style: str) -> str:
         """Return the formula in the canonical spelling of a style, "unicode", "ascii" or "latex"."""
@@ -99,9 +100,10 @@ class Session:
             return answer
         if isinstance(answer.value, Agreement):
             raise LineError(*read.error(_native.EQUATION_AS_VALUE))
+        note = self._note(read.name) if assigns is None else ""
         self.values[read.name] = answer.value
         self.functions.pop(read.name, None)
-        return replace(answer, name=read.name)
+        return replace(answer, name=read.name, note=note)
 
     def about(self, line: str, start: int, what: Callable[..., T]) -> T:
         """Return the result of `what` for the formula ``line[start:]`` and the values of names."""
@@ -157,6 +159,20 @@ class Session:
         if not isinstance(value, Agreement):
             self._last = value
         return Answer(value, None, parsed, given)
+
+    def _note(self, name: str) -> str:
+        """Return a remark on a new name whose letters have values: `aB = …` may be meant as an equation."""
+        if name in self.names or not name.isalpha():
+            return ""
+        try:
+            tree = formula(name).tree(**_given(self.functions, self.values))
+        except (FormulaError, TypeError):
+            return ""
+        if tree["kind"] != "product":
+            return ""
+        return (
+            f"`{name}` is now one name, not the product `{' '.join(name)}`; `{' '.join(name)} == …` compares"
+        )
 
     def _define(self, read: _native.Line, name: str, head: str) -> None:
         """Define a function, whose other names must have values."""

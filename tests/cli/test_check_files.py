@@ -144,6 +144,7 @@ def test_a_mass_is_a_positive_number(mass, tmp_path, check):
         ('length_unit = "mm"', 'density = "7.85 g/cm^3"', []),
         ("", 'density = "7.85 g/cm^3"', ["mesh is 120 x 86 x 24 m, longer", "which is now the metre"]),
         ("length_unit = 0.01 # cm", "mass = 0.3", []),
+        ('length_unit = "km"', "mass = 1e14", []),
         ('length_unit = "um"', "mass = 0.3", ["more than osmium", 'length_unit, which is now "um"']),
         ('length_unit = "mm"', "density = 7.85e6", ["7.85e+06 kg/m³, more than osmium"]),
     ],

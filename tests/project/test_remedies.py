@@ -289,3 +289,12 @@ def test_the_shape_of_wheel_torques_is_named_once():
     wheels = ph.torque.reaction_wheels([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0.1] * 3)
     with pytest.raises(ValueError, match=r"wheel_torque must be of shape \(3,\), got \(2,\)"):
         ph.Stepper(BODY, START, wheels).step(0.1, wheel_torque=[1, 2])
+
+
+def test_a_key_of_jax_and_text_for_a_number_are_named(tmp_path):
+    jax = pytest.importorskip("jax")
+    with pytest.raises(TypeError, match=r"got a key of JAX; pass its normal .*from_components"):
+        ph.Rotor.random(3, rng=jax.random.key(0))
+    (tmp_path / "a.obj").write_text("")
+    with pytest.raises(TypeError, match="the scale must be a number in SI units, got the text 'km'"):
+        ph.Body.from_mesh(tmp_path / "a.obj", density=1, scale="km")

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 _MESHES = (".stl", ".obj", ".ply")
 _ROBOTS = (".urdf", ".sdf", ".xml", ".mjcf", ".world", ".xacro")
 
-# Meshes longer than this, in m, or thinner than this, in kg/m³, are questioned. A balloon satellite, counted
-# as full, has 0.005 kg/m³.
+# Meshes longer than this, in m, if their unit is not km, or thinner than this, in kg/m³, are questioned. A
+# balloon satellite, counted as full, has 0.005 kg/m³.
 _LONGEST, _THINNEST = 100.0, 1e-3
 # An angle in a scene that is a bare number, and so in radians.
 _ANGLE = re.compile(r"\bangle\s*=\s*([+-]?[0-9][0-9_]*(?:\.[0-9_]+)?(?:[eE][+-]?[0-9]+)?)")
@@ -142,7 +142,8 @@ def _doubts_of_scene(scene: Scene) -> Iterator[str]:
         line = scene.text.count("\n", 0, mesh.start(1)) + 1
         column = mesh.start(1) - (scene.text.rfind("\n", 0, mesh.start(1)) + 1)
     source = Source(str(scene.path), scene.text.split("\n"))
-    for words in _doubts(np.ptp(vertices, axis=0), density):
+    longest = math.inf if unit and unit[2].strip('"') == "km" else _LONGEST  # as asteroids
+    for words in _doubts(np.ptp(vertices, axis=0), density, longest):
         yield source.error(line, column, words + remedy, "warning")
 
 
@@ -184,12 +185,12 @@ def _box(body: Body) -> Array:
     return np.asarray(np.sqrt(np.maximum(squares, 0)), float)
 
 
-def _doubts(lengths: Array, density: float | None) -> Iterator[str]:
+def _doubts(lengths: Array, density: float | None, longest: float = _LONGEST) -> Iterator[str]:
     """Yield what is improbable about the lengths (3,) of a mesh in m and its density in kg/m³."""
     from polhode._mechanics.robots.slips import OSMIUM
 
-    if max(lengths) > _LONGEST:
-        yield f"mesh is {' x '.join(f'{x:.3g}' for x in lengths)} m, longer than {_LONGEST:g} m"
+    if max(lengths) > longest:
+        yield f"mesh is {' x '.join(f'{x:.3g}' for x in lengths)} m, longer than {longest:g} m"
     if density is not None and density > OSMIUM:
         yield f"mesh has {density:.3g} kg/m³, more than osmium ({OSMIUM:g} kg/m³)"
     if density is not None and density < _THINNEST:

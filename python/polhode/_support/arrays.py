@@ -91,6 +91,8 @@ def leaves(value: Any) -> Iterator[Any]:
 
 def as_float(value: Any, what: str) -> float:
     """Convert one real number; a TypeError for anything else."""
+    if isinstance(value, str):
+        raise TypeError(f"{what} must be a number in SI units, got the text {value!r}")
     array = as_floats(value, what)
     if array.ndim:
         raise TypeError(f"{what} must be one number, got shape {array.shape}")
@@ -197,7 +199,11 @@ def normal_numbers(shape: Shape, rng: np.random.Generator | int | None, what: st
     try:
         generator, numbers = np.random.default_rng(rng), np.empty(shape)
     except TypeError:
-        raise TypeError(f"rng must be a NumPy generator, a whole number or None, got {rng!r}") from None
+        key = "key<" in str(getattr(rng, "dtype", ""))  # of JAX
+        found = (
+            "a key of JAX; pass its normal numbers (..., 4) to Rotor.from_components" if key else repr(rng)
+        )
+        raise TypeError(f"rng must be a NumPy generator, a whole number or None, got {found}") from None
     line = numbers.reshape(-1)
     for first in range(0, line.size, _DRAWN):  # Ctrl-C stops between them
         generator.standard_normal(out=line[first : first + _DRAWN])

@@ -23,6 +23,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.laws import function_of, law_of_formula, number, shown
 from polhode._mechanics.parameters import check_finite
 from polhode._support.arrays import power_of_two
+from polhode._support.calls import explains_calls
 
 __all__ = ["Event", "angle", "formula", "function", "plane", "position", "spin"]
 
@@ -66,6 +67,7 @@ def __dir__() -> list[str]:
     return __all__
 
 
+@explains_calls
 def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: bool = False) -> Event:
     """Return the event that the angle between a direction of the body and one of space is reached.
 
@@ -97,6 +99,7 @@ def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: 
     return _event("angle", direction, terminal, _direction(body, "body"), _direction(space, "space"), value)
 
 
+@explains_calls
 def plane(body: Any, normal: Any, *, direction: int = 0, terminal: bool = False) -> Event:
     """Return the event that a direction of the body crosses the plane of space with this normal.
 
@@ -116,6 +119,7 @@ def plane(body: Any, normal: Any, *, direction: int = 0, terminal: bool = False)
     return _event("plane", direction, terminal, _direction(body, "body"), _direction(normal, "normal"))
 
 
+@explains_calls
 def spin(plane: Any, rate: float = 0.0, *, direction: int = 0, terminal: bool = False) -> Event:
     """Return the event that the spin in a plane of the body, a bivector or (3,), crosses a rate in rad/s.
 
@@ -139,6 +143,7 @@ def spin(plane: Any, rate: float = 0.0, *, direction: int = 0, terminal: bool = 
     return _event("spin", direction, terminal, _unit(components, "the plane"), number(rate, "rate"))
 
 
+@explains_calls
 def position(normal: Any, distance: float = 0.0, *, direction: int = 0, terminal: bool = False) -> Event:
     """Return the event that the centre of mass crosses ``x·n = distance`` (m), with n the unit normal.
 
@@ -156,6 +161,7 @@ def position(normal: Any, distance: float = 0.0, *, direction: int = 0, terminal
     return _event("position", direction, terminal, along, level)
 
 
+@explains_calls
 def formula(text: str, /, *, direction: int = 0, terminal: bool = False, **values: Any) -> Event:
     """Return the event that a formula in the handout's notation crosses zero: ``formula("x·e3 - h", h=2)``.
 
@@ -177,6 +183,7 @@ def formula(text: str, /, *, direction: int = 0, terminal: bool = False, **value
     return law_of_formula(lambda given: _event("formula", direction, terminal, text, given), text, values)
 
 
+@explains_calls
 def function(
     f: Callable[[float, Rotor, Multivector, Multivector, Multivector], Any],
     *,

@@ -17,6 +17,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.forces import Force, force_of, native_force
 from polhode._mechanics.laws import function_of, law_of_formula
 from polhode._mechanics.parameters import named_together
+from polhode._support.calls import explains_calls
 from polhode._support.package_names import missing_law
 
 __all__ = [
@@ -51,6 +52,7 @@ if not TYPE_CHECKING:
         raise missing_law("force", name, _FOREIGN)
 
 
+@explains_calls
 def constant(F: Any) -> Force:
     """Return a force constant in space, a vector or (..., 3) in N.
 
@@ -67,6 +69,7 @@ def constant(F: Any) -> Force:
     return force_of("constant", F)
 
 
+@explains_calls
 def thrust(force: Any, at: Any = None) -> Force:
     """Return a force F constant in body axes, a vector or (..., 3) in N, such as a thruster's.
 
@@ -86,6 +89,7 @@ def thrust(force: Any, at: Any = None) -> Force:
     return force_of("thrust", force) if at is None else force_of("thrust", force, at)
 
 
+@explains_calls
 def drag(k: Any) -> Force:
     """Return ``−k v``, k (...) in N s/m. The centre of mass moves in closed form.
 
@@ -110,6 +114,7 @@ def drag(k: Any) -> Force:
     return force_of("drag", k)
 
 
+@explains_calls
 def quadratic_drag(k: Any) -> Force:
     """Return ``−k |v| v``, k (...) in N s²/m², ``k >= 0``.
 
@@ -126,6 +131,7 @@ def quadratic_drag(k: Any) -> Force:
     return force_of("quadratic_drag", k)
 
 
+@explains_calls
 def spring(stiffness: Any, anchor: Any = 0) -> Force:
     """Return ``−k (x − anchor)``, the stiffness k (...) in N/m, the anchor a point in space, (..., 3) in m.
 
@@ -144,6 +150,7 @@ def spring(stiffness: Any, anchor: Any = 0) -> Force:
     return force_of("spring", stiffness, anchor)
 
 
+@explains_calls
 def central(mu: Any) -> Force:
     """Return ``−μ m x/|x|³``: attraction by a centre at the origin of space, μ = G M (...) in m³/s².
 
@@ -162,6 +169,7 @@ def central(mu: Any) -> Force:
     return force_of("central", mu)
 
 
+@explains_calls
 def formula(text: str, /, **values: Any) -> Force:
     """Return the force of a formula in the handout's notation: ``formula("-k v", k=0.5)``.
 
@@ -205,6 +213,7 @@ def formula(text: str, /, **values: Any) -> Force:
     return law_of_formula(law, text, values, batches=True)
 
 
+@explains_calls
 def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Force:
     """Return the force of a Python function ``f(t, position, velocity, rotor)``.
 

@@ -28,6 +28,7 @@ from polhode._mechanics.registry import FRAMES, INTERPOLATIONS
 from polhode._mechanics.torques import Torque, native_torque, torque_of
 from polhode._mechanics.wheels import wheel_arguments
 from polhode._support.arrays import as_floats
+from polhode._support.calls import explains_calls
 from polhode._support.package_names import missing_law
 
 __all__ = [
@@ -78,6 +79,7 @@ if not TYPE_CHECKING:
 # --- fields
 
 
+@explains_calls
 def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
     """Return the torque of uniform gravity along −e3 on a body held at a pivot.
 
@@ -138,6 +140,7 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
     )
 
 
+@explains_calls
 def heavy(c: Any) -> Torque:
     """Return the torque of uniform gravity along −e3 on a body held at the origin of its axes.
 
@@ -161,6 +164,7 @@ def heavy(c: Any) -> Torque:
     return torque_of("heavy", c)
 
 
+@explains_calls
 def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -> Torque:
     """Return the torque of a planet's gravity gradient on a Kepler orbit in the plane e1e2 of space.
 
@@ -197,6 +201,7 @@ def gravity_gradient(rate: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0
     return torque_of("gravity_gradient", rate, eccentricity, mean_anomaly)
 
 
+@explains_calls
 def magnetic(dipole: Any, field: Any, orbit: KeplerOrbit | None = None) -> Torque:
     """Return the torque on a dipole of the body in a magnetic field, constant in space or along an orbit.
 
@@ -237,6 +242,7 @@ def magnetic(dipole: Any, field: Any, orbit: KeplerOrbit | None = None) -> Torqu
     return native_torque("magnetic_on_orbit", own, orbit._numbers, met)
 
 
+@explains_calls
 def larmor(b: Any) -> Torque:
     """Return the torque with the axial vector ``L x b`` in space; b is a vector, (3,) or (..., 3), in rad/s.
 
@@ -255,6 +261,7 @@ def larmor(b: Any) -> Torque:
     return torque_of("larmor", b)
 
 
+@explains_calls
 def radiation_pressure(
     area: Any, offset: Any, sun: Any, coefficient: Any = 1.0, pressure: Any = 4.56e-6
 ) -> Torque:
@@ -292,6 +299,7 @@ def radiation_pressure(
 # --- springs, dampers, control
 
 
+@explains_calls
 def damping(g: Any) -> Torque:
     """Return the torque ``−g I(Ω_B)``, g in 1/s, (...): alone, it lets the spin decay as ``exp(−g t)``.
 
@@ -309,6 +317,7 @@ def damping(g: Any) -> Torque:
     return torque_of("damping", g)
 
 
+@explains_calls
 def viscous_damping(d: Any) -> Torque:
     """Return the torque ``−d Ω_B``, d >= 0 in N m s: a number, or three gains along the body axes.
 
@@ -328,6 +337,7 @@ def viscous_damping(d: Any) -> Torque:
     return torque_of("viscous_damping", d)
 
 
+@explains_calls
 def quadratic_damping(k: Any) -> Torque:
     """Return the torque ``−k |Ω_B| Ω_B``, as for fast rotation in air; k >= 0 in N m s².
 
@@ -344,6 +354,7 @@ def quadratic_damping(k: Any) -> Torque:
     return torque_of("quadratic_damping", k)
 
 
+@explains_calls
 def torsion_spring(stiffness: Any, rest: Rotor | None = None) -> Torque:
     """Return the torque ``−k Θ`` of ``V = ½ k |Θ|²``, with Θ the rotation from the rest attitude.
 
@@ -370,6 +381,7 @@ def torsion_spring(stiffness: Any, rest: Rotor | None = None) -> Torque:
     return torque_of("torsion_spring", stiffness, rest)
 
 
+@explains_calls
 def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
     """Return the torque ``−kp Θ − kd Ω_B`` of a controller that brings the body to rest at an attitude.
 
@@ -396,6 +408,7 @@ def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
     return torque_of("pd_control", kp, kd, target)
 
 
+@explains_calls
 def gyrostat(h: Any) -> Torque:
     """Return a wheel in the body that spins at a constant rate.
 
@@ -418,6 +431,7 @@ def gyrostat(h: Any) -> Torque:
     return torque_of("gyrostat", h)
 
 
+@explains_calls
 def reaction_wheels(
     axes: Any,
     inertias: Any,
@@ -487,6 +501,7 @@ def reaction_wheels(
 # --- given values
 
 
+@explains_calls
 def constant_body(N: Any) -> Torque:
     """Return a torque N that is constant in body axes, a bivector, (3,) or (..., 3) in N m.
 
@@ -503,6 +518,7 @@ def constant_body(N: Any) -> Torque:
     return torque_of("constant_body", N)
 
 
+@explains_calls
 def constant_space(N: Any) -> Torque:
     """Return a torque N that is constant in space axes, a bivector, (3,) or (..., 3) in N m.
 
@@ -519,6 +535,7 @@ def constant_space(N: Any) -> Torque:
     return torque_of("constant_space", N)
 
 
+@explains_calls
 def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
     """Return a torque interpolated in a table of times.
 
@@ -558,6 +575,7 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
     )
 
 
+@explains_calls
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     """Return the torque of a formula in the handout's notation: ``formula("-c ∧ (~R e3 R)", c=c)``.
 
@@ -609,6 +627,7 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     return law_of_formula(law, text, values, batches=True)
 
 
+@explains_calls
 def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
     """Return the torque of a Python function ``f(t, rotor, omega_body)``.
 

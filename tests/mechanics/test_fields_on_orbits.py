@@ -145,6 +145,9 @@ def test_laws_are_values():
     ("make", "error", "message"),
     [
         (lambda: T.KeplerOrbit(-1.0), ValueError, "semi_major_axis is -1; it must be positive"),
+        (lambda: T.KeplerOrbit(500e3), ValueError, "semi_major_axis is 500000 m, inside the Earth"),
+        (lambda: T.KeplerOrbit(altitude=500e3), TypeError, "its arguments are"),
+        (lambda: T.gravity_gradient(altitude=500e3), TypeError, "its arguments are"),
         (lambda: T.KeplerOrbit(7e6, 1.0), ValueError, "eccentricity is 1"),
         (lambda: T.KeplerOrbit(7e6, mu=np.inf), ValueError, "mu is inf"),
         (lambda: T.KeplerOrbit([7e6, 8e6]), TypeError, "semi_major_axis"),

@@ -26,7 +26,7 @@ def turn(t, rotor, omega_body):
     return [t, 2.0, 3.0]
 
 
-ORBIT = T.KeplerOrbit(1e-3, 0.1)
+ORBIT = T.KeplerOrbit(1e-3, 0.1, mu=1.0)
 TORQUES_OF_EACH_KIND = {
     "constant_body": T.constant_body([0.1, 0.2, 0.3]),
     "constant_space": T.constant_space([0.1, 0.2, 0.3]),

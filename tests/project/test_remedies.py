@@ -184,6 +184,8 @@ def test_arguments_of_another_type_name_the_form(call, remedy):
 def test_euler_angles_numbered_as_in_aerospace_are_lettered():
     with pytest.raises(ValueError, match="got '321'; write 'ZYX' for turns about body axes"):
         ph.Rotor.from_euler("321", [0.1, 0.2, 0.3])
+    with pytest.raises(ValueError, match="got 'rpy'; write 'xyz' for roll, pitch, yaw"):
+        ph.Rotor.from_euler("rpy", [0.1, 0.2, 0.3])
 
 
 def test_a_scene_without_its_suffix_is_named(tmp_path):

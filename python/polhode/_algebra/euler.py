@@ -61,6 +61,9 @@ def require_angles(seq: str, shape: Any) -> None:
 def _lettered(seq: object) -> str:
     """Return the remedy for a sequence of other libraries: ``321`` of aerospace, ``rzyx`` of transforms3d."""
     text = str(seq)
+    if text.lower() in ("rpy", "ypr"):
+        ours = "xyz" if text.lower() == "rpy" else "ZYX"
+        return f"; write {ours!r} for {'roll, pitch, yaw' if ours == 'xyz' else 'yaw, pitch, roll'}"
     if re.fullmatch("[123]{1,3}", text):
         return f"; write {text.translate(str.maketrans('123', 'XYZ'))!r} for turns about body axes"
     if re.fullmatch("s[xyz]{3}", text):

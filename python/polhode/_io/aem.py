@@ -21,6 +21,7 @@ from polhode._io.epochs import TIME_SYSTEMS, Epoch, elapsed, parse_epoch
 from polhode._io.history import AttitudeHistory, FileError, continuous
 from polhode._mechanics.robots.document import Source
 from polhode._support.arrays import Array
+from polhode._support.calls import explains_calls
 from polhode._support.files import contents
 
 # Numbers in a line of data after the epoch.
@@ -63,6 +64,7 @@ class _Segment:
     complete: bool = False
 
 
+@explains_calls
 def read_aem(
     path: str | os.PathLike[str],
     *,

@@ -13,12 +13,14 @@ from polhode import _native
 from polhode._io.epochs import TIME_SYSTEMS, later, parse_epoch
 from polhode._io.history import AttitudeHistory
 from polhode._mechanics.trajectory import Trajectory
+from polhode._support.calls import explains_calls
 from polhode._support.files import write_atomically
 
 # Comment by which `polhode._report.output.is_own` knows a file of ours.
 _OWN = "COMMENT Written by polhode"
 
 
+@explains_calls
 def write_aem(
     motion: Trajectory | AttitudeHistory,
     path: str | os.PathLike[str],

@@ -11,6 +11,7 @@ from polhode._io import aem, aem_writing, gltf, members, spice, tables
 from polhode._io.history import AttitudeHistory, FileError
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report import netcdf_reading
+from polhode._support.calls import explains_calls
 from polhode._support.file_kinds import suffix_of
 
 _READERS: dict[str, Callable[..., AttitudeHistory]] = {
@@ -54,6 +55,7 @@ def form_to_read(path: str | os.PathLike[str]) -> str:
     return form if form in READ else form_of(path, READ, "read")
 
 
+@explains_calls
 def read(path: str | os.PathLike[str], **options: Any) -> AttitudeHistory:
     """Read the attitudes of one body from a file, in the form of its suffix.
 
@@ -73,6 +75,7 @@ def read(path: str | os.PathLike[str], **options: Any) -> AttitudeHistory:
     return _READERS[form](path, **_with_kernels(options) if form == "bc" else options)
 
 
+@explains_calls
 def write(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[str], **options: Any) -> None:
     """Write the motion of one body to a file, atomically, in the form of its suffix.
 

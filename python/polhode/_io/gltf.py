@@ -17,6 +17,7 @@ from polhode._io.history import AttitudeHistory
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array
+from polhode._support.calls import explains_calls
 from polhode._support.files import write_atomically
 
 # Constants of glTF: component types, and targets of buffer views.
@@ -32,6 +33,7 @@ _FACES = [
 ]
 
 
+@explains_calls
 def write_gltf(
     motion: Trajectory | AttitudeHistory,
     path: str | os.PathLike[str],

@@ -17,6 +17,7 @@ from polhode._report.ensemble.arrays import zarr
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._report.table import ALONG_TIME
 from polhode._support.arrays import Array
+from polhode._support.calls import explains_calls
 from polhode._support.extras import optional
 from polhode._support.words import counted
 
@@ -24,6 +25,7 @@ from polhode._support.words import counted
 _OF_FILE = ("batch_shape", "bodies_complete", "number", "varied")
 
 
+@explains_calls
 def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
     """Read the attitudes of one body from a netCDF file that Polhode wrote.
 
@@ -76,6 +78,7 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
     return _single(name, fields, attributes)
 
 
+@explains_calls
 def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
     """Read the attitudes of one body from the Zarr store of an ensemble, which need not be complete.
 

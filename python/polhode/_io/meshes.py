@@ -14,11 +14,13 @@ from polhode._algebra.transform import RigidTransform
 from polhode._mechanics.bodies import Body
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array, as_float, as_floats
+from polhode._support.calls import explains_calls
 from polhode._support.files import loadable, write_atomically
 
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
+@explains_calls
 def read_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> tuple[Array, Array]:
     """Return the triangle mesh in a file (STL, OBJ or PLY), for `write_gltf`.
 
@@ -60,6 +62,7 @@ def read_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> tuple[Arra
     return vertices, np.array(triangles, int)
 
 
+@explains_calls
 def solid_surface(kind: str, *sizes: Any) -> tuple[Array, Array]:
     """Return the surface of a solid as a triangle mesh, as the page draws it, for `write_gltf`.
 
@@ -94,6 +97,7 @@ def solid_surface(kind: str, *sizes: Any) -> tuple[Array, Array]:
     return vertices, np.array(triangles, int)
 
 
+@explains_calls
 def write_stl(
     mesh: str | os.PathLike[str] | Scene, path: str | os.PathLike[str], *, scale: float = 1.0
 ) -> RigidTransform:

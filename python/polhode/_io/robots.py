@@ -11,6 +11,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._mechanics.bodies import Body
+from polhode._support.calls import explains_calls
 from polhode._support.files import write_atomically
 
 # The root link of a URDF file, from which the bodies are free.
@@ -19,6 +20,7 @@ _ROOT = "world"
 _LEAST = 1e-15
 
 
+@explains_calls
 def write_urdf(
     bodies: Body | Mapping[str, Body], path: str | os.PathLike[str], *, name: str = "body"
 ) -> None:
@@ -74,6 +76,7 @@ def write_urdf(
     _write(path, [*lines, "</robot>"])
 
 
+@explains_calls
 def write_mjcf(
     bodies: Body | Mapping[str, Body], path: str | os.PathLike[str], *, name: str = "body"
 ) -> None:

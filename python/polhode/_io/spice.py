@@ -24,6 +24,7 @@ from polhode._io.epochs import parse_epoch
 from polhode._io.history import AttitudeHistory, FileError, continuous
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array
+from polhode._support.calls import explains_calls
 from polhode._support.extras import optional
 from polhode._support.files import check_target, write_atomically
 
@@ -38,6 +39,7 @@ _RECORD, _SUMMARY, _MOST = 1024, (2, 6), 25
 _SYSTEMS = {"UTC": "UTC", "TT": "TDT", "TDB": "TDB"}
 
 
+@explains_calls
 def write_ck(
     motion: Trajectory | AttitudeHistory,
     path: str | os.PathLike[str],
@@ -156,6 +158,7 @@ def write_ck(
         write_atomically({Path(path): temporary.read_bytes()})
 
 
+@explains_calls
 def read_ck(
     path: str | os.PathLike[str],
     *,

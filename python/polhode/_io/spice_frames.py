@@ -16,6 +16,7 @@ import numpy as np
 from polhode import _native
 from polhode._io.epochs import elapsed, parse_epoch
 from polhode._support.arrays import as_components
+from polhode._support.calls import explains_calls
 from polhode._support.files import write_atomically
 
 _AXES = ("X", "-X", "Y", "-Y", "Z", "-Z")
@@ -232,6 +233,7 @@ class CkFrame:
         ]
 
 
+@explains_calls
 def write_fk(path: str | os.PathLike[str], frames: Sequence[TwoVectorFrame | CkFrame]) -> None:
     """Write a SPICE frame kernel, atomically.
 
@@ -267,6 +269,7 @@ def write_fk(path: str | os.PathLike[str], frames: Sequence[TwoVectorFrame | CkF
     _write(path, "FK", blocks)
 
 
+@explains_calls
 def write_sclk(path: str | os.PathLike[str], *, clock: int, epoch: str, time_system: str = "UTC") -> None:
     """Write the SPICE clock kernel of a clock that runs with TT, atomically.
 

@@ -23,11 +23,13 @@ from polhode._report import netcdf, netcdf_reading, table
 from polhode._report.output import encoded
 from polhode._report.table import ALONG_TIME, UNITS, columns_of
 from polhode._support.arrays import Array
+from polhode._support.calls import explains_calls
 from polhode._support.extras import optional
 from polhode._support.file_kinds import separator_of
 from polhode._support.files import contents, write_atomically
 
 
+@explains_calls
 def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
     """Read the attitudes of one body from a CSV file with the columns that `Trajectory.save` writes.
 
@@ -94,6 +96,7 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
         raise FileError(source.error(1, 0, str(error))) from None
 
 
+@explains_calls
 def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> AttitudeHistory:
     """Read the attitudes of one body from a Parquet file with the columns that `Trajectory.save` writes.
 

@@ -13,8 +13,14 @@ from polhode._algebra.multivector import Multivector
 from polhode._mechanics.laws import number
 from polhode._mechanics.parameters import vectors
 from polhode._support.arrays import as_floats, lengths
+from polhode._support.calls import explains_calls_of
+
+_EARTH = 3.986004418e14
+# The polar radius of the Earth, in m, rounded down.
+_RADIUS = 6.35e6
 
 
+@explains_calls_of
 @dataclass(frozen=True)
 class KeplerOrbit:
     """A Kepler orbit in the plane e1e2 of space, from e1 towards e2, with the periapsis on e1.
@@ -24,7 +30,7 @@ class KeplerOrbit:
     Parameters
     ----------
     semi_major_axis
-        a in m.
+        a in m, from the centre of the planet: at an altitude of 500 km above the Earth, 6.878e6.
     eccentricity
         e, at least 0 and below 1.
     mean_anomaly
@@ -46,11 +52,16 @@ class KeplerOrbit:
     semi_major_axis: float
     eccentricity: float = 0.0
     mean_anomaly: float = 0.0
-    mu: float = 3.986004418e14
+    mu: float = _EARTH
 
     def __post_init__(self) -> None:
         for name in ("semi_major_axis", "eccentricity", "mean_anomaly", "mu"):
             object.__setattr__(self, name, number(getattr(self, name), name))
+        if self.mu == _EARTH and 0 < self.semi_major_axis < _RADIUS:
+            raise ValueError(
+                f"semi_major_axis is {self.semi_major_axis:g} m, inside the Earth; it is in m from the "
+                "centre, such as 6378137 + altitude; give mu for another body"
+            )
         if not 0 < self.rate < np.inf:
             raise ValueError(
                 f"the mean motion of a semi-major axis of {self.semi_major_axis:g} m is {self.rate:g} rad/s, "

@@ -13,7 +13,7 @@ from polhode._mechanics.bodies import Body
 from polhode._mechanics.body_arrays import bodies_of, inertia_of
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.laws import finite, shown
-from polhode._mechanics.orbits import DipoleField, KeplerOrbit
+from polhode._mechanics.orbits import DipoleField
 from polhode._mechanics.parameters import CONVERSIONS, together
 from polhode._mechanics.pivot import HOLDING, about_pivot
 from polhode._mechanics.registry import TORQUES
@@ -129,7 +129,9 @@ def _text(law: _native.Law) -> str:
     if law.name == "magnetic_on_orbit":
         dipole, orbit, met = law.arguments
         field = DipoleField(met) if isinstance(met, tuple) else met
-        return shown("magnetic", [dipole, field], {"orbit": KeplerOrbit(*orbit)})
+        numbers = zip(("semi_major_axis", "eccentricity", "mean_anomaly", "mu"), orbit, strict=True)
+        text = ", ".join(f"{name}={x!r}" for name, x in numbers)  # also of a scene's orbit inside the Earth
+        return f"{shown('magnetic', [dipole, field], {})[:-1]}, orbit=KeplerOrbit({text}))"
     if law.name == "gravity":
         g, mass, center, pivot = law.arguments
         return shown("gravity", [], {"mass": mass, "center_of_mass": center, "g": g, "pivot": pivot})

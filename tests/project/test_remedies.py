@@ -300,3 +300,5 @@ def test_a_key_of_jax_and_text_for_a_number_are_named(tmp_path):
     (tmp_path / "a.obj").write_text("")
     with pytest.raises(TypeError, match="the scale must be a number in SI units, got the text 'km'"):
         ph.Body.from_mesh(tmp_path / "a.obj", density=1, scale="km")
+    with pytest.raises(TypeError, match=r"got a Body; write body\.inertia"):
+        ph.jax.free(ph.Body.sphere(1, mass=1), ph.Rotor.identity(), [0, 0, 1], 1.0)

@@ -71,7 +71,7 @@ MULTIVECTOR = {
     **dict.fromkeys(("T", "transpose"), "components.T"),
     "tolist": "components.tolist()",
     "value": "dense() or components",
-    "values": "components",
+    **dict.fromkeys(("values", "numpy"), "components"),
     **{
         name: f'A["e{axis}"], or ph.pga(3).coordinates(P)[..., {axis - 1}] of a point'
         for name, axis in (("x", 1), ("y", 2), ("z", 3))

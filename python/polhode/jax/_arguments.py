@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from polhode._algebra.multivector import Multivector
+from polhode._mechanics.bodies import Body
 from polhode._mechanics.inertia import Inertia
 from polhode._support.arrays import require_components
 from polhode.jax._components import Four, compose, joined, reverse, split, turned
@@ -56,6 +57,8 @@ def start(inertia: Any, rotor: Any, omega_body: Any) -> Start:
 
 def _body(inertia: Any) -> tuple[Array, Four | None]:
     """Return principal moments and the rotor from principal to body axes, None for the identity."""
+    if isinstance(inertia, Body):
+        raise TypeError("inertia must be principal moments or an Inertia, got a Body; write body.inertia")
     if isinstance(inertia, Inertia):
         frame = tuple(inertia.principal_frame.components.tolist())
         moments = jnp.asarray(inertia.principal_moments)

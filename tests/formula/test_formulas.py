@@ -194,6 +194,7 @@ def test_the_inertia_map():
     assert np.all(abs((got - (~Ω).scalar_product(inertia(Ω)) / 2).components) <= 16 * EPS * 4 * Ω.norm() ** 2)
     # Brackets distinguish a map named I from the pseudoscalar.
     assert ph.evaluate("I(Ω) + I", I=inertia, Ω=Ω[0]).is_close(inertia(Ω[0]) + I)
+    assert ph.evaluate("I(Ω) + 3I", Ω=Ω[0], define={"I(B)": "2 B"}).is_close(2 * Ω[0] + 3 * I)
 
 
 def test_maps_are_exact_among_exact_values():

@@ -115,7 +115,8 @@ impl Reader<'_> {
         let item = match self.names.get(name)? {
             Meaning::Value(_) => Item::Name(name.to_owned()),
             Meaning::Map { .. } if called => Item::Callable(name.to_owned(), 1),
-            // The handout writes I for the inertia and for the pseudoscalar; only one of them is called.
+            // The handout writes I for the inertia and for the pseudoscalar; only one of them is called. So it is with a
+            // definition of I(B).
             Meaning::Map { .. } if name == "I" => Item::Pseudoscalar,
             Meaning::Map { .. } => {
                 let message = format!("`{name}` is a linear map; write its argument, `{name}(…)`");
@@ -124,6 +125,7 @@ impl Reader<'_> {
             Meaning::Function(definition) => match definition.parameters.len() {
                 0 => Item::Callable(name.to_owned(), 0),
                 count if called => Item::Callable(name.to_owned(), count),
+                _ if name == "I" => Item::Pseudoscalar,
                 _ => {
                     let parameters = definition.parameters.join(", ");
                     let message = format!("`{name}` is a function; write `{name}({parameters})`");

@@ -361,7 +361,7 @@ def test_lessons_are_shown_in_notebooks():
 def test_a_lesson_that_is_not_utf8(tmp_path):
     path = tmp_path / "latin.md"
     path.write_bytes(b"---\ntitle: caf\xe9\n---\n")
-    with pytest.raises(ValueError, match=r"latin\.md is not UTF-8 text: byte 14 is 0xe9; save it as UTF-8"):
+    with pytest.raises(ValueError, match=r"latin\.md: not UTF-8 text: byte 14 is 0xe9; save it as UTF-8"):
         _document.of_file(path)
 
 

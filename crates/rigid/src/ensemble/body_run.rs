@@ -72,12 +72,14 @@ impl<'a> BodyRun<'a> {
     pub fn begin_sweep(&mut self) -> Carried {
         let SweepPlan { rule, known_rate, noise, .. } = self.sweeps.next();
         (self.rule, self.known_rate, self.noise) = (rule, known_rate, noise);
-        self.controller = self.first_steps();
+        self.leave_start();
         self.begin
     }
 
-    fn first_steps(&self) -> StepController {
-        self.rule.controller(self.first_rate, &self.bounds)
+    /// Begins the integration on a side of the start.
+    fn leave_start(&mut self) {
+        self.controller = self.rule.controller(self.first_rate, &self.bounds);
+        self.stop = self.begin.phase.time;
     }
 
     /// The magnitude of the angular velocity, bounded below by its scale, in rad/s.
@@ -109,13 +111,18 @@ impl<'a> BodyRun<'a> {
             }
             let time = times[if taken < early { early - 1 - taken } else { taken }];
             if at.phase.time != time {
-                self.stop = next_stop(&self.bounds.breaks, at.phase.time, time);
-                self.controller.head_for(at.phase.time, self.stop, self.stop != time);
+                let stop = next_stop(&self.bounds.breaks, at.phase.time, time);
+                // A body that has changed lanes is on its way to this stop.
+                if stop != self.stop {
+                    self.controller.head_for(at.phase.time, stop, stop != time);
+                    self.stop = stop;
+                }
                 return Ok(None);
             }
             self.sweep.states.push(*at);
             if taken + 1 == early {
-                (*at, self.controller) = (self.begin, self.first_steps());
+                *at = self.begin;
+                self.leave_start();
                 *fastest = self.rate(at);
             }
         }

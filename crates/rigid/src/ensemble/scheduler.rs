@@ -210,7 +210,7 @@ impl<'a> Scheduler<'a> {
     /// Bounds of the steps of a body under its torques. Laws in lanes are not user functions, so sampling does not fail.
     pub fn bounds(&self, member: &Member, torques: &[Torque]) -> StepBounds {
         let Member { gyrostat, start, .. } = member;
-        let sample = || samples(torques, gyrostat, start, self.times, self.options).unwrap_or_default();
+        let sample = || samples(torques, gyrostat, start, self.times, self.options, true).unwrap_or_default();
         let own;
         // They depend on the law alone, which the bodies may share.
         let samples = match &self.samples {

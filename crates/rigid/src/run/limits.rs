@@ -47,20 +47,23 @@ impl Default for StepBounds {
 /// Samples of laws in time, on both sides of the start.
 pub(crate) type Samples = Vec<[Sampled; 2]>;
 
-/// Samples the laws over the output times, if a tolerance determines the steps; given steps need no samples.
+/// Samples the laws over the output times, for a method that `adapts` its steps or refines equal ones; given steps need no
+/// samples.
 pub(crate) fn samples(
     torques: &[Torque],
     body: &Gyrostat,
     start: &Phase,
     times: &[f64],
     options: &Options,
+    adapts: bool,
 ) -> Result<Samples, SimulateError> {
     if options.step.is_some() {
         return Ok(Vec::new());
     }
     let [first, last] = span(times, start.time);
     let both = |law: &Torque| -> Result<[Sampled; 2], SimulateError> {
-        Ok([sampled(law, body, start, [first, start.time])?, sampled(law, body, start, [start.time, last])?])
+        let side = |times| sampled(law, body, start, times, adapts);
+        Ok([side([first, start.time])?, side([start.time, last])?])
     };
     torques.iter().map(both).collect()
 }

@@ -183,7 +183,8 @@ impl Problem {
     ) -> Result<Motion, SimulateError> {
         self.check(times, &options)?;
         let start = self.start().phase;
-        let samples = samples(&self.torques, &self.body, &start, times, &options)?;
+        let adapts = options.method.unwrap_or_else(|| self.best()).adapts();
+        let samples = samples(&self.torques, &self.body, &start, times, &options, adapts)?;
         let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options);
         let center = self.center_motion();
         bounds.limit.reports_stiffness &= center.is_some();

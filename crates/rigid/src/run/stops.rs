@@ -48,12 +48,14 @@ pub(crate) struct Sampled {
 /// Samples a law between two times. Laws that are not smooth at known times have stops of their own.
 ///
 /// User functions, which may be defined for such states only, are evaluated at `start`; formulas and orbits in general
-/// position, so that the stops depend on the law alone.
+/// position, so that the stops depend on the law alone. The finest intervals are sampled again if the method `adapts` its steps:
+/// equal steps become shorter everywhere, whatever their error estimates are.
 pub(crate) fn sampled(
     law: &Torque,
     body: &Gyrostat,
     start: &Phase,
     [from, to]: [f64; 2],
+    adapts: bool,
 ) -> Result<Sampled, SimulateError> {
     let circular = matches!(law, Torque::GravityGradient(orbit) if orbit.is_circular());
     if from == to || circular || !is_to_be_sampled(law) {
@@ -92,7 +94,7 @@ pub(crate) fn sampled(
         allowed,
         least: LEAST * (to - from).abs(),
     };
-    for part in &finest {
+    for part in finest.iter().filter(|_| adapts) {
         let mut left = (most / finest.len()).min(MOST_FINER_EACH);
         finer.bisect([time(part.start), time(part.end)], &mut left, &mut stops);
     }

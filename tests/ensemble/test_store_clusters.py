@@ -235,6 +235,7 @@ def test_ctrl_c_ends_a_local_cluster(folder, serial, tmp_path):
         if client.poll() is None:
             client.send_signal(signal.SIGINT)
         _, errors = client.communicate(timeout=120)
-    assert client.returncode in (0, 130), errors
+    # A signal while Python exits ends it with the signal, which a shell shows as 130 too.
+    assert client.returncode in (0, 130, -signal.SIGINT), errors
     assert status(store)["running"] == []
     assert resumed(folder, store) == serial

@@ -95,23 +95,23 @@ impl Quantity {
     }
 
     /// The shortest time in s from a turning point to the next as a formula changes with time between two times, at a fixed
-    /// point of the motion; infinite if there are no two. Functions of the caller see points of the motion only.
+    /// point of the motion; infinite for fewer than two turning points, and for functions of the caller, which are called at
+    /// points of the motion only.
     pub(crate) fn oscillates_within(&self, at: &Point, [from, to]: [f64; 2]) -> f64 {
         /// Changes below this, relative to the largest value, are rounding.
         const ROUNDING: f64 = 1e-12;
         /// Intervals between samples.
         const COUNT: u32 = 4096;
-        match self {
-            Quantity::Formula(formula) if formula.needs(|motion| matches!(motion, Motion::Time)) => {}
+        let formula = match self {
+            Quantity::Formula(formula) if formula.needs(|motion| matches!(motion, Motion::Time)) => formula,
             _ => return f64::INFINITY,
-        }
-        let part = (to - from) / f64::from(COUNT);
-        let value = |k: u32| {
-            let phase = Phase { time: from + part * f64::from(k), ..*at.phase };
-            self.value(&Point { phase: &phase, ..*at })
         };
+        let part = (to - from) / f64::from(COUNT);
+        let times: Vec<f64> = (0..=COUNT).map(|k| from + part * f64::from(k)).collect();
+        let value = |&time: &f64| self.value(&Point { phase: &Phase { time, ..*at.phase }, ..*at });
+        let one_by_one = || times.iter().map(value).collect::<Result<Vec<f64>, _>>().ok();
         // It may have no value at this point.
-        let Ok(values) = (0..=COUNT).map(value).collect::<Result<Vec<f64>, _>>() else {
+        let Some(values) = formula.numbers_at(at, &times).or_else(one_by_one) else {
             return f64::INFINITY;
         };
         let least = ROUNDING * values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));

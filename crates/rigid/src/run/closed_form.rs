@@ -151,8 +151,8 @@ impl ExactBody {
         })
     }
 
-    /// The rotations of bodies under laws of one kind, set up in lanes; none if there are no lanes for this kind, or if a
-    /// rotation neglects something or is not resolved.
+    /// The rotations of bodies under laws of one kind, set up in lanes. None for free and Larmor motions, and if a rotation
+    /// neglects something or is not resolved.
     pub fn tile<'a>(bodies: impl Iterator<Item = &'a ExactBody>) -> Option<Tile> {
         let other = || SimulateError::Unresolved.to_string();
         let mut bodies = bodies.peekable();

@@ -182,7 +182,8 @@ impl Problem {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Motion, SimulateError> {
         self.check(times, &options)?;
-        let start = self.start().phase;
+        let begin = self.start();
+        let start = begin.phase;
         let adapts = options.method.unwrap_or_else(|| self.best()).adapts();
         let samples = samples(&self.torques, &self.body, &start, times, &options, adapts)?;
         let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options);
@@ -195,9 +196,7 @@ impl Problem {
                 check_pieces(&center.law, (self.time - first).max(last - self.time), &bounds)?;
             }
         }
-        let carried = self.start();
-        let point =
-            Point { body: &self.body, mass: self.mass, phase: &carried.phase, center: &carried.center };
+        let point = Point { body: &self.body, mass: self.mass, phase: &start, center: &begin.center };
         for event in &options.events {
             let quantity = event.clone().in_axes(self.frame).quantity;
             bounds.piece = bounds.piece.min(0.5 * quantity.oscillates_within(&point, span(times, self.time)));

@@ -67,9 +67,7 @@ impl HeavyTop {
         }
         Ok(HeavyTop { axes, rotor, omega, scale: power_of_two([fastest, 0.0, 0.0]) })
     }
-}
 
-impl HeavyTop {
     /// Whether the motion neglects nothing: [`super::LagrangeTop::neglected`] is 0.
     pub(crate) fn is_exact(&self) -> bool {
         self.axes.apart == 0.0

@@ -24,20 +24,23 @@ pytest.importorskip("xarray")
 distributed = pytest.importorskip("distributed")
 
 
-# A worker that takes its time for each block, and reports it; the second argument is its version of polhode.
+# A worker that takes its time for each block. Arguments: its name, its version of polhode and the
+# file to which it appends its name when it begins a block, before those of dask.
 WORKER = """
 import sys, time
 from polhode import _native
 from polhode._report.ensemble import cluster
 from distributed.cli.dask_worker import main
-_native.__version__ = sys.argv[1] or _native.__version__
+name, version, blocks, *options = sys.argv[1:]
+_native.__version__ = version or _native.__version__
 compute = cluster.compute_block
 def slow(*arguments):
-    print("block", flush=True)
+    with open(blocks, "a") as file:
+        file.write(name + "\\n")
     time.sleep(0.2)
     compute(*arguments)
 cluster.compute_block = slow
-main(sys.argv[2:])
+main(options)
 """
 
 
@@ -61,11 +64,31 @@ def is_json(file):
         return False
 
 
-def worker(folder, file, version=""):
-    """A worker with one thread, without a nanny that starts it again."""
+@contextlib.contextmanager
+def workers(folder, file, *names, version=""):
+    """Workers with one thread each, without a nanny that starts them again.
+
+    All are connected at the start of the block: one that starts faster than the others could compute
+    all blocks before they ask for one.
+    """
     options = ["--scheduler-file", file, "--nthreads", "1", "--no-nanny", "--no-dashboard"]
-    command = [sys.executable, "-c", WORKER, version, *options, "--local-directory", folder / "dask"]
-    return processes.start(command, stderr=processes.DEVNULL)
+    options += ["--local-directory", folder / "dask"]
+    quiet = {"stdout": processes.DEVNULL, "stderr": processes.DEVNULL}
+    with contextlib.ExitStack() as stack:
+        found = []
+        for name in names:
+            command = [sys.executable, "-c", WORKER, name, version, folder / "blocks", *options]
+            found.append(stack.enter_context(processes.start(command, **quiet)))
+        with distributed.Client(scheduler_file=file, set_as_default=False) as client:
+            client.wait_for_workers(len(names), timeout=60)
+        yield found
+
+
+def begun(folder):
+    """The workers of the blocks that have been begun."""
+    with contextlib.suppress(FileNotFoundError):
+        return (folder / "blocks").read_text().split()
+    return []
 
 
 def run(folder, store, cluster):
@@ -104,11 +127,10 @@ def test_the_blocks_of_a_killed_worker_are_computed_by_others(folder, serial, tm
     store = tmp_path / "a.zarr"
     with (
         scheduler(tmp_path) as (_, file),
-        worker(tmp_path, file) as first,
-        worker(tmp_path, file),
+        workers(tmp_path, file, "first", "second") as (first, _),
         run(folder, store, file) as client,
     ):
-        assert first.stdout.readline() == "block\n"
+        until(lambda: "first" in begun(tmp_path))
         first.kill()
         output, errors = client.communicate(timeout=120)
     assert client.returncode == 0, errors
@@ -121,7 +143,7 @@ def test_a_worker_of_another_version_is_refused(folder, serial, tmp_path):
     store = tmp_path / "a.zarr"
     with (
         scheduler(tmp_path) as (_, file),
-        worker(tmp_path, file, "9.9.9"),
+        workers(tmp_path, file, "other", version="9.9.9"),
         run(folder, store, file) as client,
     ):
         _, errors = client.communicate(timeout=120)
@@ -173,20 +195,21 @@ def test_a_killed_cluster_resumes_reduced_outputs(tmp_path):
     serial, store = content(tmp_path / "serial.zarr"), tmp_path / "a.zarr"
     with (
         scheduler(tmp_path) as (process, file),
-        worker(tmp_path, file) as first,
-        worker(tmp_path, file) as second,
+        workers(tmp_path, file, "first", "second") as (first, second),
         run(tmp_path, store, file) as client,
     ):
-        assert first.stdout.readline() == "block\n"
-        # Each worker has a second block in flight, after 0.2 s or more for its first.
-        assert first.stdout.readline() == "block\n"
+        until(lambda: len(begun(tmp_path)) >= 3)  # two workers have computed at least one block
         for program in (process, first, second, client):
             program.kill()
             program.wait()
     found = status(store)
     assert (found["corrupt"], found["running"]) == (0, [])
     assert found["done"] > 0
-    with scheduler(tmp_path) as (_, file), worker(tmp_path, file), run(tmp_path, store, file) as client:
+    with (
+        scheduler(tmp_path) as (_, file),
+        workers(tmp_path, file, "third"),
+        run(tmp_path, store, file) as client,
+    ):
         _, errors = client.communicate(timeout=120)
     assert client.returncode == 0, errors
     assert content(store) == serial
@@ -201,11 +224,10 @@ def test_a_killed_cluster_loses_the_blocks_in_flight_only(who, seed, folder, ser
     store, chance = tmp_path / "a.zarr", random.Random(seed)
     with (
         scheduler(tmp_path) as (process, file),
-        worker(tmp_path, file) as first,
-        worker(tmp_path, file) as second,
+        workers(tmp_path, file, "first", "second") as (first, second),
         run(folder, store, file) as client,
     ):
-        assert first.stdout.readline() == "block\n"
+        until(lambda: begun(tmp_path))
         time.sleep(chance.uniform(0.0, 0.6))
         killed = {"scheduler": [process], "client": [client], "all": [process, first, second, client]}[who]
         for program in killed:

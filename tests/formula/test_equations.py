@@ -163,3 +163,11 @@ def test_large_arguments_hide_no_difference():
     assert not ph.evaluate("cos(x)² = 2 sin(x)²", x=1e10)
     assert ph.evaluate("cos(x)² + sin(x)² = 1", x=1e10)
     assert not ph.evaluate("cos(x) = -1", x=np.array([1e6], dtype=np.float32))
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("text", ["a a = b b", "a + a = b + b", "1/s = s"])
+def test_overflow_does_not_hold_and_does_not_warn(text):
+    many = ph.vector([[1e308, 0, 0], [1, 0, 0]])
+    agreement = ph.evaluate(text, a=many, b=many, s=np.array([1e-320, 1.0]))
+    assert agreement.holds.tolist() == [False, True]

@@ -115,6 +115,7 @@ def _summary(holds: Any, residual: Any, size: Any) -> str:
     return f"holds in {rows} rows, largest {shown}{beside} at index {index}"
 
 
+@np.errstate(over="ignore", invalid="ignore")  # IEEE, as in the products
 def agreement(walk: Walk, program: _native.Program) -> Agreement:
     """Return the agreement of the sides of an equation."""
     groups = program.results

@@ -283,6 +283,58 @@ def test_symbols_and_traced_arrays():
     assert np.isclose(radius(jnp.array([0.1, 0.2, 0.3]), jnp.array(0.5)), 0.5, rtol=1e-5)
 
 
+def test_points_of_symbols_come_back():
+    sympy = pytest.importorskip("sympy")
+    x, t = sympy.symbols("x t", real=True)
+    turned = C.rotor(ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, t)) >> C.up([x, 0, 0])
+    position = C.down(turned).map(sympy.simplify)
+    assert np.all(position.components == [x * sympy.cos(t), x * sympy.sin(t), 0])
+    with pytest.raises(ValueError, match="X² = 0"):
+        C.down(C.up([x, 0, 0]) + C.basis_vectors[0])
+    with pytest.raises(ValueError, match="is flat"):
+        C.center(C.line([x, 0, 0], direction=[0, x**2 + 1, 0]))
+    # Radii that may be positive, and squares that may not be negative.
+    assert sympy.simplify(C.squared_radius(C.sphere([0, 0, 0], x)) - x**2) == 0
+    assert sympy.simplify(C.radius(C.sphere([x, 0, 0], 2)) - 2) == 0
+    with pytest.raises(ValueError, match="positive factor"):
+        C.dilator(-(t**2))
+
+
+def test_exact_rounds_and_flats():
+    third = Fraction(1, 3)
+    normal, distance = C.normal_and_distance(C.plane([3 * third, 4 * third, 0], third))
+    assert list(normal.components) == [Fraction(3, 5), Fraction(4, 5), 0]
+    assert distance == third
+    for radius in (-third, 0 * third):
+        with pytest.raises(ValueError, match=r"at index \(1,\): a radius must be positive"):
+            C.sphere([[third, 0, 0]], [third, radius])
+        with pytest.raises(ValueError, match="positive factor"):
+            C.dilator(radius)
+    apart = C.sphere([third, 0, 0], third) & C.sphere([5 * third, 0, 0], third)
+    assert C.squared_radius(apart) == -third
+    with pytest.raises(ValueError, match="imaginary"):
+        C.radius(apart)
+
+
+@pytest.mark.parametrize("digits", [15, 50])
+def test_rounding_of_multiprecision_numbers(digits):
+    """Rounded points are points, and rounded versors versors, as of floats."""
+    mpmath = pytest.importorskip("mpmath")
+    with mpmath.workdps(digits):
+        x = [mpmath.mpf(1) / 3, mpmath.mpf(1) / 7, mpmath.mpf(0)]
+        moved = C.translator(x) * C.dilator(mpmath.mpf(2)) >> C.up(x)
+        error = C.down(moved).components - [3 * a for a in x]
+        assert max(map(abs, error)) < mpmath.mpf(10) ** (2 - digits)
+        with pytest.raises(ValueError, match="X² = 0"):
+            C.down(C.up(x) + mpmath.mpf("1e-6") * C.einf)
+
+
+def test_fractions_and_rounded_numbers_mix():
+    M = C.motor(ph.Rotor.from_axis_angle(ph.e3, Fraction(1)), [Fraction(1, 3), 0, 0])
+    expected = M.astype(float) >> C.up([1.0, 2, 3])
+    assert (M >> C.up([Fraction(1), 2, 3])).astype(float).is_close(expected, rtol=1e-14)
+
+
 def test_values_of_other_algebras():
     M = ph.algebra(4, 1).random(5, rng=6)
     assert np.all(C.embed(M).dense() == M.dense())

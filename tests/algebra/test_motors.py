@@ -1,5 +1,7 @@
 """Motors of Cl(3,0,1): screws, powers, interpolation, normalization, adjoint matrices, actions on batches."""
 
+import math
+
 import mpmath
 import numpy as np
 import pytest
@@ -312,6 +314,23 @@ def test_the_null_vector_may_come_first():
         np.testing.assert_array_equal(np.asarray(x), np.asarray(y))
     np.testing.assert_array_equal(ph.adjoint_matrix(M), T.adjoint())
     assert near(M**0.5 * M**0.5, M, 64)
+
+
+@pytest.mark.parametrize("factor", [1e-200, 1e-161, 1e-158, 1e200])
+@pytest.mark.parametrize("shape", [(), (2,)])
+def test_motors_of_any_size_are_transforms(factor, shape):
+    T = RigidTransform(ph.Rotor.random(shape, rng=1), [1.0, 2.0, 3.0])
+    found = RigidTransform.from_motor(factor * T.to_motor())
+    assert np.all(found.is_close(T, rtol=8 * EPS, atol=8 * EPS))
+
+
+@pytest.mark.parametrize("factor", [0.0, math.inf, math.nan])
+def test_motors_without_a_rotation_are_refused(factor):
+    M = ph.stack([RigidTransform.identity().to_motor(), factor * RigidTransform.identity().to_motor()])
+    with pytest.raises(
+        ValueError, match=r"at index \(1,\): the rotation part of a motor must be finite and not 0"
+    ):
+        RigidTransform.from_motor(M)
 
 
 @pytest.mark.parametrize("angle", [1e-3, 0.3, 3.1, 40.0, 9.9e5, 1.1e6, 1e20, 1e300])

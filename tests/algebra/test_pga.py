@@ -3,6 +3,7 @@
 import copy
 import json
 import pickle
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -415,6 +416,26 @@ def test_single_precision_stays():
     found += [C.center(C.sphere(x, 2.0)), *C.points(C.point_pair(x, 2 * x)), C.circle(x, x, 2.0)]
     assert {value.dtype for value in found} == {np.dtype(np.float32)}
     assert np.allclose(C.radius(C.sphere(x, 2.0)), 2, rtol=1e-5)
+
+
+@pytest.mark.parametrize("factor", [2.0**-1000, 2.0**-520, 2.0**520, 2.0**1000])
+def test_values_of_any_size(factor):
+    """Their squares over- or underflow. A factor that is a power of two rounds nothing."""
+    M = A.motor(ph.Rotor.from_axis_angle(ph.e3, 1.0), [1.0, 2.0, 3.0])
+    plane, line = A.plane([0, 0.6, 0.8], 2), A.line([0, 0, 1], direction=[1, 0, 0])
+    for X in (plane, line, A.point([1, 2, 3]), M):
+        assert np.all(A.normalized(factor * X) == A.normalized(X))
+    normal, distance = A.normal_and_distance(factor * plane)
+    assert (normal, distance) == A.normal_and_distance(plane)
+    point, along = A.point_and_direction(-factor * line)
+    assert (point, along) == (ph.e3, -ph.e1)
+    assert A.normalized(factor * M).is_close(M, rtol=4 * EPS)
+
+
+def test_exact_planes_come_back():
+    normal, distance = A.normal_and_distance(-5 * A.plane([Fraction(3), Fraction(4), 0], Fraction(2, 3)))
+    assert list(normal.components) == [Fraction(-3, 5), Fraction(-4, 5), 0]
+    assert distance == Fraction(-2, 3)
 
 
 # --- operators and random values

@@ -154,7 +154,7 @@ def test_versors_act(A):
 @every
 def test_values_that_are_not_versors(A):
     x = A.basis_vectors[0]
-    bad = [A.scalar(0.0), A.scalar(1.0) + A.basis_vectors[-1], A.scalar(np.nan), A.scalar(1e200)]
+    bad = [A.scalar(0.0), A.scalar(1.0) + A.basis_vectors[-1], A.scalar(np.nan), A.scalar(np.inf)]
     for V in bad:
         with pytest.raises(TypeError, match="versor"):
             V(x)
@@ -208,6 +208,21 @@ def test_motors_of_single_precision_act():
         assert np.all(np.abs(found.components - M(points)[k].components) <= bound[k])
     with pytest.raises(TypeError, match=r"V ~V must be a number other than 0 at index \(0,\)"):
         (M32 + np.float32(0.01) * A.I)(P32)
+
+
+@pytest.mark.parametrize("dtype", [float, np.float32])
+@pytest.mark.parametrize("A", [ph.algebra(3), ph.pga(3), ph.cga(3)], ids=str)
+def test_versors_of_any_size_act(A, dtype):
+    """The square of V over- or underflows; a factor that is a power of two rounds nothing."""
+    limits, rng = np.finfo(dtype), np.random.default_rng(9)
+    a, b = A.random((2, 4), grades=1, rng=rng).astype(dtype)
+    X = A.random((4,), rng=rng).astype(dtype)
+    for factor in 2.0 ** np.array([0.9 * limits.minexp, 0.9 * limits.maxexp]):
+        for V in (a * b, a):
+            for k in (slice(None), 1):
+                moved = (factor.astype(dtype) * V[k])(X[k])
+                assert moved.dtype == dtype
+                assert np.all(moved.is_close(V[k](X[k]), rtol=1e3 * limits.eps, atol=1e3 * limits.eps))
 
 
 @every

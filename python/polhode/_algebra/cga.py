@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from typing import Any, Self
 
 import numpy as np
 
+from polhode import _generic
 from polhode._algebra.algebra import Algebra, algebra, no_constructor
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like
 from polhode._algebra.euclidean import (
@@ -25,6 +27,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
+from polhode._algebra.versors import small
 from polhode._support.arrays import is_float, power_of_two
 from polhode._support.calls import explains_calls, takes_components
 
@@ -136,7 +139,8 @@ class CGA(Algebra):
     def down(self, X: Multivector) -> Multivector:
         """Return the positions of points of any weight as vectors of ``ph.algebra(n)``, the inverse of `up`.
 
-        A ValueError, with the batch index, at infinity, and for vectors that are not points, with ``X² ≠ 0``.
+        A ValueError, with the batch index, at infinity, and for vectors that are not points: X² must be 0 to
+        half of the digits of the sum of the squared components.
 
         Examples
         --------
@@ -145,11 +149,7 @@ class CGA(Algebra):
         e1 + 2 e2 + 3 e3
         """
         P = _scaled(require_value(self, X, "a point", (1,)))
-        square, kind = P.norm_squared(), kind_of(P._data)
-        if kind.exact:
-            ok = square == 0
-        else:
-            ok = kind.xp.abs(square) <= kind.eps**0.5 * kind.xp.sum(P._data * P._data, axis=-1)
+        ok = small((P * P).grade(0)._data, P)
         require(ok, P, "a point has X² = 0; of a sphere take center(X)")
         return self._down(P)
 
@@ -251,8 +251,7 @@ class CGA(Algebra):
         place = position_in(self, center, "the center")
         r = number_like(radius, "the radius", place._data)
         kind = kind_of(r)
-        if not kind.exact:
-            kind.require(r > 0, "a radius must be positive; a sphere of radius 0 is a point, up(x)")
+        kind.require(_positive(r), "a radius must be positive; a sphere of radius 0 is a point, up(x)")
         with np.errstate(over="ignore"):  # IEEE, as in the products
             square = r * r
         core = self._eo_like(r) + self.scalar(kind.divide(square, 2)) * as_precise(self.einf, place)
@@ -311,8 +310,8 @@ class CGA(Algebra):
         """
         square = self.squared_radius(X)
         kind = kind_of(as_coefficients(square, "the squared radius"))
-        if not kind.exact:
-            kind.require(square >= 0, "the round is imaginary, its squared_radius negative")
+        real = ~_each(_generic.exact.is_negative, square) if kind.exact else square >= 0
+        kind.require(real, "the round is imaginary, its squared_radius negative")
         return kind.sqrt(square)
 
     def points(self, pair: Multivector) -> tuple[Multivector, Multivector]:
@@ -358,7 +357,8 @@ class CGA(Algebra):
 
     def _flat(self, X: Multivector) -> tuple[Multivector, Multivector]:
         """Return E and ``x∧E`` of the flat ``P∧E∧einf`` in Euclidean space, with the unit blade E."""
-        kind, eo, einf = kind_of(X._data), as_precise(self.eo, X), as_precise(self.einf, X)
+        kind, einf = kind_of(X._data), as_precise(self.einf, X)
+        eo = self._eo_like(X._data[..., 0]) if kind.exact else as_precise(self.eo, X)
         blade = self._restricted(einf.left_contraction(X).right_contraction(eo))
         size = blade.norm()
         require(size != 0, X, "the value is not a line or a plane: it does not contain einf")
@@ -381,7 +381,7 @@ class CGA(Algebra):
         inside = as_precise(self.einf, X).left_contraction(X)
         square, kind = (inside * inside).grade(0)._data[..., 0], kind_of(X._data)
         if kind.exact:
-            ok = square != 0
+            ok = ~small(square[..., None], X, digits=0.9)
         else:
             ok = kind.xp.abs(square) > 64 * kind.eps * kind.xp.sum(X._data * X._data, axis=-1)
         message = (
@@ -430,8 +430,7 @@ class CGA(Algebra):
         """
         f = as_coefficients(factor, "the factor")
         kind = kind_of(f)
-        if not kind.exact:
-            kind.require(f > 0, "a dilation needs a positive factor")
+        kind.require(_positive(f), "a dilation needs a positive factor")
         root = kind.sqrt(f)
         inverse = kind.divide(kind.zeros_like(f) + 1, root)
         even, odd = kind.divide(root + inverse, 2), kind.divide(root - inverse, 2)
@@ -475,6 +474,16 @@ class CGA(Algebra):
     def _restricted(self, value: Multivector) -> Multivector:
         """Return the Euclidean part of a value."""
         return relabelled(value, self._space, [*range(self._n), None, None])
+
+
+def _positive(x: Any) -> Any:
+    """Whether numbers are positive, or expressions may be."""
+    return _each(_generic.exact.may_be_positive, x) if kind_of(x).exact else x > 0
+
+
+def _each(condition: Callable[[Any], bool], x: Any) -> Any:
+    """Return a condition of exact elements as an array."""
+    return np.asarray(np.frompyfunc(condition, 1, 1)(x), dtype=bool)
 
 
 def _scaled(X: Multivector) -> Multivector:

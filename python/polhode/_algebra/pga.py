@@ -25,7 +25,7 @@ from polhode._algebra.relabel import embedded, relabelled
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.transform import RigidTransform
 from polhode._algebra.versors import small
-from polhode._support.arrays import common_batch, copied, is_float, new
+from polhode._support.arrays import common_batch, copied, is_float, new, power_of_two
 from polhode._support.calls import takes_components
 
 
@@ -186,8 +186,8 @@ class PGA(Algebra):
         0.6 e2 + 0.8 e3 2.0
         """
         unit = self._unit(require_value(self, plane, "a plane", (1,)))
-        first, *normal = columns(unit)
-        return self._space.vector(kind_of(unit._data).stack(normal)), (-first)[()]
+        distance, *_ = columns(-unit)
+        return self._space.vector(kind_of(unit._data).stack(columns(unit)[1:])), distance[()]
 
     def point_and_direction(self, line: Multivector) -> tuple[Multivector, Multivector]:
         """Return the point of lines nearest to the origin and the unit direction, as vectors.
@@ -228,6 +228,7 @@ class PGA(Algebra):
 
     def _unit(self, X: Multivector) -> Multivector:
         """Return planes and lines of norm 1."""
+        X = _scaled(X)
         square = X.norm_squared()
         require(square != 0, X, "the value has the norm 0: it is at infinity")
         if X._mask == 0b100:
@@ -237,6 +238,7 @@ class PGA(Algebra):
 
     def _unit_motor(self, M: Multivector) -> Multivector:
         """Return ``M (M ~M)^(−1/2)``, where ``M ~M = a + b I`` and ``I² = 0``."""
+        M = _scaled(M)
         product = M * ~M
         square = product.grade(0)._data[..., 0]
         require(square != 0, M, "the motor has the norm 0")
@@ -339,6 +341,13 @@ class PGA(Algebra):
             return Multivector._of(data, 1 << 1, self)
         parts = [rows[..., k] for k in range(rows.shape[-1])]
         return Multivector._of(kind_of(rows).stack([weight[..., 0], *parts]), 1 << 1, self)
+
+
+def _scaled(X: Multivector) -> Multivector:
+    """Return floats divided by a power of two near the norm, whose square might over- or underflow."""
+    if not is_float(X._data):
+        return X
+    return X._like(X._data / power_of_two(np.asarray(X.norm(), X._data.dtype)[..., None], -1))
 
 
 def pga(n: int = 3) -> PGA:

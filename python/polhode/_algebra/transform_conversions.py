@@ -11,6 +11,7 @@ from polhode._algebra.coefficients import as_coefficients, common, kind_of, name
 from polhode._algebra.motors import columns, is_motor, of_columns, places
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._support.arrays import is_float, power_of_two
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
@@ -87,11 +88,15 @@ def _parts(M: Multivector, part: str) -> Parts:
     """Return the parts of an even element that need not have norm 1; `part` must not be 0."""
     w, yz, zx, xy, *_ = columns(M)
     kind = kind_of(w)
+    if is_float(M._data):
+        scale = power_of_two(np.stack([w, yz, zx, xy]), 0)[0]
+        M, w, yz, zx, xy = M._like(M._data / scale[..., None]), *(x / scale for x in (w, yz, zx, xy))
     turn = of_columns(M.algebra, [w, yz, zx, xy, *[kind.zeros_like(w)] * 4])
     # M = (1 + ½ x0∧e4) R, with R of any norm.
     size = turn.norm_squared()
     if not kind.exact:
-        kind.require(kind.asarray(size) > 0, f"{part} must be finite and not 0")
+        positive = kind.asarray(size) > 0
+        kind.require(positive & (kind.asarray(size) < np.inf), f"{part} must be finite and not 0")
     _, _, _, _, x, y, z, _ = columns(M * ~turn / size)
     rotor = Rotor.from_components(kind.stack([w, yz, zx, xy]))
     return rotor, kind.stack([2 * x, 2 * y, 2 * z])

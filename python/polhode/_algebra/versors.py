@@ -10,7 +10,7 @@ from polhode import _generic, _native
 from polhode._algebra.coefficients import kind_of
 from polhode._algebra.foreign_values import has_reflected
 from polhode._algebra.products import aligned, common_algebra
-from polhode._support.arrays import at_index, first_index, is_float, new
+from polhode._support.arrays import at_index, first_index, is_float, new, power_of_two
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -49,6 +49,8 @@ def act(V: Multivector, X: Multivector | None = None) -> Multivector:
         moved = new((*batch, x.shape[-1]), v.dtype)
         if _native.versor_apply(V.algebra, v, V._mask, bool(held & _ODD), x, X._mask, moved):
             return X._like(moved)
+    if is_float(V._data):
+        V = _of_moderate_size(V)
     reverse = ~V
     square = V * reverse
     _require_number(square, V)
@@ -74,6 +76,13 @@ def unshifted(A: Multivector, B: Any) -> Any:
         "<< is not an operator of multivectors; write A.left_contraction(B), as in clifford, or "
         "A.anticommutator(B), as in galgebra"
     )
+
+
+def _of_moderate_size(V: Multivector) -> Multivector:
+    """Return floats divided by powers of two where the squares of components would over- or underflow."""
+    scale, limits = power_of_two(V._data, -1), np.finfo(V._data.dtype)
+    extreme = (scale < limits.tiny**0.4) | (scale > limits.max**0.4)
+    return V._like(V._data / np.where(extreme, scale, np.ones_like(scale))) if extreme.any() else V
 
 
 def _require_number(square: Multivector, V: Multivector) -> None:
@@ -105,7 +114,10 @@ def small(data: Any, V: Multivector, digits: float = 0.5) -> Any:
     """Whether components are 0 to this part of the digits, beside the squares of those of V."""
     kind = kind_of(data, V._data)
     if kind.exact:
-        return np.frompyfunc(_generic.exact.is_zero, 1, 1)(data).astype(bool).all(axis=-1)
+        bounds = np.empty((*V._data.shape[:-1], 1), dtype=object)
+        for index in np.ndindex(bounds.shape[:-1]):
+            bounds[index] = _generic.exact.rounding(V._data[index], digits)
+        return np.frompyfunc(_generic.exact.is_rounding, 2, 1)(data, bounds).astype(bool).all(axis=-1)
     with np.errstate(over="ignore"):
         eps = float(np.finfo(V._data.dtype).eps) if is_float(V._data) else kind.eps
         bound = eps**digits * kind.xp.sum(kind.squared(V._data), axis=-1)

@@ -20,6 +20,7 @@ from polhode._support.arrays import at_index, first_index
 
 Array = Any
 
+_EPS = 2.0**-52
 _WHOLE = 2.0**53  # larger floats are whole because they are rounded
 
 
@@ -123,6 +124,16 @@ def is_zero(x: Any) -> bool:
     return _is_tiny(x.subs(_point(x, 1))) and _is_tiny(x.subs(_point(x, -1)))
 
 
+def may_be_positive(x: Any) -> bool:
+    """Whether x is a positive number, or an expression that SymPy does not know to be zero or negative."""
+    return x.is_positive is not False if is_symbolic(x) else bool(x > 0)
+
+
+def is_negative(x: Any) -> bool:
+    """Whether x is a negative number, or an expression that SymPy knows to be negative."""
+    return x.is_negative is True if is_symbolic(x) else bool(x < 0)
+
+
 def _is_tiny(number: Any) -> bool:
     """Whether an expression is 0 to 20 digits; one that has no numerical value is not."""
     value = number.evalf(30)
@@ -148,6 +159,16 @@ def is_rounding(x: Any, tolerance: float) -> bool:
     if is_symbolic(x) or isinstance(x, int | Fraction):
         return is_zero(x)
     return bool(abs(x) <= tolerance)
+
+
+def rounding(elements: Sequence[Any], digits: float) -> Any:
+    """Return this part of the digits of ``Σx²``: of floats and multiprecision numbers; 0 if all are exact."""
+    known = [x for x in elements if not is_symbolic(x)]
+    rounded = [x for x in known if not isinstance(x, int | Fraction)]
+    if not rounded:
+        return 0
+    eps = max(x.context.eps if is_multiprecision(x) else _EPS for x in rounded)
+    return eps**digits * sum(x * x for x in known)
 
 
 def pi_like(x: Any, pi: Any) -> Any:

@@ -149,7 +149,7 @@ class CGA(Algebra):
         e1 + 2 e2 + 3 e3
         """
         P = _scaled(require_value(self, X, "a point", (1,)))
-        ok = small((P * P).grade(0)._data, P)
+        ok = small(P.scalar_product(P)._data, P)
         require(ok, P, "a point has X² = 0; of a sphere take center(X)")
         return self._down(P)
 

@@ -63,6 +63,7 @@ _FOREIGN = {
     **dict.fromkeys(("momentum_wheel", "wheel"), "torque.gyrostat(h)"),
     **dict.fromkeys(("solar_pressure", "srp"), "torque.radiation_pressure(area, offset, sun)"),
     "spring": "torque.torsion_spring(k)",
+    **dict.fromkeys(("from_table", "interpolated", "table"), "torque.tabulated(times, torques)"),
 }
 
 

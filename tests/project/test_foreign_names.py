@@ -164,6 +164,7 @@ def test_names_of_the_package_are_seen(name):
 def test_the_error_of_a_law_tells_what_works(module):
     laws = {"kp": 1, "kd": 1, "d": 1, "h": [1, 0, 0], "k": 1, "mu": 1, "F": [1, 0, 0], "m": 1}
     laws |= {"area": 1, "offset": [1, 0, 0], "sun": [0, 0, 1]}
+    laws |= {"times": [0, 1], "torques": np.zeros((2, 3))}
     for name, ours in module._FOREIGN.items():
         with pytest.raises(AttributeError, match=f"'{name}'; write ph.{re.escape(ours)}$"):
             getattr(module, name)

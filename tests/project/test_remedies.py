@@ -1,6 +1,8 @@
 """Errors name a remedy that helps; a missing file is a FileNotFoundError of any kind of file."""
 
 import math
+import pydoc
+import rlcompleter
 
 import pytest
 
@@ -146,6 +148,12 @@ def test_calls_with_too_few_or_too_many_arguments_list_all(call, python, argumen
         (lambda: TURNED.as_rotation_matrix, r"a Rotor .*; write to_matrix\(\)"),
         (lambda: ph.Rotor.from_euler_angles, r'a Rotor .*; write from_euler\("ZYZ", angles\)'),
         (lambda: ph.KeplerOrbit, r".*; see polhode\.torque\.KeplerOrbit"),
+        (lambda: GRID.period, r"a Trajectory .*; write ph\.FreeMotion\(.*\)\.describe\(\)"),
+        (
+            lambda: ph.FreeMotion(BODY, TURNED, RATE).period,
+            r'a FreeMotion .*; write describe\(\)\["period"\]',
+        ),
+        (lambda: ph.plot, r".*; see polhode\.Trajectory\.plot and view"),
         (lambda: ph.load, r".*; see polhode\.io\.read, Trajectory\.read and Scene\.read"),
     ],
 )
@@ -158,6 +166,28 @@ def test_other_names_are_not_listed():
     assert {"rotor", "omega_body", "omega_space"} <= {*dir(START)}
     assert not {"omega", "quaternion"} & {*dir(START)}
     assert "cuboid" not in dir(ph.Body.sphere(1, mass=1))
+    assert {"box", "inertia"} <= {*dir(ph.Body)}
+    assert not {"cuboid", "from_stl"} & {*dir(ph.Body)}
+    assert "orientation" not in pydoc.render_doc(ph.FreeMotion)
+
+
+def test_completion_in_the_repl_lists_no_other_names():
+    completer = rlcompleter.Completer({"start": START})
+    completer.complete("start.o", 0)
+    assert [match.rstrip("(") for match in completer.matches] == ["start.omega_body", "start.omega_space"]
+
+
+def test_help_lists_other_names_after_the_methods_with_what_to_write():
+    text = pydoc.plain(pydoc.render_doc(ph.Rotor))
+    methods, _, others = text.partition("Data descriptors defined here:")
+    assert "to_quaternion(" in methods
+    assert "as_quat" not in methods
+    assert "A name in other libraries; here write to_quaternion(" in others
+
+
+def test_other_names_cannot_be_set():
+    with pytest.raises(AttributeError, match="write center_of_mass"):
+        ph.Body.sphere(1, mass=1).com = [0, 0, 1]
 
 
 def test_a_spline_with_the_rotors_first_names_the_order():

@@ -10,23 +10,26 @@ from polhode._algebra.foreign_tables import MULTIVECTOR, PARTS_OF_ROTORS, ROTOR
 T = TypeVar("T")
 
 
+# A name that a class does not have: an AttributeError, also for `hasattr`, that says what to write. It has
+# `__set__` and a `__doc__` of its own so that `help` lists such names after the methods, with what to write.
 class ForeignName:
-    """A name that a class does not have: an AttributeError, also for `hasattr`, that says what to write."""
-
-    __slots__ = ("name", "ours")
+    __slots__ = ("__doc__", "name", "ours")
 
     def __init__(self, name: str, ours: str) -> None:
         self.name, self.ours = name, ours
+        self.__doc__ = f"A name in other libraries; here write {ours}." if ours else "Of rotors only."
 
     def __get__(self, value: object, kind: type) -> NoReturn:
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
         raise AttributeError(f"{article} {kind.__name__} has no attribute {self.name!r}; write {self.ours}")
 
+    def __set__(self, value: object, _: object) -> NoReturn:
+        self.__get__(value, type(value))
 
+
+# A method of rotors, which an even multivector does not have: the error names what converts it.
 class NameOfRotors(ForeignName):
-    """A method of rotors, which an even multivector does not have: the error names what converts it."""
-
-    __slots__ = ()
+    __slots__ = ("__doc__",)
 
     def __get__(self, value: Any, kind: type) -> NoReturn:
         signature = (3, 0, 0) if value is None else value.algebra.signature
@@ -52,7 +55,10 @@ def add_to(multivector: type, rotor: type) -> None:
 
 
 def with_foreign_names(names: Mapping[str, str]) -> Callable[[type[T]], type[T]]:
-    """Give a class names of other libraries, which ``dir`` of its values does not list."""
+    """Give a class names of other libraries, which ``dir`` of its values does not list.
+
+    With the metaclass `ListsOwnNames`, ``dir`` and `help` of the class do not list them either.
+    """
 
     def named(kind: type[T]) -> type[T]:
         _add(kind, names)
@@ -60,6 +66,17 @@ def with_foreign_names(names: Mapping[str, str]) -> Callable[[type[T]], type[T]]
         return kind
 
     return named
+
+
+class ListsOwnNames(type):
+    """A class whose ``dir`` leaves out the names of other libraries.
+
+    Completion in the REPL of Python and in IPython also lists the names of the class of a value.
+    """
+
+    def __dir__(cls) -> Iterable[str]:
+        members = _members(cls)
+        return [name for name in super().__dir__() if not isinstance(members.get(name), ForeignName)]
 
 
 def _add(kind: type, names: Mapping[str, str]) -> None:
@@ -70,7 +87,9 @@ def _add(kind: type, names: Mapping[str, str]) -> None:
 
 def listed(value: object) -> Iterable[str]:
     """Return the names for ``dir(value)``, without those of other libraries."""
-    kinds = type(value).__mro__
-    names = {name: member for kind in reversed(kinds) for name, member in vars(kind).items()}
-    own = {name for name, member in names.items() if not isinstance(member, ForeignName)}
+    own = {name for name, member in _members(type(value)).items() if not isinstance(member, ForeignName)}
     return sorted(own | getattr(value, "__dict__", {}).keys())
+
+
+def _members(kind: type) -> dict[str, Any]:
+    return {name: member for one in reversed(kind.__mro__) for name, member in vars(one).items()}

@@ -21,7 +21,7 @@ from polhode._algebra.coefficients import (
 from polhode._algebra.constructors import one_grade, scalar
 from polhode._algebra.estimation import mean
 from polhode._algebra.euclidean import vector_in
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.foreign_tables import TRANSFORM
 from polhode._algebra.foreign_values import has_reflected, remedy_for
 from polhode._algebra.grades import concatenate, stack
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 @with_foreign_names(TRANSFORM)
 @explains_calls_of
-class RigidTransform(TransformBatch):
+class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
     """A rigid displacement ``y = R x ~R + x0`` (handout eq. 4.1), or a batch of them.
 
     Named and shaped as ``scipy.spatial.transform.RigidTransform``: ``S * T`` moves by T first, `apply` moves

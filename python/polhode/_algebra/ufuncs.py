@@ -101,12 +101,10 @@ def remedy_of(function: str, others: str) -> str:
     return f"write {_OURS[function]}, or {others}" if function in _OURS else others
 
 
+# The attribute ``variable``, which xarray reads of an operand beside a DataArray or Dataset. There it is a
+# TypeError, which no default hides: xarray would wrap the product of its numbers and the value.
 class OperandOfXarray(ForeignName):
-    """The attribute ``variable``, which xarray reads of an operand beside a DataArray or Dataset.
-
-    There it is a TypeError, which no default hides: xarray would wrap the product of its numbers and the
-    value.
-    """
+    __slots__ = ("__doc__",)
 
     def __get__(self, value: Any, owner: Any = None) -> NoReturn:
         reader = sys._getframe(1).f_globals.get("__name__", "")

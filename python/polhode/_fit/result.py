@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.free_motion import FreeMotion
@@ -36,7 +36,7 @@ _TOO_SMALL, _MANY = 0.1, 10
 @created_by("ph.fit")
 @hands_out_copies("values", "covariance", "times", "residuals")
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(metaclass=ListsOwnNames):
     """The result of `fit`: body, state and sensor, with their uncertainty.
 
     Attributes

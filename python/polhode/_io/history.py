@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from polhode._algebra.constructors import vector
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body
@@ -49,7 +49,7 @@ _OPTIONAL = {"omega_body": 2, "momentum_space": 2, "position": 1, "velocity": 1}
 
 @with_foreign_names(HISTORY)
 @dataclass(frozen=True, eq=False)
-class AttitudeHistory:
+class AttitudeHistory(metaclass=ListsOwnNames):
     """Attitudes of one body at n times, with the other quantities that a file has.
 
     A quantity that is not known is None; nothing is made up for it.

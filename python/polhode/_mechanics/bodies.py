@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.constructors import as_point, vector
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.foreign_names import BODY
@@ -21,7 +21,7 @@ from polhode._support.files import loadable
 
 @with_foreign_names(BODY)
 @explains_calls_of
-class Body:
+class Body(metaclass=ListsOwnNames):
     """A rigid body: mass (kg), centre of mass (m) and inertia about the centre of mass, in body axes.
 
     ``a + b`` joins two bodies rigidly in the same body axes; place them with `moved` first. Solids are

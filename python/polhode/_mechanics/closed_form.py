@@ -11,7 +11,7 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import bivector
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor, check_rotor
 from polhode._mechanics.body_arrays import objects_of
@@ -30,7 +30,7 @@ _MANY = 64  # number of bodies that fills the SIMD lanes
 
 
 @with_foreign_names(CLOSED_FORM)
-class ClosedForm:
+class ClosedForm(metaclass=ListsOwnNames):
     """Motion of a body, or of a batch of bodies, in closed form."""
 
     _core: _native.ClosedForm

@@ -40,6 +40,9 @@ TRAJECTORY = {
     "state": "at(t)",
     **dict.fromkeys(("interpolate", "sol"), "at(t)"),
     "summary": "certificate",
+    **dict.fromkeys(
+        ("describe", "frequency", "period", "periods"), "ph.FreeMotion(body, rotor, omega_body).describe()"
+    ),
     "show": "view() and plot()",
     "animate": "view() and film(path)",
     "to_pandas": "to_dataframe()",
@@ -61,6 +64,8 @@ STEPPER = {
 
 CLOSED_FORM = {
     "plot": "view(), or ph.simulate(…).plot()",
+    **dict.fromkeys(("period", "frequency"), 'describe()["period"]'),
+    "regime": 'describe()["regime"]',
     **dict.fromkeys(("rotor", "attitude", "orientation", "rotation"), "at(t).rotor"),
     **dict.fromkeys(("omega", "omega_body", "angular_velocity"), "at(t).omega_body"),
     **dict.fromkeys(("state", "sol", "interpolate"), "at(t)"),

@@ -13,7 +13,7 @@ from polhode import _native
 from polhode._algebra.algebra import Algebra
 from polhode._algebra.algebra import algebra as algebra_of
 from polhode._algebra.constructors import as_vectors, bivector, pure
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
@@ -34,7 +34,7 @@ def matrices(inertias: Iterable[Inertia]) -> Array:
 
 @with_foreign_names(INERTIA)
 @explains_calls_of
-class Inertia(LinearMap):
+class Inertia(LinearMap, metaclass=ListsOwnNames):
     """The inertia map ``I(B) = ∫ρ x∧(x·B) d³x`` of bivectors to bivectors (handout eq. 4.18).
 
     It maps the plane of rotation to the plane of angular momentum, both in body axes, in kg m². It is about

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.foreign_names import CROSSINGS
@@ -137,7 +137,7 @@ class Failure:
 @with_foreign_names(CROSSINGS)
 @hands_out_copies("time", "rising")
 @dataclass(frozen=True, eq=False)
-class Crossings:
+class Crossings(metaclass=ListsOwnNames):
     """Times and states of the m occurrences of an event, by increasing distance in time from the start.
 
     Attributes

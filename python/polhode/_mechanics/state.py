@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._algebra.constructors import as_bivectors, as_vectors, bivector, vector
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor, check_rotor
 from polhode._mechanics.foreign_names import STATE
@@ -28,7 +28,7 @@ _ORIGIN = vector([0.0, 0.0, 0.0])
 @with_foreign_names(STATE)
 @explains_calls_of
 @dataclass(frozen=True, eq=False, init=False)
-class State:
+class State(metaclass=ListsOwnNames):
     """State of a body at a time, or of a batch of bodies, whose shapes broadcast.
 
     ``a == b`` is a bool: whether the shapes and all numbers are equal. ``state[i]`` indexes the batch as in

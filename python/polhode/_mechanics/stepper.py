@@ -10,7 +10,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.constructors import as_bivectors, bivector, vector
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.arguments import about_fixed_point, ensemble_of
@@ -35,7 +35,7 @@ _NO_TORQUE = np.zeros((0, 3))
 
 @with_foreign_names(STEPPER)
 @explains_calls_of
-class Stepper:
+class Stepper(metaclass=ListsOwnNames):
     """A body, or a batch of bodies side by side, stepped in a loop: for controllers and learning.
 
     Each call of `step` holds a torque over a time dt, as a computer that controls a satellite does. With a

@@ -10,7 +10,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.constructors import bivector, vector
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.foreign_names import TRAJECTORY
@@ -35,7 +35,7 @@ BYTES_OF_POINT = 400
 @created_by("ph.simulate, or ph.Trajectory.read(path) for a file")
 @hands_out_copies("time", "energy")
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class Trajectory(metaclass=ListsOwnNames):
     """The motion of a body at n times, or the motions of a batch of bodies at the same times.
 
     For a batch all values have the shape ``(*shape, n)``; ``trajectory[i]`` indexes the batch as in NumPy.

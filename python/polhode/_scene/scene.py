@@ -12,7 +12,7 @@ import numpy as np
 
 from polhode import _native
 from polhode import force as forces
-from polhode._algebra.foreign_names import with_foreign_names
+from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.arguments import check_progress, checked_threads
 from polhode._mechanics.bodies import Body
@@ -71,7 +71,7 @@ class SceneNotFoundError(SceneError, FileNotFoundError):
 @created_by("ph.Scene.read(path)")
 @hands_out_copies("shift", "times")
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(metaclass=ListsOwnNames):
     """A scene file in SI units, ready to run; see `Scene.read`.
 
     `dataclasses.replace` accepts `path`, `times` and `ensemble`; the other attributes follow from the file.

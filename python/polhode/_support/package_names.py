@@ -16,6 +16,10 @@ SEE = {
     **dict.fromkeys(("SE3", "UnitDualQuaternion"), "RigidTransform"),
     "Slerp": "slerp",
     "Twist3": "Screw",
+    **dict.fromkeys(("animate", "film"), "view and Trajectory.film"),
+    **dict.fromkeys(("plot", "show"), "Trajectory.plot and view"),
+    "interpolate": "RotorSpline and slerp",
+    **dict.fromkeys(("odeint", "propagate", "solve_ivp"), "simulate"),
     **dict.fromkeys(("load", "read"), "io.read, Trajectory.read and Scene.read"),
     **{
         name: f"Multivector.{name}"
@@ -115,6 +119,9 @@ WRITE = {
     "mean_rotor_in_chordal_metric": "ph.mean([R, S])",
     "unflip_rotors": "ph.stack([R, S]).continuous()",
     **dict.fromkeys(("quaternion_slerp", "rotor_slerp", "slerp_evaluate", "qslerp"), "ph.slerp(R, S, t)"),
+    "average": "ph.mean([R, S])",
+    **dict.fromkeys(("dcm", "from_dcm"), f"{_MATRIX}, or R.to_matrix()"),
+    **dict.fromkeys(("euler", "from_euler"), f'{_ZYX}, or R.to_euler("ZYX")'),
     "squad": "ph.RotorSpline(times, [R, S])(t)",
     "angular_velocity": "ph.RotorSpline(times, [R, S]).omega_body(t)",
     **dict.fromkeys(

@@ -29,7 +29,7 @@ html_title = "Polhode"
 html_show_sourcelink = False
 html_copy_source = False
 html_static_path = ["static"]
-html_css_files = ["handout.css", "derivation.css"]
+html_css_files = ["page.css", "handout.css", "derivation.css"]
 
 
 class Viewer(SphinxDirective):

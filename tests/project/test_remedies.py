@@ -149,7 +149,7 @@ def test_calls_with_too_few_or_too_many_arguments_list_all(call, python, argumen
         (lambda: ph.Rotor.from_euler_angles, r'a Rotor .*; write from_euler\("ZYZ", angles\)'),
         (lambda: ph.KeplerOrbit, r".*; see polhode\.torque\.KeplerOrbit"),
         (lambda: GRID.period, r"a Trajectory .*; write ph\.FreeMotion\(.*\)\.describe\(\)"),
-        (
+        (lambda: ph.FreeMotion(BODY, TURNED, RATE).period, r'a FreeMotion .*; write describe.*"period"\]'),
             lambda: ph.FreeMotion(BODY, TURNED, RATE).period,
             r'a FreeMotion .*; write describe\(\)\["period"\]',
         ),

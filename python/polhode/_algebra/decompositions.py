@@ -24,8 +24,8 @@ _PAIRS_OF_THREE = ((1, 2), (2, 0), (0, 1))
 def eigenvectors(F: LinearMap) -> tuple[Multivector, Array]:
     """Return unit eigenvectors (..., n) and eigenvalues (..., n) of a symmetric map of vectors.
 
-    The eigenvalues rise; the vectors are perpendicular and right-handed, ``a1 a2 … an = I``. The metric must
-    be Euclidean; in others symmetric maps may have complex eigenvalues.
+    The eigenvalues ascend; the vectors are perpendicular and right-handed, ``a1 a2 … an = I``. The metric
+    must be Euclidean; in others symmetric maps may have complex eigenvalues.
 
     Examples
     --------
@@ -45,7 +45,7 @@ def eigenvectors(F: LinearMap) -> tuple[Multivector, Array]:
 def eigenplanes(F: LinearMap) -> tuple[Multivector, Array]:
     """Return unit bivectors (..., K) that a symmetric map only scales, and their eigenvalues (..., K).
 
-    K is 3 in 3-d space. The eigenvalues rise. For a map of vectors they are the products of two eigenvalues
+    K is 3 in 3-d space. The eigenvalues ascend. For a map of vectors they are the products of two eigenvalues
     of vectors. The metric must be Euclidean.
 
     Examples
@@ -93,8 +93,8 @@ def _principal_axes(F: LinearMap, name: str) -> tuple[Array, Array]:
 def svd(F: LinearMap) -> tuple[Multivector, Array, Multivector]:
     """Return unit values u (..., K), singular values s (..., K) and unit values v: ``F(v_k) = s_k u_k``.
 
-    ``F(a) = Σ s_k (a·v_k) u_k`` for a map of vectors, K their dimension. The singular values fall, as those
-    of NumPy, and are not negative; the u are perpendicular, and so are the v, in either orientation. For a
+    ``F(a) = Σ s_k (a·v_k) u_k`` for a map of vectors, K their dimension. The singular values descend, as
+    in NumPy, and are not negative; the u are perpendicular, and so are the v, in either orientation. For a
     map of bivectors u and v are bivectors. The metric must be Euclidean.
 
     Examples

@@ -40,7 +40,7 @@ def mean(R: Any, weights: Any = None, axis: int | tuple[int, ...] | None = None)
     The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
     Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0.
     A ValueError if a mean is not unique, as for half turns about three axes; while JAX traces, the result is
-    then arbitrary. Arrays of other libraries keep their type; derivatives are right up to the third.
+    then arbitrary. Arrays of other libraries keep their type; derivatives are correct up to third order.
 
     Parameters
     ----------

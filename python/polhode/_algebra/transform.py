@@ -202,8 +202,8 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
     def from_dual_quat(dual_quat: Any, *, scalar_first: bool = False) -> RigidTransform:
         """From unit dual quaternions (..., 8): the real part, then the dual part, each ``(x, y, z, w)``.
 
-        With `scalar_first`, each is ``(w, x, y, z)``. Both are divided by the norm of the real part; what of
-        the dual part is not orthogonal to it is dropped. A ValueError for a real part 0.
+        With `scalar_first`, each is ``(w, x, y, z)``. Both are divided by the norm of the real part, and the
+        component of the dual part along the real part is dropped. A ValueError for a real part 0.
 
         Examples
         --------

@@ -160,7 +160,7 @@ def to_motor(self: RigidTransform, algebra: Algebra = _MOTORS) -> Multivector:
     ``M X ~M`` moves planes ``n + d e4``, those with ``n·x + d = 0``, and their intersections.
     ``M = exp(−½ B + ½ v∧e4)`` is a screw: a rotation vector dual to B, and the velocity v of the origin.
     `algebra` may be another one of three generators of square 1 and one of square 0, in any order, which
-    then takes the part of e4.
+    then plays the role of e4.
 
     Examples
     --------

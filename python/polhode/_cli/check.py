@@ -53,7 +53,7 @@ def add(commands: Any) -> None:
         run,
         help="check scenes, meshes and robot files without running them",
         description="Check scenes and their meshes, meshes (STL, OBJ, PLY), and the inertias of robot files "
-        "(URDF, SDF, MJCF). Warnings question what is possible but improbable.",
+        "(URDF, SDF, MJCF). Warnings point out values that are possible but unlikely.",
     )
     check.add_argument(
         "files", metavar="FILE", nargs="+", help="a scene (- is standard input), a mesh or a robot file"

@@ -221,9 +221,10 @@ class Formula(_native.FormulaCaller):
     def grad(self, *names: str) -> Callable[..., Any]:
         """Return a function for the gradients of a scalar formula with respect to these names, by JAX.
 
-        It takes values as the formula does. The gradient by a name has the grades of its value, and its
-        components are the derivatives by components; several names give a tuple. NumPy arrays give float64
-        NumPy arrays; JAX arrays, also traced ones, give JAX arrays. Each row of a batch has its own gradient.
+        It takes values as the formula does. The gradient with respect to a name has the grades of its value;
+        its components are the derivatives with respect to those of the value. Several names give a tuple.
+        NumPy arrays give float64 NumPy arrays; JAX arrays, also traced ones, give JAX arrays.
+        Each row of a batch has its own gradient.
 
         Examples
         --------
@@ -320,7 +321,7 @@ def evaluate(
 ) -> Any:
     """Return the value of a formula: ``ph.evaluate("-I a∧b", a=a, b=b)``. See `Formula`.
 
-    `define` has functions and names by formulas, as for `formula`.
+    `define` defines functions and names by formulas, as for `formula`.
 
     Examples
     --------

@@ -44,8 +44,8 @@ def write_gltf(
     """Write an animation of one body as glTF 2.0, atomically: FILE.glb (binary) or FILE.gltf (text).
 
     The node ``body`` carries the mesh and two tracks, its rotation and its translation, at the output times,
-    from the first one on; it is a child of the node ``space``, which turns e3 up. Numbers are floats of 32
-    bits, as glTF has them.
+    from the first one on; it is a child of the node ``space``, which turns e3 up. Numbers are stored as
+    float32, as glTF requires.
 
     Parameters
     ----------

@@ -105,7 +105,7 @@ def write_stl(
 
     The uniform body in the written mesh has its centre of mass at 0, and its inertia matrix is diagonal, with
     the moments in the order of `Inertia.principal_moments`. Where moments are equal, the axes are one choice
-    of many. Numbers are floats of 32 bits, as STL has them.
+    of many. Numbers are stored as float32, as STL requires.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def write_stl(
     ------
     ValueError
         For a mesh that encloses no body, a scene with neither mesh nor solid, another suffix, and triangles
-        too small for floats of 32 bits.
+        too small for float32.
     FileNotFoundError, OSError
         If there is no such mesh; if the file cannot be written, and an older file stays.
 

@@ -25,8 +25,8 @@ class Body(metaclass=ListsOwnNames):
     """A rigid body: mass (kg), centre of mass (m) and inertia about the centre of mass, in body axes.
 
     ``a + b`` joins two bodies rigidly in the same body axes; place them with `moved` first. Solids are
-    uniform and centred on the origin, with their axis along e3 (a cone has its base in the plane e1e2); give
-    `mass` in kg or `density` in kg/m³.
+    uniform and centred on the origin, with their axis along e3 (a cone has its base in the plane e1e2). Give
+    sizes in m, and `mass` in kg or `density` in kg/m³.
 
     Examples
     --------

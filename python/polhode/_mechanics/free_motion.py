@@ -155,7 +155,7 @@ class FreeMotion(ClosedForm):
         return count
 
     def derivatives(self, t: Any) -> FlowDerivatives:
-        """Return the derivatives of the state at time t by the start and the body.
+        """Return the derivatives of the state at time t with respect to the start and the body.
 
         They are in closed form: the cost does not grow with t and the error is rounding. A ValueError as in
         `at`, and where the derivatives of an unstable rotation overflow.
@@ -190,15 +190,15 @@ class FlowDerivatives:
     Attributes
     ----------
     d_rotor_d_attitude
-        (..., 4, 3), by a rotation of the start by a small bivector ε in space axes, ``exp(−½ε) R(0)``,
-        which leaves the angular velocity in the body unchanged.
+        (..., 4, 3), with respect to a small rotation of the start, a bivector ε in space axes,
+        ``exp(−½ε) R(0)``, which leaves the angular velocity in the body unchanged.
     d_rotor_d_omega, d_omega_d_omega
-        (..., 4, 3) in s and (..., 3, 3), by the angular velocity in body axes at the start.
+        (..., 4, 3) in s and (..., 3, 3), with respect to the initial angular velocity in body axes.
     d_rotor_d_moments, d_omega_d_moments
-        (..., 4, 3) and (..., 3, 3), by the principal moments in kg m², with fixed principal axes and a fixed
-        initial angular velocity.
+        (..., 4, 3) and (..., 3, 3), with respect to the principal moments in kg m², with fixed principal
+        axes and a fixed initial angular velocity.
     d_rotor_dt, d_omega_dt
-        (..., 4) and (..., 3), by time: ``−½ R Ω_B`` and Euler's equations.
+        (..., 4) and (..., 3), with respect to time: ``−½ R Ω_B`` and Euler's equations.
 
     Examples
     --------

@@ -160,7 +160,7 @@ class Stepper(metaclass=ListsOwnNames):
             Axes of its components, with which it turns: ``"body"`` or ``"space"``.
         wheel_torque
             Torques commanded from now on to the motors of `polhode.torque.reaction_wheels`, instead of those
-            of the law: (..., k) in N m, for all bodies or for each. None lets the former command stand.
+            of the law: (..., k) in N m, for all bodies or for each. None keeps the previous command.
 
         Examples
         --------

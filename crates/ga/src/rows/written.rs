@@ -1,6 +1,6 @@
-//! Products of factors of three or four components that are common, with their terms known to the compiler.
+//! Common products of factors with three or four components, whose terms are known at compile time.
 //!
-//! They are recognised by their terms, so that one serves several products and algebras.
+//! A product is recognised by its terms, so one kernel serves several products and algebras.
 
 use crate::simd::short::{Numbers, Short};
 use crate::simd::{Element, Lane, Path, by_lanes};

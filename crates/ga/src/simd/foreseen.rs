@@ -1,4 +1,4 @@
-//! Numbers announced before they are used, so that functions of them are computed for many at once.
+//! Lookahead: numbers are announced before they are used, so that functions of them are computed for many at once.
 
 /// Numbers in the order in which they will be used.
 #[derive(Clone, Debug, Default)]

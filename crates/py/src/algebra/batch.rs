@@ -1,5 +1,5 @@
-//! Operators of batches of float64 of one shape, also with a single value or a number. All other batches are those of the
-//! Python half, which takes some microseconds longer.
+//! Operators of batches of float64 of one shape, also with a single value or a number. The Python half handles all other
+//! batches, and takes some microseconds longer.
 #![allow(unsafe_code)]
 
 use super::rows::fill_numbers;

@@ -1,4 +1,4 @@
-//! Operators of single values of any algebra: rows of float64. All other values are those of the Python half.
+//! Operators of single values of any algebra: rows of float64. The Python half handles all other values.
 //!
 //! The results have the bits of the same operations over batches, which are written for arrays and take 10 to 100 times as
 //! long on a single value.

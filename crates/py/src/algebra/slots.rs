@@ -1,4 +1,4 @@
-//! Slots of the types `Multivector` and `Rotor`: operators and methods of single values, and of all others by pyo3.
+//! Slots of the types `Multivector` and `Rotor`: operators and methods of single values; all others go through pyo3.
 #![allow(unsafe_code)]
 
 use super::operators::{

@@ -1,7 +1,7 @@
-//! The type of formulas in Python, whose calls take no detour.
+//! The Python type of formulas, called by the vectorcall protocol (PEP 590).
 //!
-//! A formula of single values takes some 50 ns, finding a method `__call__` and storing the arguments in a tuple and a
-//! dictionary twice as long. So the type has the vectorcall protocol (PEP 590): the arguments stay where Python has them.
+//! A formula of single values takes some 50 ns. Looking up `__call__` and storing the arguments in a tuple and a dictionary
+//! would take twice as long; with vectorcall the arguments stay where Python has them.
 #![allow(unsafe_code)]
 
 use super::{Formula, called};

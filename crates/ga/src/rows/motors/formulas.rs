@@ -1,4 +1,4 @@
-//! Functions of motors `s + I₃ b + m n + p J` in lanes, as of rotors with dual numbers.
+//! Functions of motors `s + I₃ b + m n + p J` in lanes: the formulas of rotors over dual numbers.
 //!
 //! - Of a bivector `I₃ β + v n` with `C = I₃ (β + εv)`, `Θ² = −C² = θ² + 2ε β·v`: `exp C = cos Θ + C sin Θ/Θ`, where
 //!   `cos Θ = cos θ − ε β·v sin θ/θ` and `sin Θ/Θ = sin θ/θ + ε β·v (cos θ − sin θ/θ)/θ²`.

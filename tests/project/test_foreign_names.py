@@ -13,7 +13,7 @@ from scipy.spatial import transform as scipys
 import polhode as ph
 from polhode import I, RigidTransform, Rotor, e1, e2, e3
 from polhode._algebra import foreign_tables, ufuncs
-from polhode._mechanics import foreign_names as names_of_motions
+from polhode._mechanics import foreign_tables as names_of_motions
 from polhode._support import package_names
 
 # --- what the tables tell to write

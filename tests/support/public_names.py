@@ -4,7 +4,7 @@ import importlib
 import inspect
 
 import polhode as ph
-from polhode._algebra.foreign_names import ForeignName
+from polhode._support.foreign_names import ForeignName
 
 MODULES = ("torque", "force", "event", "io")
 

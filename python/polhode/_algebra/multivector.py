@@ -13,7 +13,6 @@ from polhode._algebra import blade_names as _blade_names
 from polhode._algebra import circular as _circular
 from polhode._algebra import comparison as _comparison
 from polhode._algebra import conjugates as _conjugates
-from polhode._algebra import foreign_names as _foreign_names
 from polhode._algebra import frames as _frames
 from polhode._algebra import functions as _functions
 from polhode._algebra import grades as _grades
@@ -27,6 +26,7 @@ from polhode._algebra.foreign_values import has_reflected, is_foreign
 from polhode._algebra.masking import masked
 from polhode._algebra.native import joins
 from polhode._algebra.products import coerced, is_sequence, product
+from polhode._support import foreign_names as _foreign_names
 from polhode._support.arrays import Shape, copied, index_message
 from polhode._support.calls import explains_calls
 

@@ -14,10 +14,10 @@ from polhode._algebra import quaternions as _quaternions
 from polhode._algebra import signs as _signs
 from polhode._algebra.angles import DEGREE, in_degrees, to_degrees, to_radians
 from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, taken
-from polhode._algebra.foreign_names import add_to
 from polhode._algebra.foreign_values import remedy_for
 from polhode._algebra.masking import Errors, masked
 from polhode._algebra.multivector import Multivector
+from polhode._algebra.names_of_rotors import add_to
 from polhode._algebra.native import joins
 from polhode._algebra.products import aligned, common_algebra, result_array
 from polhode._algebra.quaternions import QuaternionOrder

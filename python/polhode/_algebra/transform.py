@@ -21,7 +21,6 @@ from polhode._algebra.coefficients import (
 from polhode._algebra.constructors import one_grade, scalar
 from polhode._algebra.estimation import mean
 from polhode._algebra.euclidean import vector_in
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.foreign_tables import TRANSFORM
 from polhode._algebra.foreign_values import has_reflected, remedy_for
 from polhode._algebra.grades import concatenate, stack
@@ -32,6 +31,7 @@ from polhode._algebra.transform_batches import TransformBatch
 from polhode._support.arrays import Array, Shape, common_batch, is_float, power_of_two
 from polhode._support.calls import explains_calls_of
 from polhode._support.extras import register_pytree
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import RigidTransform as ScipyTransform

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.foreign_names import ForeignName
 from polhode._algebra.foreign_values import LABELLED
+from polhode._support.foreign_names import ForeignName
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.free_motion import FreeMotion
@@ -18,6 +17,7 @@ from polhode._report.summary import number
 from polhode._support.arrays import Array, as_float, hands_out_copies
 from polhode._support.calls import created_by
 from polhode._support.extras import optional
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 from polhode.torque import Torque
 
 if TYPE_CHECKING:

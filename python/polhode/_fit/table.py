@@ -61,50 +61,14 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
         quaternion whose norm is not 1, a line with another number of fields, times that do not increase, and
         too few rows; with the file if it cannot be read.
     """
-    try:
-        if path == Path("-"):
-            path = Path("<stdin>")
-            content = _standard_input()
-        else:
-            require_csv(path)
-            content = contents(path, copies=4)
-        lines = content.decode("utf-8-sig").replace("\r\n", "\n").split("\n")
-    except OSError as error:
-        remedy = "; give the path of a CSV file" if path.is_dir() else ""
-        raise UnreadableError(f"{path}: error: {(error.strerror or str(error)).lower()}{remedy}") from None
-    except UnicodeDecodeError as error:
-        raise UnreadableError(
-            f"{path}: error: not UTF-8 text from byte {error.start} on; save the data as CSV in UTF-8"
-        ) from None
+    path, lines = _lines(path)
     rows = [(k, x) for k, x in enumerate(lines, 1) if x.strip() and not x.lstrip().startswith("#")]
     if not rows:
         raise UnreadableError(f"{path}: error: the file is empty; its first line has names of columns")
     separator = separator_of(rows[0][1])
-    try:
-        fields = next(csv.reader([rows[0][1]], delimiter=separator, skipinitialspace=True))
-    except csv.Error as error:
-        raise UnreadableError(
-            f"{path}:{rows[0][0]}:1: error: not names of columns: {error}; write them as t,wx,wy,wz"
-        ) from None
-    header = [x.strip() for x in fields]
-    if len(header) == 1 and len(header[0].split()) >= len(RATES):
-        raise UnreadableError(
-            f"{path}:{rows[0][0]}:1: error: the columns are separated by spaces; separate names and numbers "
-            "by commas, semicolons or tabs"
-        )
-    if all(_is_number(x) for x in header):
-        raise UnreadableError(
-            f"{path}:{rows[0][0]}:1: error: the first line has numbers; it must have the names of the columns"
-        )
+    header = _header(f"{path}:{rows[0][0]}:1: error:", rows[0][1], separator)
     names = names or _default(path, rows[0][0], header)
-    for name in names:
-        if header.count(name) != 1:
-            problem = f"{header.count(name)} columns are named" if name in header else "there is no column"
-            raise UnreadableError(
-                f"{path}:{rows[0][0]}:1: error: {problem} {name!r} among {', '.join(header)}; "
-                "give the names with --columns"
-            )
-    places = [header.index(name) for name in names]
+    places = _places(f"{path}:{rows[0][0]}:1: error:", names, header)
     kinds = KINDS[len(names)]
     columns = dict(zip(kinds, (places[1:4], places[4:]) if len(kinds) > 1 else (places[1:],), strict=True))
     found: dict[str, list[tuple[int, list[float]]]] = {kind: [] for kind in kinds}
@@ -126,6 +90,53 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
             )
     of_motion = names in OF_MOTION
     return {kind: _table(path, own, len(columns[kind]) + 1, of_motion) for kind, own in found.items()}
+
+
+def _lines(path: Path) -> tuple[Path, list[str]]:
+    """Return the lines of a file, and its name in messages; ``-`` is standard input."""
+    try:
+        if path == Path("-"):
+            path = Path("<stdin>")
+            content = _standard_input()
+        else:
+            require_csv(path)
+            content = contents(path, copies=4)
+        return path, content.decode("utf-8-sig").replace("\r\n", "\n").split("\n")
+    except OSError as error:
+        remedy = "; give the path of a CSV file" if path.is_dir() else ""
+        raise UnreadableError(f"{path}: error: {(error.strerror or str(error)).lower()}{remedy}") from None
+    except UnicodeDecodeError as error:
+        raise UnreadableError(
+            f"{path}: error: not UTF-8 text from byte {error.start} on; save the data as CSV in UTF-8"
+        ) from None
+
+
+def _header(prefix: str, text: str, separator: str) -> list[str]:
+    """Return the names of the columns in the first line; `prefix` begins the messages of errors."""
+    try:
+        fields = next(csv.reader([text], delimiter=separator, skipinitialspace=True))
+    except csv.Error as error:
+        raise UnreadableError(f"{prefix} not names of columns: {error}; write them as t,wx,wy,wz") from None
+    header = [x.strip() for x in fields]
+    if len(header) == 1 and len(header[0].split()) >= len(RATES):
+        raise UnreadableError(
+            f"{prefix} the columns are separated by spaces; separate names and numbers by commas, "
+            "semicolons or tabs"
+        )
+    if all(_is_number(x) for x in header):
+        raise UnreadableError(f"{prefix} the first line has numbers; it must have the names of the columns")
+    return header
+
+
+def _places(prefix: str, names: tuple[str, ...], header: list[str]) -> list[int]:
+    """Return the places of the names in the header, in which each occurs once."""
+    for name in names:
+        if header.count(name) != 1:
+            problem = f"{header.count(name)} columns are named" if name in header else "there is no column"
+            raise UnreadableError(
+                f"{prefix} {problem} {name!r} among {', '.join(header)}; give the names with --columns"
+            )
+    return [header.index(name) for name in names]
 
 
 def _standard_input() -> bytes:

@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 
 from polhode._algebra.constructors import vector
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body
-from polhode._mechanics.foreign_names import HISTORY
+from polhode._mechanics.foreign_tables import HISTORY
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.result import Certificate
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.table import columns_of
 from polhode._support.arrays import Array, as_floats
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 
 
 class FileError(ValueError):

@@ -9,14 +9,14 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.constructors import as_point, vector
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.foreign_names import BODY
+from polhode._mechanics.foreign_tables import BODY
 from polhode._mechanics.inertia import Inertia, point_masses
 from polhode._support.arrays import as_components, as_float, as_floats
 from polhode._support.calls import explains_calls_of
 from polhode._support.files import loadable
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 
 
 @with_foreign_names(BODY)

@@ -11,14 +11,14 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import bivector
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor, check_rotor
 from polhode._mechanics.body_arrays import objects_of
-from polhode._mechanics.foreign_names import CLOSED_FORM
+from polhode._mechanics.foreign_tables import CLOSED_FORM
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State, angular_velocity
 from polhode._support.arrays import Array, Shape, as_floats, batch_index
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._support.memory import require
 
 if TYPE_CHECKING:

@@ -13,14 +13,14 @@ from polhode import _native
 from polhode._algebra.algebra import Algebra
 from polhode._algebra.algebra import algebra as algebra_of
 from polhode._algebra.constructors import as_vectors, bivector, pure
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.foreign_names import INERTIA
+from polhode._mechanics.foreign_tables import INERTIA
 from polhode._mechanics.parameters import common
 from polhode._support.arrays import Array, Shape, as_floats
 from polhode._support.calls import explains_calls_of
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._support.memory import require_array
 
 _G3 = algebra_of(3)

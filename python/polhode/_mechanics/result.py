@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.foreign_names import CROSSINGS
+from polhode._mechanics.foreign_tables import CROSSINGS
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, hands_out_copies
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 
 
 @hands_out_copies()

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._algebra.constructors import as_bivectors, as_vectors, bivector, vector
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor, check_rotor
-from polhode._mechanics.foreign_names import STATE
+from polhode._mechanics.foreign_tables import STATE
 from polhode._mechanics.parameters import common
 from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen
 from polhode._support.calls import explains_calls_of
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -10,12 +10,11 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.constructors import as_bivectors, bivector, vector
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.arguments import about_fixed_point, ensemble_of
 from polhode._mechanics.ensemble import check_state
-from polhode._mechanics.foreign_names import STEPPER
+from polhode._mechanics.foreign_tables import STEPPER
 from polhode._mechanics.laws import one_of
 from polhode._mechanics.parameters import check_finite
 from polhode._mechanics.registry import FRAMES
@@ -23,6 +22,7 @@ from polhode._mechanics.state import State
 from polhode._mechanics.sums import Sum
 from polhode._support.arrays import Array, Shape, as_float, as_floats
 from polhode._support.calls import explains_calls_of
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -10,15 +10,15 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.constructors import bivector, vector
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.foreign_names import TRAJECTORY
+from polhode._mechanics.foreign_tables import TRAJECTORY
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.result import Certificate, Crossings, Failure
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen, hands_out_copies
 from polhode._support.calls import created_by
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._support.memory import require_array
 
 if TYPE_CHECKING:

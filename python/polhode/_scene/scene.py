@@ -12,7 +12,6 @@ import numpy as np
 
 from polhode import _native
 from polhode import force as forces
-from polhode._algebra.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.arguments import check_progress, checked_threads
 from polhode._mechanics.bodies import Body
@@ -26,6 +25,7 @@ from polhode._support.arrays import Array, frozen, hands_out_copies
 from polhode._support.calls import created_by
 from polhode._support.file_kinds import EXAMPLES
 from polhode._support.files import is_endless
+from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 from polhode.force import Force
 from polhode.torque import Torque
 

@@ -1,4 +1,34 @@
-"""Polhode: geometric algebra of 3-d space, rotors and the motion of rigid bodies."""
+"""Polhode: geometric algebra of 3-d space, rotors and the motion of rigid bodies.
+
+>>> import numpy as np
+>>> import polhode as ph
+>>> R = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, np.pi / 2)  # a quarter turn from e1 to e2
+>>> print(f"{R(ph.e1):.1f}", R.to_quaternion(order="wxyz").round(3))
+0.0 e1 + 1.0 e2 [0.707 0.    0.    0.707]
+>>> body = ph.Inertia.from_principal_moments(1, 2, 3)  # kg m²
+>>> start = ph.State(R, [0.1, 1.0, 0.1])  # rad/s, in body axes
+>>> ph.simulate(body, start, np.linspace(0, 10, 101))
+Trajectory(101 times, t = 0 … 10 s, exact)
+
+What there is, by task:
+
+- values: `vector`, `bivector`, `multivector`, `e1`, `e2`, `e3`, `I`, `stack`, with the methods of
+  `Multivector`;
+- rotations: `Rotor`, from and to quaternions, matrices and Euler angles; `slerp`, `RotorSpline`, `mean`,
+  `align`, `attitude_from_rates`; with translations `RigidTransform`;
+- other algebras: `algebra`, `pga`, `cga`, `LinearMap`; formulas as on paper: `evaluate`, `formula`;
+- bodies: `Body`, `Inertia`, `State`, `read_urdf`;
+- motion: `simulate`, `FreeMotion`, `LagrangeTop`, `Stepper`, with the laws of `torque` and `force` and the
+  events of `event`; the same under JAX: `jax`; moments and spin from data: `fit`;
+- files: `Scene`, `Trajectory.read`, `io`; pictures: `view`, `Trajectory.plot`, `Trajectory.film`.
+
+Units are SI and angles radians. Components are the last axis of an array, and batches broadcast. Bivectors,
+such as angular velocities, have the components ``(e2e3, e3e1, e1e2)``, which equal those of the axial vector.
+A rotor acts as ``R(x) = R x ~R``, ``S * R`` turns by R first, and the rotor of a state takes body axes to
+space axes. Put ``^`` (wedge) and ``|`` (dot) in brackets: Python binds them looser than ``+`` and ``*``.
+
+Guides: https://github.com/polhode/polhode/tree/main/docs; the command is ``polhode --help``.
+"""
 
 import importlib
 from typing import TYPE_CHECKING, Any

@@ -2,6 +2,7 @@
 
 import doctest
 import inspect
+import operator
 import re
 from pathlib import Path
 
@@ -77,6 +78,14 @@ def run(name, documented):
     result = doctest.DocTestRunner(optionflags=FLAGS).run(example)
     assert result.failed == 0, f"the example of {name} fails"
     return bool(example.examples)
+
+
+def test_the_package_has_an_overview_whose_example_runs_and_whose_names_exist():
+    assert run("polhode", ph)
+    names = re.findall(r"`([\w.]+)`", re.sub(r"``.*?``", "", ph.__doc__))
+    assert len(names) > 30
+    for name in names:
+        assert operator.attrgetter(name)(ph) is not None
 
 
 @pytest.mark.parametrize("name", public())

@@ -17,6 +17,7 @@ from docutils.statemachine import StringList
 from sphinx.util.docutils import SphinxDirective
 
 import polhode
+from polhode._support.foreign_names import ForeignName
 
 ANY = re.compile(r": ~?(typing\.)?Any\b")
 # Attributes with a description in common, as napoleon writes them, and what stands for the spaces in them.
@@ -117,9 +118,9 @@ def restore_property(app, what, name, obj, options, lines):
         lines[:] = [*HELD.pop(name), *lines]
 
 
-def skip_field(app, what, name, obj, skip, options):
-    """Leave out the fields of named tuples, which the docstring of the class describes."""
-    return True if type(obj).__name__ == "_tuplegetter" else None
+def skip_member(app, what, name, obj, skip, options):
+    """Leave out names of other libraries, and fields of named tuples, which the class describes."""
+    return True if isinstance(obj, ForeignName) or type(obj).__name__ == "_tuplegetter" else None
 
 
 def join_attributes(app, what, name, obj, options, lines):
@@ -147,7 +148,7 @@ def setup(app):
     app.connect("autodoc-process-docstring", escape_docstring, priority=300)
     app.connect("autodoc-process-docstring", hold_property, priority=400)
     app.connect("autodoc-process-docstring", restore_property, priority=600)
-    app.connect("autodoc-skip-member", skip_field)
+    app.connect("autodoc-skip-member", skip_member)
     app.connect("autodoc-process-docstring", join_attributes, priority=600)
     app.connect("doctree-read", restore_spaces)
     app.connect("autodoc-process-signature", shorten_signature)

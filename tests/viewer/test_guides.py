@@ -31,3 +31,12 @@ def test_every_guide_has_a_page():
     docs = ROOT / "docs"
     for guide in docs.rglob("*.md"):
         assert (PAGES / guide.relative_to(docs).with_suffix(".html")).exists()
+
+
+def test_the_reference_lists_no_names_of_other_libraries():
+    path = PAGES / "reference/rotations.html"
+    if not path.exists():
+        left_out("build/docs is missing: make docs")
+    text = path.read_text()
+    assert 'id="polhode.Rotor.to_quaternion"' in text
+    assert 'id="polhode.Rotor.as_quat"' not in text

@@ -5,10 +5,10 @@ import pytest
 
 import polhode as ph
 from coverage_of_fits import check_coverage
-from polhode._fit.free import FreeFlow
+from polhode._fit.free_flow import FreeFlow
 from polhode._fit.laws import laws_of
 from polhode._fit.parameters import Layout, Parameters
-from polhode._fit.torqued import TorquedFlow
+from polhode._fit.torqued_flow import TorquedFlow
 
 pytest.importorskip("scipy")
 

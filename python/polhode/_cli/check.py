@@ -17,7 +17,7 @@ import numpy as np
 from polhode._cli import common
 from polhode._cli.common import add_amount, add_command, positive, read_scene
 from polhode._native import SceneError
-from polhode._support.words import counted
+from polhode._support.counts import counted
 
 if TYPE_CHECKING:
     from polhode._mechanics.bodies import Body

@@ -30,8 +30,8 @@ from polhode._cli.common import (
     whole_number,
 )
 from polhode._native import SceneError, __version__
+from polhode._support.counts import counted
 from polhode._support.files import UnreadableError, words_of
-from polhode._support.words import counted
 
 if TYPE_CHECKING:
     from polhode._scene.scene import Scene

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 from polhode._cli import common
 from polhode._cli.common import file_name
+from polhode._support.counts import counted
 from polhode._support.extras import progress_bar
 from polhode._support.files import unreadable
-from polhode._support.words import counted
 
 if TYPE_CHECKING:
     from polhode._report.ensemble.store import EnsembleStore

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from polhode._algebra.jacobians import left_jacobian, right_jacobian
-from polhode._fit.free import FreeFlow
+from polhode._fit.free_flow import FreeFlow
 from polhode._fit.laws import Laws
 from polhode._fit.parameters import Layout, Parameters
 from polhode._fit.samples import Samples
-from polhode._fit.torqued import TorquedFlow
+from polhode._fit.torqued_flow import TorquedFlow
 from polhode._support.arrays import Array
 
 # Number of samples of an arc under a torque, which only gives a start for the next.

@@ -13,9 +13,9 @@ import numpy as np
 
 from polhode._report.table import columns_of
 from polhode._support.arrays import Array
+from polhode._support.counts import counted
 from polhode._support.file_kinds import require_csv, separator_of
 from polhode._support.files import UnreadableError, contents
-from polhode._support.words import counted
 
 RATES, QUATERNION = ("t", "wx", "wy", "wz"), ("t", "qw", "qx", "qy", "qz")
 BOTH = RATES + QUATERNION[1:]

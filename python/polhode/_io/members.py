@@ -18,8 +18,8 @@ from polhode._report.ensemble.store import EnsembleStore
 from polhode._report.table import ALONG_TIME
 from polhode._support.arrays import Array
 from polhode._support.calls import explains_calls
+from polhode._support.counts import counted
 from polhode._support.extras import optional
-from polhode._support.words import counted
 
 # Attributes that describe the file, not the body.
 _OF_FILE = ("batch_shape", "bodies_complete", "number", "varied")

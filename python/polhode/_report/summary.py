@@ -11,7 +11,7 @@ from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.scene import Scene
-from polhode._support.words import counted
+from polhode._support.counts import counted
 from polhode.torque import Torque
 
 # Width of the names of rows.

@@ -14,7 +14,7 @@ from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State
 from polhode._scene.drawn import law_of_bodies
 from polhode._support.arrays import Array
-from polhode._support.words import counted
+from polhode._support.counts import counted
 from polhode.torque import Torque
 
 DrawnLaw = _native.Law | tuple[str, tuple[Any, ...]]

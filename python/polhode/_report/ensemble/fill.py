@@ -17,9 +17,9 @@ from polhode._report.ensemble.reduced import ReducedBlock, over_bodies, reductio
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._scene.scene import Scene
 from polhode._support import memory
+from polhode._support.counts import counted
 from polhode._support.files import check_target
 from polhode._support.locks import LockedError
-from polhode._support.words import counted
 
 
 class InterruptedRunError(KeyboardInterrupt):

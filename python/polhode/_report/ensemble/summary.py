@@ -21,8 +21,8 @@ from polhode._report.summary import (
     time,
     torques_of,
 )
+from polhode._support.counts import counted
 from polhode._support.memory import size
-from polhode._support.words import counted
 
 # Angles in rad from the nominal attitude up to which it predicts the others.
 _HORIZONS = (np.radians(10), np.radians(90))

@@ -83,6 +83,94 @@ def test_batches_and_values(shape):
     np.testing.assert_allclose(single, ph.right_jacobian(v), rtol=0, atol=1e-5)
 
 
+# --- screws
+
+
+def series_of_screws(x):
+    """``Σ adᵏ/(k + 1)!`` in 60 digits for the matrix ad of the commutator with a screw, and its inverse."""
+    with mpmath.workdps(60):
+        turn, shift = (
+            [[0, -c, b], [c, 0, -a], [-b, a, 0]]
+            for a, b, c in (map(mpmath.mpf, x[:3]), map(mpmath.mpf, x[3:]))
+        )
+        rows = [[*row, 0, 0, 0] for row in turn] + [[*s, *t] for s, t in zip(shift, turn, strict=True)]
+        ad = mpmath.matrix(rows)
+        term, total = mpmath.eye(6), mpmath.eye(6)
+        for k in range(1, 150):
+            term = term * ad / (k + 1)
+            total += term
+        return numbers(total), numbers(mpmath.inverse(total))
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-200, 1e-8, 0.5, 1.9999999, 2.0, 3.0, np.pi, 5.0, 6.2, 12.0])
+def test_jacobians_of_screws_are_their_series(angle):
+    x = np.array([1.0, -2.0, 2.0, 3.0, 1.0, -0.5])
+    x[:3] *= angle / 3
+    expected, inverse = series_of_screws(x)
+    # Entries are sums of products of a handful of numbers below 4.
+    np.testing.assert_allclose(ph.left_jacobian(x), expected, rtol=0, atol=16 * EPS)
+    away = min(abs(angle - 2 * np.pi * k) for k in (1, 2))
+    tolerance = 16 * EPS * np.abs(inverse).max() * (1 + 7 / away)
+    np.testing.assert_allclose(ph.left_jacobian(x, inverse=True), inverse, rtol=0, atol=tolerance)
+    np.testing.assert_array_equal(ph.right_jacobian(x), ph.left_jacobian(-x))
+
+
+def test_jacobians_of_screws_are_those_of_transforms():
+    x = np.random.default_rng(1).standard_normal((2, 3, 6))
+    left, right = ph.left_jacobian(x), ph.right_jacobian(x)
+    assert left.shape == (2, 3, 6, 6)
+    T, h = ph.RigidTransform.exp, 1e-6
+    for k, step in enumerate(h * np.eye(6)):
+        ahead, behind = T(x + step), T(x - step)
+        # Central differences err by h² and by rounding over h.
+        found = (ahead * behind.inverse()).log() / (2 * h)
+        np.testing.assert_allclose(left[..., k], found, rtol=0, atol=1e-8)
+        found = (behind.inverse() * ahead).log() / (2 * h)
+        np.testing.assert_allclose(right[..., k], found, rtol=0, atol=1e-8)
+    # The adjoint carries twists of the body to space.
+    np.testing.assert_allclose(T(x).adjoint() @ right, left, rtol=0, atol=64 * EPS)
+
+
+def test_screws_of_large_and_non_finite_numbers():
+    assert np.isfinite(ph.left_jacobian([1e200, 0, 0, 1, 2, 3])).all()
+    with pytest.raises(ValueError, match=r"at index \(1,\): a component is NaN or infinite"):
+        ph.left_jacobian([[0.0] * 6, [0.0] * 5 + [np.inf]])
+    with pytest.raises(ValueError, match="does not exist at a full turn"):
+        ph.left_jacobian([0, 0, 2 * np.pi, 1, 2, 3], inverse=True)
+    with pytest.raises(ValueError, match=r"3 components in the last axis, got shape \(4,\)"):
+        ph.right_jacobian([0, 0, 0, 1])
+
+
+def test_screws_of_symbols():
+    sympy = pytest.importorskip("sympy")
+    x = [0, 0, sympy.Symbol("t", positive=True), 1, 0, 2]
+    found = sympy.lambdify("t", sympy.Matrix(ph.left_jacobian(x)))(0.7)
+    np.testing.assert_allclose(found, ph.left_jacobian([0, 0, 0.7, 1, 0, 2]), rtol=0, atol=8 * EPS)
+    exact = ph.left_jacobian([sympy.Integer(k) for k in (0, 0, 0, 1, 2, 3)])
+    assert exact[3, 1] == sympy.Rational(-3, 2)
+
+
+def test_screws_of_jax():
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        jnp = jax.numpy
+        x = np.array([0.3, -1.0, 2.0, 1.0, 2.0, 3.0])
+        np.testing.assert_allclose(
+            ph.left_jacobian(jnp.asarray(x)), ph.left_jacobian(x), rtol=0, atol=8 * EPS
+        )
+
+        def along(t):
+            return ph.left_jacobian(t * jnp.asarray([0.0, 0.0, 1.0, 1.0, 0.0, 0.0]))[3:, :3]
+
+        # The block is ½[v]ₓ + ([ω]ₓ[v]ₓ + [v]ₓ[ω]ₓ)/6 + …, with both proportional to t: derivatives at 0.
+        slope = jax.jacfwd(along)
+        np.testing.assert_allclose(slope(0.0)[2, 1], 0.5, rtol=0, atol=EPS)
+        np.testing.assert_allclose(jax.jacfwd(slope)(0.0)[0, 2], 1 / 3, rtol=0, atol=4 * EPS)
+
+
+# --- errors and other coefficients
+
+
 def test_wrong_arguments_raise():
     with pytest.raises(
         ValueError, match=r"at index \(1,\): the inverse Jacobian does not exist at a full turn"

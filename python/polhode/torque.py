@@ -58,12 +58,14 @@ __all__ = [
 
 # Names that are not ours, and what to write instead.
 _FOREIGN = {
+    "constant": "torque.constant_body(F), or of space torque.constant_space(F)",
     **dict.fromkeys(("control", "controller", "PD", "pd", "pid"), "torque.pd_control(kp, kd)"),
     **dict.fromkeys(("drag", "friction", "viscous"), "torque.viscous_damping(d)"),
     **dict.fromkeys(("momentum_wheel", "wheel"), "torque.gyrostat(h)"),
     **dict.fromkeys(("solar_pressure", "srp"), "torque.radiation_pressure(area, offset, sun)"),
     "spring": "torque.torsion_spring(k)",
     **dict.fromkeys(("from_table", "interpolated", "table"), "torque.tabulated(times, torques)"),
+    **dict.fromkeys(("thrust", "thruster"), "force.thrust(F, at=x)"),
 }
 
 

@@ -56,6 +56,7 @@ BASE = {
     "D": [1, 0, 0, 0, 0, 0, 0, 0],
     "P": SPHERES.up([1, 2, 3]),
     "times": [0, 1],
+    "U": RigidTransform(Rotor.random(rng=5), e2),
     "omega": np.zeros((2, 3)),
 }
 OF_PLANES = {
@@ -88,11 +89,13 @@ TABLES = {
 # Expressions that need a value of another kind.
 OTHERS = {
     "astype(float)": {"value": sympy.Integer(2) * e1},
+    "continuous()": {"value": Rotor.random(3, rng=1)},
     "factor()": {"value": e1 ^ e2},
     "reshape(-1)": {"value": V},
     "k_vector(3, components)": {"components": np.ones(1)},
     "map(sympy.expand)": {"value": x * e1},
     "map(lambda c: sympy.integrate(c, x))": {"value": x * e1, "x": x},
+    "map(lambda c: sympy.collect(c, x))": {"value": x * e1, "x": x},
     "ph.concatenate([R, S])": {"R": Rotor.random(2, rng=1), "S": Rotor.random(3, rng=2)},
     **{
         f"multivector(components){part}": {"components": np.ones(8)}
@@ -168,7 +171,7 @@ def test_the_error_of_a_law_tells_what_works(module):
     for name, ours in module._FOREIGN.items():
         with pytest.raises(AttributeError, match=f"'{name}'; write ph.{re.escape(ours)}$"):
             getattr(module, name)
-        for text in ours.split(", or of a centre "):
+        for text in re.split(", or of (?:a centre|space) ", ours):
             eval(f"ph.{text}", BASE | laws)
     assert not hasattr(module, "nothing")
 

@@ -35,6 +35,12 @@ MULTIVECTOR = {
     **dict.fromkeys(("g_invol", "gradeInvol", "involute", "Involute"), "grade_involution()"),
     "gp": "A * B",
     "hodge": "right_complement()",
+    "unhodge": "left_complement()",
+    "polarity": "dual()",
+    "unpolarity": "undual()",
+    **dict.fromkeys(("I", "pseudoscalar"), "algebra.I"),
+    "invPS": "algebra.I.inverse()",
+    "collect": "map(lambda c: sympy.collect(c, x))",
     "integrate": "map(lambda c: sympy.integrate(c, x))",
     **dict.fromkeys(
         ("hitzer_inverse", "inv", "leftLaInv", "rightLaInv", "rightInv", "shirokov_inverse"), "inverse()"
@@ -83,6 +89,8 @@ _WXYZ, _XYZW = 'to_quaternion(order="wxyz")', 'to_quaternion(order="xyzw")'
 _VECTORS = ("from_two_vectors", "between", "FromTwoVectors", "setFromTwoVectors")
 _RPY = "the angles roll, pitch, yaw"
 _AXIS = "to_rotation_vector(), or plane_angle() for the plane and the angle"
+_DERIVATIVE = "R * ph.bivector(v) / -2, with v the angular velocity in body axes"
+_JOINED = "ph.concatenate([R, S]) of batches, which are immutable"
 
 # As in SciPy, numpy-quaternion and other libraries of rotations.
 ROTOR = {
@@ -92,7 +100,14 @@ ROTOR = {
     "align": "ph.align(a, b), or Rotor.from_vectors(a, b) for two directions",
     "align_vectors": "ph.align(a, b), which takes the target last",
     **dict.fromkeys(("angdist", "angularDistance"), "distance(S)"),
-    **dict.fromkeys(("AngVec", "AngleAxis"), "from_axis_angle(v, theta), the axis first"),
+    **dict.fromkeys(
+        ("AngVec", "AngleAxis", "from_axang", "from_axisangle"), "from_axis_angle(v, theta), the axis first"
+    ),
+    "absolute_distance": "np.minimum((R - S).norm(), (R + S).norm())",
+    **dict.fromkeys(("abs2", "absolute_square"), "norm_squared(), which is 1"),
+    **dict.fromkeys(("append", "extend", "insert"), _JOINED),
+    "average": "ph.mean(R)",
+    "angular_velocities": "ph.rates_from_attitude(times, [R, S])",
     "approx_equal": "distance(S) or is_close(S, rtol, atol)",
     "as_davenport": "to_davenport(axes, order)",
     "as_euler": "to_euler(seq)",
@@ -109,8 +124,16 @@ ROTOR = {
     "Exp": "Rotor.from_rotation_vector(v)",
     "euler": "to_euler(seq)",
     "EulerVec": "from_rotation_vector(v)",
-    **dict.fromkeys(("from_dcm", "from_rotation_matrix", "from_rotmat"), "from_matrix(M)"),
-    **dict.fromkeys(("Eul", "from_euler_angles"), 'from_euler("ZYZ", angles)'),
+    **dict.fromkeys(("derivative", "dotb", "ode"), _DERIVATIVE),
+    **dict.fromkeys(("exp_map", "increment"), "R * Rotor.from_rotation_vector(v)"),
+    "flattened": "reshape(-1)",
+    "from_angles": f'from_euler("xyz", angles), {_RPY}',
+    "from_angular_velocity": "ph.attitude_from_rates(times, omega)",
+    **dict.fromkeys(("from_dcm", "from_DCM", "from_rotation_matrix", "from_rotmat"), "from_matrix(M)"),
+    **dict.fromkeys(("Eul", "from_euler_angles", "from_euler_phases"), 'from_euler("ZYZ", angles)'),
+    **dict.fromkeys(("from_Matrix", "from_q"), 'from_quaternion(q, order="wxyz")'),
+    "from_spherical_coordinates": 'from_euler("ZY", [phi, theta])',
+    "get_batch_axes": "shape",
     "from_quaternion_xyzw": 'from_quaternion(q, order="xyzw")',
     "from_float_array": 'from_quaternion(q, order="wxyz")',
     "from_quat": 'from_quaternion(q, order="xyzw")',
@@ -120,17 +143,38 @@ ROTOR = {
     **dict.fromkeys(("from_x_radians", "Rx"), "Rotor.from_axis_angle(ph.e1, theta)"),
     **dict.fromkeys(("from_y_radians", "Ry"), "Rotor.from_axis_angle(ph.e2, theta)"),
     **dict.fromkeys(("from_z_radians", "Rz"), "Rotor.from_axis_angle(ph.e3, theta)"),
-    **dict.fromkeys(("interp", "interpolate", "slerp"), "ph.slerp(R, S, t)"),
+    "inner": '(~R * S)["1"]',
+    **dict.fromkeys(("interp", "interpolate", "intermediates", "slerp"), "ph.slerp(R, S, t)"),
+    "interp1": "R ** t",
+    "jlog": "ph.right_jacobian(R.to_rotation_vector(), inverse=True)",
+    "log_map": "(~R * S).log()",
+    "logarithm": "log()",
     **dict.fromkeys(("inv", "reciprocal"), "~R or inverse()"),
     **dict.fromkeys(("isfinite", "isinf", "isnan"), "is_finite()"),
-    **dict.fromkeys(("is_unit", "normalize"), "R itself, whose norm is 1"),
-    "plane": "plane_angle()",
+    **dict.fromkeys(("is_unit", "normalise", "normalised", "normalize"), "R itself, whose norm is 1"),
+    **dict.fromkeys(("mul", "product"), "R * S, which turns by S first"),
+    **dict.fromkeys(("plane", "polar_decomposition"), "plane_angle()"),
+    "polar_angle": "plane_angle()[1] / 2",
+    "polar_unit_vector": "plane_angle()[0].dual()",
+    "remove_jumps": "continuous()",
+    "rotate_by": "S * R, which turns by R first",
     "radians": "angle",
     "rotate": "R(a)",
     **dict.fromkeys(("as_rpy_radians", "rpy"), f'to_euler("xyz"), {_RPY}'),
     **{f"compute_{name}_radians": f'to_euler("xyz"), {_RPY}' for name in ("roll", "pitch", "yaw")},
+    **dict.fromkeys(("qvmul", "rotate_point"), "R(a)"),
     **dict.fromkeys(("Rand", "sample_uniform"), "Rotor.random(shape)"),
-    **dict.fromkeys(("scalar", "to_scalar_part"), 'R["1"]'),
+    **dict.fromkeys(("RotatedVector", "TwoVectors"), "Rotor.from_vectors(a, b)"),
+    "SE3": "RigidTransform.from_rotation(R)",
+    "sym_distance": "distance(S), the whole angle",
+    "sym_log_map": "(R**-0.5 * S * R**-0.5).log()",
+    **dict.fromkeys(("to_angles", "to_rpy"), f'to_euler("xyz"), {_RPY}'),
+    "to_angular_velocity": "ph.rates_from_attitude(times, [R, S])",
+    "to_euler_phases": 'to_euler("ZYZ")',
+    "to_spherical_coordinates": 'to_euler("ZYZ")[..., 1::-1]',
+    "to_transformation_matrix": "RigidTransform.from_rotation(R).as_matrix()",
+    **dict.fromkeys(("as_spinor_array", "two_spinor"), "ph.to_pauli(R)"),
+    **dict.fromkeys(("s", "scalar", "scalar_part", "to_scalar_part"), 'R["1"]'),
     "single": "not R.shape",
     "square": "R * R",
     "stack": "ph.stack([R, S])",
@@ -138,21 +182,29 @@ ROTOR = {
     **dict.fromkeys(
         (
             *("A", "R", "as_dcm", "as_matrix", "as_rotation_matrix", "dcm", "matrix", "rotation_matrix"),
-            *("to_dcm", "to_rotation_matrix"),
+            *("to_dcm", "to_DCM", "to_rotation_matrix"),
         ),
         "to_matrix()",
     ),
     "transformation_matrix": "RigidTransform.from_rotation(R).as_matrix()",
-    **dict.fromkeys(("angvec", "as_axis_angle", "axis", "get_axis", "to_axis_angle"), _AXIS),
+    **dict.fromkeys(
+        ("angvec", "as_axis_angle", "axis", "get_axis", "to_axang", "to_axis_angle", "to_axisangle"), _AXIS
+    ),
     **dict.fromkeys(
         ("as_rotation_vector", "as_rotvec", "eulervec", "rotvec", "to_rotvec"), "to_rotation_vector()"
     ),
     **dict.fromkeys(
-        ("as_float_array", "elements", "ndarray", "parameters", "quaternion", "w", "wxyz", "x", "y", "z"),
+        (
+            *("UnitQuaternion", "as_float_array", "elements", "ndarray", "parameters", "quaternion", "w"),
+            *("to_Matrix", "to_array", "to_q", "wxyz", "x", "y", "z"),
+        ),
         _WXYZ,
     ),
-    **dict.fromkeys(("as_quat", "as_quaternion_xyzw", "quat", "to_quat", "xyzw"), _XYZW),
-    **dict.fromkeys(("to_vector_part", "vec", "vector"), f"{_XYZW}[..., :3]"),
+    "to_list": f"{_WXYZ}.tolist()",
+    **dict.fromkeys(("as_quat", "as_quaternion_xyzw", "quat", "to_quat", "vec_xyzs", "xyzw"), _XYZW),
+    **dict.fromkeys(
+        ("imaginary", "to_vector_part", "v", "vec", "vec3", "vector", "vector_part"), f"{_XYZW}[..., :3]"
+    ),
     "yaw_pitch_roll": 'to_euler("ZYX")',
 }
 
@@ -172,7 +224,15 @@ TRANSFORM = {
     **dict.fromkeys(("A", "homogeneous", "as_homogeneous", "matrix", "to_homogeneous"), "as_matrix()"),
     "as_euler": "rotor.to_euler(seq)",
     **dict.fromkeys(("AngVec", "AngleAxis"), "RigidTransform.from_rotation(Rotor.from_axis_angle(v, theta))"),
+    "angdist": "rotor.distance(S.rotor)",
     **dict.fromkeys(("angvec", "eulervec"), "rotor.to_rotation_vector()"),
+    **dict.fromkeys(("append", "extend", "insert"), f"RigidTransform.concatenate([S, T]), {_IMMUTABLE}"),
+    "EulerVec": "RigidTransform.from_rotation(Rotor.from_rotation_vector(v))",
+    **dict.fromkeys(("delta", "twist"), "log(), the rotation vector first"),
+    "get_batch_axes": "shape",
+    "jlog": "ph.right_jacobian(T.log(), inverse=True), the rotation vector first",
+    **{name: f"rotor(ph.e{axis})" for axis, name in ((1, "n"), (2, "o"), (3, "a"))},
+    "interp1": "T ** t",
     **dict.fromkeys(("eul", "Eul"), 'rotor.to_euler("ZYZ"), or Rotor.from_euler("ZYZ", angles)'),
     **dict.fromkeys(("rpy", "RPY"), 'rotor.to_euler("xyz"), or Rotor.from_euler("xyz", angles)'),
     **{
@@ -202,7 +262,7 @@ TRANSFORM = {
     "ndim": "len(T.shape)",
     **dict.fromkeys(("p", "position", "origin", "t", "trans"), "translation"),
     "R": "rotor, or rotor.to_matrix()",
-    "normalize": f"T itself, {_IMMUTABLE}",
+    **dict.fromkeys(("norm", "normalize"), f"T itself, {_IMMUTABLE}"),
     **dict.fromkeys(("parameters", "wxyz_xyz"), "as_components()"),
     **dict.fromkeys(("Rand", "random", "sample_uniform"), "RigidTransform(Rotor.random(), a)"),
     "reshape": "RigidTransform(T.rotor.reshape(shape), T.translation.reshape(shape))",
@@ -213,6 +273,19 @@ TRANSFORM = {
 
 # As in clifford, kingdon and galgebra.
 ALGEBRA = {
+    **dict.fromkeys(("E", "mv_I"), "I"),
+    "basis_names": "blades",
+    "frame": "basis_vectors",
+    **dict.fromkeys(("com", "commutator"), "X.commutator(Y)"),
+    **dict.fromkeys(("dot", "hestenes_dot"), "X | Y"),
+    "get_grade": "X.grade(1)",
+    **dict.fromkeys(("geometric_product", "mul"), "X * Y"),
+    "left_contract": "X.left_contraction(Y)",
+    **dict.fromkeys(("mvr", "r_basis_mv", "ReciprocalFrame"), "ph.reciprocal_frame(A.basis_vectors)"),
+    "reciprocal_frame": "ph.reciprocal_frame(A.basis_vectors)",
+    "right_contract": "X.right_contraction(Y)",
+    "scalar_product": "X.scalar_product(Y)",
+    "wedge": "X ^ Y",
     **dict.fromkeys(("bases", "basis", "blades_list"), "blades"),
     "basis_vectors_lst": "basis_vectors",
     "bivectors": "bivector(components)",

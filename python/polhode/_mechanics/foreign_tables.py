@@ -3,6 +3,7 @@
 BODY = {
     **dict.fromkeys(("cube", "cuboid", "brick"), "Body.box(lengths, mass=m)"),
     **dict.fromkeys(("disk", "circle"), "Body.disc(radius, mass=m)"),
+    "from_inertia": "Body(mass=m, inertia=J)",
     **dict.fromkeys(("from_stl", "from_obj", "from_file", "load", "read"), "Body.from_mesh(path, mass=m)"),
     **dict.fromkeys(("com", "center", "centre", "centre_of_mass", "centroid"), "center_of_mass"),
     **dict.fromkeys(("moments", "principal_moments"), "inertia.principal_moments"),

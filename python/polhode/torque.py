@@ -19,6 +19,7 @@ import numpy as np
 from polhode._algebra.constructors import as_bivectors
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._formula.errors import FormulaError
 from polhode._mechanics.body_arrays import bodies_of, has
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.laws import function_of, law_of_formula, one_of
@@ -67,6 +68,9 @@ _FOREIGN = {
     **dict.fromkeys(("from_table", "interpolated", "table"), "torque.tabulated(times, torques)"),
     **dict.fromkeys(("thrust", "thruster"), "force.thrust(F, at=x)"),
 }
+
+# Names that the formulas of forces have, but not those of torques.
+_OF_PLACE = {"x": "position", "v": "velocity"}
 
 
 def __dir__() -> list[str]:
@@ -627,7 +631,17 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     def law(given: tuple[tuple[str, Any], ...]) -> Torque:
         return native_torque("formula", text, axes, named_together(given))
 
-    return law_of_formula(law, text, values, batches=True)
+    try:
+        return law_of_formula(law, text, values, batches=True)
+    except FormulaError as error:
+        word = error.text[slice(*error.span)]
+        if word not in _OF_PLACE or "has no value" not in error.message:
+            raise
+        message = (
+            f"{error.message}; laws of torques do not know the {_OF_PLACE[word]} of the centre of mass: "
+            "hold a torque that depends on it over short steps with ph.Stepper"
+        )
+        raise FormulaError(message, error.text, error.span) from None
 
 
 @explains_calls

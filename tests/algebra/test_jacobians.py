@@ -1,5 +1,7 @@
 """Left and right Jacobians of the exponential map, against series, differences of rotors and symbols."""
 
+from fractions import Fraction
+
 import mpmath
 import numpy as np
 import pytest
@@ -148,6 +150,19 @@ def test_screws_of_symbols():
     np.testing.assert_allclose(found, ph.left_jacobian([0, 0, 0.7, 1, 0, 2]), rtol=0, atol=8 * EPS)
     exact = ph.left_jacobian([sympy.Integer(k) for k in (0, 0, 0, 1, 2, 3)])
     assert exact[3, 1] == sympy.Rational(-3, 2)
+
+
+@pytest.mark.parametrize("size", [Fraction(1, 10**6), Fraction(1, 2), Fraction(3)])
+def test_screws_of_numbers_of_other_types(size):
+    x = [size, size, -size, Fraction(1), Fraction(2), Fraction(3)]
+    expected, _ = series_of_screws(np.array(x, float))
+    np.testing.assert_allclose(ph.left_jacobian(x).astype(float), expected, rtol=0, atol=16 * EPS)
+    with mpmath.workdps(40):
+        digits = [mpmath.mpf(float(c)) for c in x]
+        fine = ph.left_jacobian(digits)
+        # J x = x, for x commutes with itself.
+        assert max(abs(fine @ digits - digits)) < mpmath.mpf(10) ** -36
+        np.testing.assert_allclose(fine.astype(float), expected, rtol=0, atol=EPS)
 
 
 def test_screws_of_jax():

@@ -19,7 +19,7 @@ import numpy as np
 from polhode._generic import rotors
 from polhode._generic.coefficients import Coefficients
 from polhode._generic.compiled import compiled
-from polhode._generic.exact import by_rows, call, divide, is_zero, sqrt
+from polhode._generic.exact import by_rows, call, divide, is_multiprecision, is_symbolic, is_zero, sqrt
 from polhode._generic.g3_smooth import horner
 from polhode._generic.numeric import Array, Numeric, components, squares
 
@@ -136,10 +136,21 @@ def _exact_slopes(v: Parts) -> Parts:
     square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
     if is_zero(square):
         return [divide(1, 2), divide(1, 6), divide(-1, 12), divide(-1, 60)]
+    if not is_symbolic(square) and square < 4:
+        return [_series(square if is_multiprecision(square) else float(square), k) for k in range(4)]
     angle = sqrt(square)
     a = divide(1 - call("cos", angle), square)
     b = divide(angle - call("sin", angle), square * angle)
     return [a, b, divide(divide(call("sin", angle), angle) - 2 * a, square), divide(a - 3 * b, square)]
+
+
+def _series(square: Any, which: int) -> Any:
+    """Return a, b or one of their derivatives by θ²/2, summed in the precision of θ²."""
+    order, derived = 2 + which % 2, which >= 2
+    total, power, k = 0 * square, 0 * square + (-2 if derived else 1), 0
+    while total + (term := power * (k + 1) ** derived / math.factorial(order + 2 * (k + derived))) != total:
+        total, power, k = total + term, -power * square, k + 1
+    return total
 
 
 def _cross(d: Coefficients, v: Array) -> Array:

@@ -99,7 +99,8 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
     Raises
     ------
     ValueError
-        If the file holds a batch (use xarray), or was not written by Polhode.
+        If the file holds a batch (use xarray), or was not written by Polhode; if it states other units or
+        another order of components, or has numbers that are missing or not finite.
     OSError
         If the file cannot be read.
 

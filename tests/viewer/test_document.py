@@ -1,5 +1,6 @@
 """Documents for the viewer: written scenes give the same motion, recordings have the computed states."""
 
+import dataclasses
 import json
 import re
 import shutil
@@ -461,10 +462,14 @@ def test_a_file_contains_its_scene(tmp_path):
 def test_a_motion_that_is_not_finite_is_refused(saved):
     h5py = pytest.importorskip("h5py")
     trajectory, path = saved
-    with h5py.File(path, "r+") as file:
-        file["energy"][3] = np.nan
+    read, energy = ph.Trajectory.read(path), trajectory.energy
+    energy[3] = np.nan
     message = f"this motion has others at t = {trajectory.time[3]:g} s"
     with pytest.raises(ValueError, match=message):
+        recording.recorded(dataclasses.replace(read, energy=energy), None, False)
+    with h5py.File(path, "r+") as file:
+        file["energy"][3] = np.nan
+    with pytest.raises(ValueError, match="energy must be finite, got nan at row 3"):
         document.document(path)
 
 

@@ -131,6 +131,10 @@ class AttitudeHistory(metaclass=ListsOwnNames):
                 raise ValueError(
                     f"{name} must have shape {shape} for n = {len(time)}, got {np.shape(values)}"
                 )
+            if values is not None and not np.isfinite(values).all():
+                place = tuple(int(x) for x in np.argwhere(~np.isfinite(values))[0])
+                column = "_".join([name, *(str(k) for k in place[1:])])
+                raise RowError(f"{name} must be finite, got {values[place]}", place[0], column)
 
     def __len__(self) -> int:
         return len(self.time)

@@ -15,6 +15,8 @@ from polhode._io.tables import of_parts
 from polhode._report import netcdf, netcdf_reading
 from polhode._report.ensemble.arrays import zarr
 from polhode._report.ensemble.store import EnsembleStore
+from polhode._report.hdf5_heaps import require_sound_heaps
+from polhode._report.netcdf_labels import LabelError, attribute, require_order
 from polhode._report.table import ALONG_TIME
 from polhode._support.arrays import Array
 from polhode._support.calls import explains_calls
@@ -41,7 +43,8 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
     Raises
     ------
     ValueError
-        If the file holds many bodies and `body` is not one of them, or was not written by Polhode.
+        If the file holds many bodies and `body` is not one of them, or was not written by Polhode; if it
+        states other units or another order of components, or has missing or packed values.
     ImportError
         Without the libraries: ``pip install 'polhode[io]'``.
 
@@ -64,15 +67,22 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
     library = optional("h5py", "io", "a netCDF file")
     if os.path.isfile(path) and os.access(path, os.R_OK):
         try:
+            require_sound_heaps(path)
             with library.File(path, "r") as file:
                 if "body" in file:
-                    attributes = {x: netcdf_reading.attribute(y) for x, y in file.attrs.items()}
+                    require_order(file)
+                    attributes = {x: attribute(y) for x, y in file.attrs.items()}
                     return _member(name, file, attributes, body)
         except FileError:
             raise
+        except LabelError as error:
+            raise FileError(f"{name}: error: {error}") from None
         except netcdf_reading.DAMAGED as error:
             raise FileError(f"{name}: error: cannot be read as a netCDF file: {error}") from None
-    fields, attributes = netcdf_reading.content(path)
+    try:
+        fields, attributes = netcdf_reading.content(path)
+    except LabelError as error:
+        raise FileError(str(error).replace(f"{name}: ", f"{name}: error: ", 1)) from None
     if body is not None:
         raise FileError(f"{name}: error: the file holds one body; leave out body={body}")
     return _single(name, fields, attributes)
@@ -121,6 +131,7 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
         _require_done(EnsembleStore.open(Path(path)), body)
     try:
         group = library.open_group(name, mode="r")
+        require_order(group)
         if "body" in group:
             return _member(name, group, dict(group.attrs), body)
         known = ("time", "wheel_speed", *netcdf.MOTION)
@@ -128,6 +139,8 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
         attributes = dict(group.attrs)
     except FileError:
         raise
+    except LabelError as error:
+        raise FileError(f"{name}: error: {error}") from None
     except netcdf_reading.DAMAGED as error:
         raise FileError(f"{name}: error: cannot be read as a Zarr store: {error}") from None
     if body is not None:

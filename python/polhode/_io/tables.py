@@ -130,6 +130,7 @@ def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> At
     except netcdf_reading.DAMAGED as error:
         raise FileError(f"{name}: error: cannot be read as a Parquet file of numbers: {error}") from None
     try:
+        _require_units(columns, stated.get("units"))
         return _history(columns, body, attributes)
     except (TypeError, ValueError) as error:
         raise FileError(f"{name}: error: {error}") from None
@@ -148,6 +149,14 @@ def write_table(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[st
 
 # Attributes of a file that describe how a trajectory was computed.
 _OWN = {*netcdf_reading.OWN, "units", "batch_shape"}
+
+
+def _require_units(columns: dict[str, Array], stated: Any) -> None:
+    """Raise a ValueError if columns have other units than those of a motion."""
+    for name, unit in stated.items() if isinstance(stated, dict) else ():
+        expected = "rad/s" if name.startswith("wheel_speed_") else {"time": "s", **UNITS}.get(name, unit)
+        if name in columns and unit != expected:
+            raise ValueError(f"column {name!r} has the unit {unit!r}; convert its values to {expected!r}")
 
 
 def _content(path: str | os.PathLike[str], name: str) -> bytes:
@@ -249,11 +258,9 @@ def of_parts(
     """Return the history with these components, attitudes as quaternions w, x, y, z."""
     netcdf_reading.require_shapes(time, parts)
     quaternions = np.asarray(parts["attitude"], float)
-    with np.errstate(over="ignore"):  # an infinite norm is rejected below
-        norms = np.linalg.norm(quaternions, axis=-1)
-    if not (np.abs(norms - 1) < 1e-3).all():
-        k = int(np.argmax(~(np.abs(norms - 1) < 1e-3)))
-        raise RowError(f"attitude must be unit quaternions, got norm {norms[k]:.6g}", k, "attitude_w")
+    if wrong := netcdf_reading.not_unit(quaternions):
+        k, norm = wrong
+        raise RowError(f"attitude must be unit quaternions, got norm {norm:.6g}", k, "attitude_w")
     grades = {"omega_body": bivector, "momentum_space": bivector, "position": vector, "velocity": vector}
     found = {name: make(np.ascontiguousarray(parts[name])) for name, make in grades.items() if name in parts}
     rotor = Rotor._from_rows(np.ascontiguousarray(quaternions * [1.0, -1.0, -1.0, -1.0]))

@@ -16,7 +16,15 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.result import Certificate, Crossings
 from polhode._mechanics.trajectory import Trajectory
+from polhode._report.hdf5_heaps import require_sound_heaps
 from polhode._report.netcdf import CF, MOTION
+from polhode._report.netcdf_labels import (
+    LabelError,
+    attribute,
+    require_labels,
+    require_order,
+    require_present,
+)
 from polhode._support import memory
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
@@ -26,6 +34,9 @@ _SIZES = {"quaternion": 4, "axis": 3, "inertia_column": 3}
 # Deflate, which compresses best, makes a variable at most this many times smaller.
 _DEFLATED = 1100
 _SMALL = 1 << 26  # bytes
+
+# Largest deviation of the norm of a quaternion from 1; numbers in files may have few digits.
+_OFF = 1e-3
 
 # Libraries raise any of these for a damaged file or store.
 DAMAGED = (OSError, RuntimeError, LookupError, MemoryError, TypeError, ValueError)
@@ -57,7 +68,9 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
             f"file; polhode convert {path} FILE.nc --scene SCENE.toml writes the motion of the scene's body"
         )
     try:
-        require_shapes(fields["time"], {name: fields[name] for name in MOTION if name != "inertia"})
+        parts = {name: fields[name] for name in MOTION if name != "inertia"}
+        require_shapes(fields["time"], parts)
+        _require_states(fields["time"], parts)
         return Trajectory(
             fields["time"],
             _rotors(fields["attitude"]),
@@ -98,6 +111,26 @@ def require_shapes(time: Array, parts: Mapping[str, Array]) -> None:
             raise ValueError(f"{name} must have shape {expected}, a row for each time, got {x.shape}")
 
 
+def not_unit(quaternions: Array) -> tuple[int, float] | None:
+    """Return the first row of quaternions whose norm is not 1, and the norm; None if there is none."""
+    with np.errstate(over="ignore"):  # an infinite norm is not 1
+        norms = np.linalg.norm(quaternions, axis=-1)
+    wrong = np.flatnonzero(~(np.abs(norms - 1) < _OFF))
+    return (int(wrong[0]), float(norms[wrong[0]])) if len(wrong) else None
+
+
+def _require_states(time: Array, parts: Mapping[str, Array]) -> None:
+    """Raise a ValueError unless times increase, all numbers are finite and the attitudes are rotations."""
+    for name, x in {"time": time, **parts}.items():
+        if len(odd := np.argwhere(~np.isfinite(x))):
+            raise ValueError(f"{name} must be finite, got {x[tuple(odd[0])]} at row {odd[0][0]}")
+    if len(fallen := np.flatnonzero(np.diff(time) <= 0)):
+        k = int(fallen[0]) + 1
+        raise ValueError(f"times must increase, got {time[k]} s after {time[k - 1]} s at row {k}")
+    if wrong := not_unit(parts["attitude"]):
+        raise ValueError(f"attitude must be unit quaternions, got norm {wrong[1]:.6g} at row {wrong[0]}")
+
+
 def shape_of(name: str) -> tuple[int, ...]:
     """Return the shape of a quantity at one time."""
     return tuple(_SIZES[dim] for dim in MOTION[name][0])
@@ -106,14 +139,16 @@ def shape_of(name: str) -> tuple[int, ...]:
 def values(name: str, variable: Any, body: int | None = None) -> Any:
     """Return the values of a variable of an HDF5 file or a Zarr store, or those of one body.
 
-    A ValueError if these are not real numbers, but for the variables of events; if the file declares values
-    that it does not hold, which could fill any memory; and if there is no such body. A MemoryError if the
-    values do not fit into memory.
+    A ValueError if these are not real numbers, but for the variables of events; if the file states another
+    unit, or values that are missing or packed; if it declares values that it does not hold, which could fill
+    any memory; and if there is no such body. A MemoryError if the values do not fit into memory.
     """
     if not hasattr(variable, "dtype"):
         raise ValueError(f"{name!r} is not a variable")
     if name in _READ and variable.dtype.kind not in "fiu":
         raise ValueError(f"{name!r} must hold real numbers, got the type {variable.dtype}")
+    if name in _READ:
+        require_labels(name, variable)
     if body is not None and not body < (variable.shape or (0,))[0]:
         raise ValueError(f"{name!r} has no values of body {body}, got the shape {variable.shape}")
     size = variable.dtype.itemsize * math.prod(variable.shape if body is None else variable.shape[1:])
@@ -122,9 +157,13 @@ def values(name: str, variable: Any, body: int | None = None) -> Any:
         raise ValueError(
             f"{name!r} has the shape {variable.shape}, but its values are missing; write the file again"
         )
-    if body is not None:
-        return variable[body]
-    return variable.asstr()[...] if variable.dtype.kind == "O" else variable[...]
+    if variable.dtype.kind == "O":
+        return variable.asstr()[...]
+    found = variable[...] if body is None else variable[body]
+    if name not in _READ:
+        return found
+    require_present(name, variable, found)
+    return np.asarray(found, float)
 
 
 def content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -137,11 +176,15 @@ def content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any
     if not os.access(path, os.R_OK):
         raise PermissionError(f"{os.fsdecode(path)}: no permission to read it")
     try:
+        require_sound_heaps(path)
         with library.File(path, "r") as file:
             attributes = {name: attribute(x) for name, x in file.attrs.items()}
+            require_order(file)
             many = "batch_shape" in attributes or "body" in file
             names = [] if many else [name for name in file if name in _READ or name.startswith("event_")]
             fields = {name: values(name, file[name]) for name in names}
+    except LabelError as error:
+        raise LabelError(f"{path}: {error}") from None
     except DAMAGED as error:
         others = os.fsdecode(path).lower().endswith((".csv", ".parquet", ".aem", ".bc"))
         remedy = "; use polhode.io.read" if others else ""
@@ -152,13 +195,6 @@ def content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any
             f"polhode convert {path} one.nc --body 0"
         )
     return fields, attributes
-
-
-def attribute(x: Any) -> Any:
-    """Return an attribute; numbers are arrays of one element in the file, and texts may be bytes."""
-    if isinstance(x, bytes):
-        return x.decode()
-    return x.item() if isinstance(x, np.ndarray) and x.size == 1 else x
 
 
 def _rotors(quaternions: Any) -> Any:

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report import netcdf, netcdf_reading, table
+from polhode._report import netcdf, netcdf_labels, table
 from polhode._support.extras import optional
 
 # Bytes at the start of a file that name the program.
@@ -90,7 +90,7 @@ def is_own(path: Path) -> bool:
 def _source_of_netcdf(path: Path) -> str:
     try:
         with optional("h5py", "io", "a netCDF file").File(path, "r") as file:
-            return str(netcdf_reading.attribute(file.attrs.get("source", "")))
+            return str(netcdf_labels.attribute(file.attrs.get("source", "")))
     except (OSError, RuntimeError, KeyError, TypeError, ValueError):
         return ""  # The library raises any of these for other files.
 

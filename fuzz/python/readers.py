@@ -214,12 +214,7 @@ def _kernels() -> list[str]:
 
 
 def _read_ck(path: Path) -> Any:
-    try:
-        return ph.io.read_ck(path, kernels=_kernels())
-    except ValueError as error:
-        # The messages of SPICE name kernels.
-        if not str(error).startswith("SPICE: "):
-            raise
+    return ph.io.read_ck(path, kernels=_kernels())
 
 
 def _ck(folder: Path) -> Iterator[bytes]:

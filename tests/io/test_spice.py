@@ -181,8 +181,11 @@ def test_what_is_missing_is_asked_for(options, expected, kernels, tmp_path):
 
 def test_kernels_that_do_not_fit(kernels, tmp_path):
     ph.io.write_ck(MOTION, tmp_path / "a.bc", kernels=kernels, **NAMES)
-    with pytest.raises(ValueError, match=r"SPICE: .*kernels must have leapseconds"):
+    with pytest.raises(ph.io.FileError, match=r"a.bc: error: SPICE: .*kernels must have leapseconds.*, got "):
         ph.io.read_ck(tmp_path / "a.bc", kernels=kernels[2:])
+    (tmp_path / "damaged.tls").write_text("KPL/LSK\n\\begindata\nDELTET/K = ( x )\n")
+    with pytest.raises(ph.io.FileError, match=r"damaged.tls: error: SPICE: .*on line 3"):
+        ph.io.read_ck(tmp_path / "a.bc", kernels=[str(tmp_path / "damaged.tls"), *kernels[1:]])
     with pytest.raises(ValueError, match="no frame of class 3 for instrument -999000"):
         ph.io.read_ck(tmp_path / "a.bc", kernels=kernels[:2])
     with pytest.raises(FileNotFoundError, match="no such kernel"):

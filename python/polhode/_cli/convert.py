@@ -143,7 +143,7 @@ def _convert_motion(options: argparse.Namespace) -> int:
     try:
         motion = _of_body(options, motion, body) if body else _completed(motion, inertia, of_target)
         write(motion, target, **shape, **{name: x for name, x in given.items() if name in takes["write"]})
-    except FileNotFoundError as error:  # a kernel
+    except (FileError, FileNotFoundError) as error:  # of a kernel
         raise _unreadable(error) from None
     except ValueError as error:
         raise _refused(options, error) from None

@@ -232,7 +232,7 @@ def read_ck(
         raise FileError(
             f"{name}: error: the records that list the segments are not those of a CK; the file is damaged"
         )
-    with _loaded(kernels) as spice:
+    with _loaded(kernels, name) as spice:
         handle = spice.dafopr(name)
         try:
             descriptor = _descriptor(spice, handle, name, segment)
@@ -285,8 +285,8 @@ def _is_sound(content: bytes) -> bool:
 
 
 @contextlib.contextmanager
-def _loaded(kernels: _Paths) -> Iterator[Any]:
-    """Yield spiceypy with kernels loaded; its errors become a ValueError."""
+def _loaded(kernels: _Paths, source: str | None = None) -> Iterator[Any]:
+    """Yield spiceypy with kernels loaded; its errors become a ValueError, a FileError if a file is read."""
     spice = optional("spiceypy", "spice", "a SPICE kernel")
     if isinstance(kernels, str | os.PathLike):
         raise TypeError("kernels must be a list of paths, got one path; give [path]")
@@ -295,17 +295,26 @@ def _loaded(kernels: _Paths) -> Iterator[Any]:
         for path in paths:
             if not os.path.isfile(path):
                 raise FileNotFoundError(f"{path}: no such kernel")
-        try:
-            for path in paths:
+        for path in paths:
+            try:
                 spice.furnsh(path)
-                stack.callback(spice.unload, path)
+            except spice.SpiceyError as error:
+                raise FileError(f"{path}: error: {_words(spice, error)}") from None
+            stack.callback(spice.unload, path)
+        try:
             yield spice
         except spice.SpiceyError as error:
-            spice.reset()
-            words = " ".join(str(getattr(error, "long", "") or error.short).split())
-            raise ValueError(
-                f"SPICE: {words}; kernels must have leapseconds, clock and frames of the spacecraft"
-            ) from None
+            words = (
+                f"{_words(spice, error)}; kernels must have leapseconds, clock and frames of the spacecraft, "
+                f"got {', '.join(paths)}"
+            )
+            raise (FileError(f"{source}: error: {words}") if source else ValueError(words)) from None
+
+
+def _words(spice: Any, error: Any) -> str:
+    """Return the message of an error of SPICE, which is forgotten."""
+    spice.reset()
+    return f"SPICE: {' '.join(str(getattr(error, 'long', '') or error.short).split())}"
 
 
 def _of_epoch(spice: Any, epoch: str, system: str) -> float:

@@ -75,7 +75,7 @@ def _dimensions(variable: Any) -> list[Any]:
     if not hasattr(variable, "dims"):  # of a Zarr store
         names = getattr(variable.metadata, "dimension_names", None)
         return list(names or variable.attrs.get("_ARRAY_DIMENSIONS", ()))
-    return [dim[0].name.removeprefix("/") if len(dim) else "" for dim in variable.dims]
+    return [(dim[0].name or "").removeprefix("/") if len(dim) else "" for dim in variable.dims]
 
 
 def _texts(variable: Any) -> list[str]:

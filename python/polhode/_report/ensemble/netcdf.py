@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +29,42 @@ def bytes_of_file(scene: Scene) -> int:
     return scene.ensemble.number * 8 * (numbers * len(scene.times) + 30)
 
 
+class _Disk(io.FileIO):
+    """A file for HDF5 in which writing never fails: it keeps the first error of the system.
+
+    HDF5 crashes the process after a write that failed, as on a full disk.
+    """
+
+    error: OSError | None = None
+
+    def write(self, data: Any) -> int:
+        """Write all of the data; nothing after an error."""
+        rest = memoryview(data)
+        try:
+            while rest and self.error is None:
+                rest = rest[super().write(rest) :]
+        except OSError as error:
+            self.error = error
+        return len(data)
+
+    def truncate(self, size: int | None = None) -> int:
+        """Set the size of the file; not after an error."""
+        try:
+            return self.tell() if self.error is not None else super().truncate(size)
+        except OSError as error:
+            self.error = error
+            return self.tell()
+
+    @contextlib.contextmanager
+    def raising(self) -> Iterator[None]:
+        """Raise the error of the system at the end of the block, instead of any that HDF5 makes of it."""
+        try:
+            yield
+        finally:
+            if self.error is not None:
+                raise self.error
+
+
 class EnsembleFile:
     """A netCDF file with a dimension `body` that grows; its layout is `EnsembleLayout`."""
 
@@ -34,19 +73,23 @@ class EnsembleFile:
         self._layout, self._number = layout_of(scene), scene.ensemble.number
         hdf = optional("h5py", "io", "a netCDF file")
         self._text = hdf.string_dtype()
+        self._disk = _Disk(path, "w+")
         # netCDF needs the order of creation.
-        self._hdf = hdf.File(path, "w", track_order=True)
+        self._hdf = hdf.File(self._disk, "w", track_order=True)
         self._file = optional("h5netcdf", "io", "a netCDF file").File(self._hdf, "w")
         # The variables of bodies as HDF5 datasets: h5netcdf looks each one up again at every use.
         self._datasets: dict[str, Any] = {}
         self._block = scene.block
         self._methods: list[str] = []
-        self._begin(len(scene.times))
+        with self._disk.raising():
+            self._begin(len(scene.times))
 
     def close(self) -> None:
-        """Close the file."""
-        self._file.close()
-        self._hdf.close()
+        """Close the file; an OSError if it is not written, as on a full disk."""
+        with self._disk.raising():
+            self._file.close()
+            self._hdf.close()
+            self._disk.close()
 
     def _begin(self, times: int) -> None:
         """Write dimensions, coordinates and attributes."""
@@ -69,12 +112,13 @@ class EnsembleFile:
         variable.attrs.update(given.labels)
 
     def add(self, rows: slice, trajectory: Trajectory | ReducedBlock) -> None:
-        """Write the next bodies."""
+        """Write the next bodies; an OSError if this is not possible, as on a full disk."""
         numbers = np.arange(rows.start, rows.stop)
-        self._grow(rows, Variable("body", (), numbers, "1", "number of the body"))
-        self._grow(rows, Variable("method", (), self._codes(trajectory), "1", "method"))
-        for variable in self._layout.of_bodies(rows, trajectory):
-            self._grow(rows, variable)
+        with self._disk.raising():
+            self._grow(rows, Variable("body", (), numbers, "1", "number of the body"))
+            self._grow(rows, Variable("method", (), self._codes(trajectory), "1", "method"))
+            for variable in self._layout.of_bodies(rows, trajectory):
+                self._grow(rows, variable)
 
     def _codes(self, trajectory: Trajectory | ReducedBlock) -> Any:
         """Return the number of each body's method in the list of all so far."""
@@ -102,6 +146,10 @@ class EnsembleFile:
 
     def end(self, records: EnsembleRecords | ReducedRecords) -> None:
         """Write failures and the names of methods, after the last body or an interrupt."""
+        with self._disk.raising():
+            self._end(records)
+
+    def _end(self, records: EnsembleRecords | ReducedRecords) -> None:
         self._file.resize_dimension("body", records.complete)
         if isinstance(records, ReducedRecords):
             for quantiles in records.variables():

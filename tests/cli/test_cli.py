@@ -225,7 +225,7 @@ def test_output_that_cannot_be_printed_is_an_error(scene):
     with open("/dev/full", "wb") as stdout:
         done = polhode("run", scene, stdout=stdout)
     assert done.returncode == 1
-    assert "No space left" in done.stderr
+    assert "error: no space left" in done.stderr
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])

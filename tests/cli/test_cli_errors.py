@@ -345,6 +345,34 @@ def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted([*older, "small.toml"])
 
 
+# 8 kB stop the first variables of the file, 200 kB a block.
+@pytest.mark.parametrize("size", [8192, 200_000])
+def test_a_full_disk_ends_the_run_of_an_ensemble(size, scene, tmp_path):
+    """HDF5 crashes after a write that failed."""
+    scene.write_text(SCENE + '[ensemble]\nnumber = 2000\nattitude = "uniform"\n')
+    done = polhode(
+        *("run", scene, "--no-figures", "-o", "out.nc"),
+        through=[sys.executable, "-c", LIMITED, str(size)],
+        cwd=tmp_path,
+    )
+    assert (done.returncode, done.stderr) == (1, "polhode: error: cannot write out.nc: File too large\n")
+    assert list(tmp_path.iterdir()) == [scene]
+
+
+def test_a_symbolic_link_stays(scene, tmp_path):
+    """A file is written where the link points to."""
+    (tmp_path / "disk").mkdir()
+    for name, there in (("link.csv", "disk/old.csv"), ("new.csv", "disk/new.csv")):
+        (tmp_path / name).symlink_to(there)
+    (tmp_path / "disk" / "old.csv").write_text("t\n")
+    for name in ("link.csv", "new.csv"):
+        done = polhode("run", scene, "--no-figures", "--force", "-o", name, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert (tmp_path / name).is_symlink()
+        assert len(ph.io.read(tmp_path / name)) == 11
+    assert sorted(x.name for x in (tmp_path / "disk").iterdir()) == ["new.csv", "old.csv"]
+
+
 @pytest.mark.parametrize(
     "command",
     [

@@ -373,7 +373,7 @@ def test_a_closed_output():
     with open("/dev/full", "wb") as stdout:
         done = evaluate("e1", stdout=stdout)
     assert done.returncode == 1
-    assert "No space left" in done.stderr
+    assert "error: no space left" in done.stderr
 
 
 def test_any_terminal_encoding_gets_an_answer():

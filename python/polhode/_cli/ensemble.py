@@ -18,7 +18,7 @@ from polhode._report.ensemble.reduced import ReducedRecords
 from polhode._scene.scene import Scene
 from polhode._support import memory as _memory
 from polhode._support.extras import progress_bar
-from polhode._support.files import unfinished, write_atomically
+from polhode._support.files import naming, unfinished, write_atomically
 
 Records = EnsembleRecords | ReducedRecords
 
@@ -48,7 +48,8 @@ def run(
         write_atomically(pages)
         return records
     with unfinished(targets[0]) as part:
-        stopped = _stopped(part, records, threads, quiet)
+        with naming(targets[0]):
+            stopped = _stopped(part, records, threads, quiet)
         with _uninterrupted():
             _write(targets, part, records, stopped, pages)
     return records

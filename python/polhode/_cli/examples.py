@@ -13,6 +13,7 @@ import numpy as np
 from polhode._cli.common import DRIFTED, OK, add_command, add_folder, add_force, check_written, create_folder
 from polhode._support.arrays import Array
 from polhode._support.file_kinds import EXAMPLES
+from polhode._support.files import write_atomically
 
 if TYPE_CHECKING:
     from polhode._mechanics.trajectory import Trajectory
@@ -105,9 +106,7 @@ def _copy(files: list[Path], folder: Path) -> list[Path]:
         if path.exists() or path.is_symlink():
             raise FileExistsError(f"{path} exists; move it, or choose another folder with -o")
     create_folder(folder)
-    for path, content in targets.items():
-        with path.open("xb") as file:
-            file.write(content)
+    write_atomically(targets)
     return list(targets)
 
 
@@ -117,7 +116,6 @@ def _copy(files: list[Path], folder: Path) -> list[Path]:
 def _demo(options: argparse.Namespace) -> int:
     from polhode._report.summary import as_text, summary
     from polhode._scene.scene import Scene
-    from polhode._support.files import write_atomically
 
     folder = create_folder(Path(options.output))
     check_written([folder / name for name in (_PAGE, *_FIGURES)], options.force)

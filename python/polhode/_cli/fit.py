@@ -134,7 +134,7 @@ def _add_periods(fit: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Fit the data, print the summary and write the files."""
     from polhode._support.extras import optional
-    from polhode._support.files import write_atomically
+    from polhode._support.files import form_of, write_atomically
 
     if options.periods is not None:
         return _run_periods(options)
@@ -146,12 +146,14 @@ def run(options: argparse.Namespace) -> int:
         optional("matplotlib", "plot", "a figure")
     found = _fitted(options)
     text = _as_json(found.to_dict())
+    contents: dict[Path, bytes | Path] = {}
     if options.output is not None:
-        write_atomically({Path(options.output): f"{text}\n".encode()})
+        contents[Path(options.output)] = f"{text}\n".encode()
     if options.plot is not None:
-        from polhode._figures.registry import write
+        from polhode._figures.style import encoded
 
-        write(found.plot(), Path(options.plot))
+        contents[Path(options.plot)] = encoded(found.plot(), form_of(options.plot, "a figure"))
+    write_atomically(contents)
     if options.json:
         print(text)
     elif not options.quiet:

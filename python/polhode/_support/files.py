@@ -59,8 +59,9 @@ def unreadable(error: Exception) -> UnreadableError:
 
 def words_of(error: Exception) -> str:
     """Return the message of an error; of one of the system its file and reason, without the number."""
-    if isinstance(error, OSError) and error.strerror and error.filename is not None:
-        return f"{os.fsdecode(error.filename)}: {error.strerror.lower()}"
+    if isinstance(error, OSError) and error.strerror:
+        file = "" if error.filename is None else f"{os.fsdecode(error.filename)}: "
+        return f"{file}{error.strerror.lower()}"
     return str(error)
 
 
@@ -69,23 +70,25 @@ def write_atomically(contents: Mapping[Path, bytes | Path]) -> None:
 
     A content is bytes, or a file that `unfinished` yielded for this path. All contents are written to
     temporary files in the same directories and flushed to disk; then each is renamed in one step. If writing
-    fails, no file has changed and the temporary files are removed; the error, an OSError, names the path.
+    fails, no file has changed and the temporary files are removed; the error, an OSError, names the path. A
+    symbolic link stays, and the file that it names is written.
     """
     with contextlib.ExitStack() as stack:
         ready = {
             target: stack.enter_context(_temporary(target, content)) for target, content in contents.items()
         }
         for target, temporary in ready.items():
-            with _naming(target):
-                os.replace(temporary, target)
+            with naming(target):
+                os.replace(temporary, _named(target))
 
 
 @contextlib.contextmanager
 def unfinished(target: Path) -> Iterator[Path]:
     """Yield a temporary file beside the target, to be filled; removed at the end if it still exists."""
     check_target(target)
-    with _naming(target):
-        handle, path = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
+    with naming(target):
+        file = _named(target)
+        handle, path = tempfile.mkstemp(prefix=f".{file.name}.", suffix=".part", dir=file.parent)
         os.close(handle)
     try:
         yield Path(path)
@@ -115,9 +118,15 @@ def form_of(path: str | os.PathLike[str], what: str) -> str:
     return form
 
 
+def _named(target: Path) -> Path:
+    """Return the file that a path names, which may be a symbolic link to it."""
+    return Path(os.path.realpath(target)) if target.is_symlink() else target
+
+
 def check_target(target: Path) -> None:
     """Raise an OSError that names the path if a file cannot be written there."""
-    with _naming(target):
+    with naming(target):
+        target = _named(target)
         if target.parent.exists() and not target.parent.is_dir():
             raise OSError(f"{target.parent} is not a directory")
         if not target.parent.is_dir():
@@ -133,7 +142,7 @@ def _temporary(target: Path, content: bytes | Path) -> Iterator[str]:
     """Yield a temporary file beside the target with the content; removed at the end if it still exists."""
     with contextlib.ExitStack() as stack:
         path = content if isinstance(content, Path) else stack.enter_context(unfinished(target))
-        with _naming(target), path.open("r+b") as file:
+        with naming(target), path.open("r+b") as file:
             if isinstance(content, bytes):
                 file.write(content)
             file.flush()
@@ -143,7 +152,8 @@ def _temporary(target: Path, content: bytes | Path) -> Iterator[str]:
 
 
 @contextlib.contextmanager
-def _naming(target: Path) -> Iterator[None]:
+def naming(target: Path) -> Iterator[None]:
+    """Let an OSError in the block say that this file cannot be written, and why."""
     try:
         yield
     except OSError as error:

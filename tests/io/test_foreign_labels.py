@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from command_line import SCENE
 from motions import ASYMMETRIC, START
 
 pytest.importorskip("zarr")
@@ -133,3 +134,18 @@ def test_heaps_in_which_hdf5_would_search_without_end(tmp_path):
     for read in (ph.io.read, ph.Trajectory.read):
         with pytest.raises((ph.io.FileError, OSError), match=f"the heap of texts is damaged at byte {at}"):
             read(path)
+
+
+def test_labels_of_a_store_that_state_too_many_texts(tmp_path):
+    """Zarr would make room for four billion texts."""
+    path = tmp_path / "a.zarr"
+    (tmp_path / "a.toml").write_text(SCENE + '[ensemble]\nnumber = 2\nattitude = "uniform"\n')
+    ph.Scene.read(tmp_path / "a.toml").run(store=path)
+    chunk = path / "axis" / "c.0"
+    assert chunk.read_bytes()[:4] == b"\3\0\0\0"
+    chunk.write_bytes(b"\xff" * 4 + chunk.read_bytes()[4:])
+    with pytest.raises(ph.io.FileError, match=r"'axis' is damaged: it has 3 texts, but states 4294967295"):
+        ph.io.read(path, body=1)
+    (path / ".polhode" / "run.json").write_text("{")
+    with pytest.raises(ph.io.FileError, match=r"a\.zarr: error: is not a store of an ensemble"):
+        ph.io.read(path, body=1)

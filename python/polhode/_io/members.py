@@ -16,7 +16,7 @@ from polhode._report import netcdf, netcdf_reading
 from polhode._report.ensemble.arrays import zarr
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._report.hdf5_heaps import require_sound_heaps
-from polhode._report.netcdf_labels import LabelError, attribute, require_order
+from polhode._report.netcdf_labels import LABELS, LabelError, attribute, require_order
 from polhode._report.table import ALONG_TIME
 from polhode._support.arrays import Array
 from polhode._support.calls import explains_calls
@@ -128,9 +128,10 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
         raise FileError(f"{name}: error: a file, and a Zarr store is a folder")
     library = zarr()
     if EnsembleStore.exists(Path(path)) and body is not None:
-        _require_done(EnsembleStore.open(Path(path)), body)
+        _require_done(_opened(Path(path)), body)
     try:
         group = library.open_group(name, mode="r")
+        _require_short_texts(Path(path), group)
         require_order(group)
         if "body" in group:
             return _member(name, group, dict(group.attrs), body)
@@ -148,6 +149,24 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
     return _single(name, fields, attributes)
 
 
+def _require_short_texts(path: Path, group: Any) -> None:
+    """Raise a ValueError for labels whose chunk states more texts than there are.
+
+    Zarr makes room for as many texts of variable size as the first four bytes state.
+    """
+    for name, wanted in LABELS.items():
+        variable: Any = group.get(name, None)
+        if getattr(variable, "shape", None) != (len(wanted),) or variable.dtype.kind not in "OT":
+            continue
+        for file in (path / name).rglob("[!.]*"):
+            if not file.is_file() or file.name == "zarr.json" or variable.compressors:
+                continue
+            with file.open("rb") as content:
+                count = int.from_bytes(content.read(4), "little")
+            if count != len(wanted):
+                raise ValueError(f"{name!r} is damaged: it has {len(wanted)} texts, but states {count}")
+
+
 def _single(name: str, fields: Mapping[str, Any], attributes: Mapping[str, Any]) -> AttitudeHistory:
     """Return the history in a file of one body."""
     if missing := [x for x in ("time", "attitude") if x not in fields]:
@@ -159,6 +178,13 @@ def _single(name: str, fields: Mapping[str, Any], attributes: Mapping[str, Any])
         return of_parts(np.asarray(fields["time"], float), parts, wheels, kept, inertia)
     except (TypeError, ValueError) as error:
         raise FileError(f"{name}: error: not a motion that polhode wrote: {error}") from None
+
+
+def _opened(path: Path) -> EnsembleStore:
+    try:
+        return EnsembleStore.open(path)
+    except ValueError as error:
+        raise FileError(str(error).replace(f"{path}: ", f"{path}: error: ", 1)) from None
 
 
 def _require_done(store: EnsembleStore, body: int) -> None:

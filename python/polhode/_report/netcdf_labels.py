@@ -19,7 +19,7 @@ _STATED = {
 _PACKED = {"scale_factor": 1.0, "add_offset": 0.0}
 _ABSENT = ("_FillValue", "missing_value")
 # Names of the components, which other programs can put in another order.
-_LABELS = {"quaternion": ["w", "x", "y", "z"], "axis": ["x", "y", "z"]}
+LABELS = {"quaternion": ["w", "x", "y", "z"], "axis": ["x", "y", "z"]}
 
 
 class LabelError(ValueError):
@@ -53,7 +53,7 @@ def require_present(name: str, variable: Any, values: Array) -> None:
 
 def require_order(group: Any) -> None:
     """Raise a LabelError if a file lists the components of quaternions or vectors in another order."""
-    for name, wanted in _LABELS.items():
+    for name, wanted in LABELS.items():
         if name not in group or getattr(group[name], "shape", None) != (len(wanted),):
             continue
         found = _texts(group[name])

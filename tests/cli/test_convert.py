@@ -38,6 +38,16 @@ def test_every_format_to_every_other(a, b, convert, tmp_path):
     assert convert(f"a.{a}", f"b.{b}", *(AEM if b == "aem" and a != "aem" else [])).returncode == 0
 
 
+@pytest.mark.parametrize("form", ["nc", "csv", "parquet"])
+def test_speeds_of_wheels_are_converted(form, convert, tmp_path):
+    wheels = ph.torque.reaction_wheels(axes=[[0, 0, 1.0], [0, 1, 0]], inertias=0.1, speeds=[3.0, -1.0])
+    motion = ph.simulate(ASYMMETRIC, START, [0, 1, 2], wheels)
+    motion.save("a.nc")
+    assert np.array_equal(ph.Trajectory.read("a.nc").wheel_speed, motion.wheel_speed)
+    assert convert("a.nc", f"b.{form}").returncode == 0
+    assert np.array_equal(ph.io.read(f"b.{form}").wheel_speed, motion.wheel_speed)
+
+
 def test_a_table_of_attitudes_is_not_taken_for_one_of_ours(convert, tmp_path):
     """It has the columns that a converted AEM has; other programs read both alike."""
     MOTION.save("a.nc")

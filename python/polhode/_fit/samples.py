@@ -134,6 +134,9 @@ def _deviations(sigma: Any, name: str, values: Array, count: int, share: float) 
             f"{name} must be a number, three for the axes, or rows ({count},) or ({count}, 3), "
             f"got shape {given.shape}"
         ) from None
-    if not (np.isfinite(result) & (result > 0)).all():
-        raise ValueError(f"{name} must be positive and finite, got {float(result.min())}")
+    wrong = ~(np.isfinite(result) & (result > 0))
+    if wrong.any():
+        place = first_index(wrong)
+        where = at_index(place[: rows.ndim]) if rows.ndim and len(rows) == count else ""
+        raise ValueError(f"{name} must be positive and finite, got {float(result[place])}{where}")
     return result, True, 0.0

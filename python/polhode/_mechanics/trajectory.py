@@ -101,6 +101,8 @@ class Trajectory(metaclass=ListsOwnNames):
     _drift: Drift | None = field(default=None, repr=False)
     # Wheels with motors, shared by all bodies.
     _wheels: tuple[_native.Law, ...] = field(default=(), repr=False)
+    # Of a motion read from a file: the speeds of its wheels (n, k), if it has any.
+    _speeds: Array | None = field(default=None, repr=False)
     # Of one body: the scene or problem that was solved.
     _origin: Scene | Problem | None = field(default=None, repr=False)
 
@@ -173,14 +175,16 @@ class Trajectory(metaclass=ListsOwnNames):
     def wheel_speed(self) -> Array:
         """Speeds Ω of the reaction wheels relative to the body, (n, k) in rad/s, in the order of the laws.
 
-        Tables and files have them too. Without `polhode.torque.reaction_wheels`, and for a motion read from
-        a file, k is 0.
+        Tables and files have them too. Without `polhode.torque.reaction_wheels` k is 0.
         """
-        return self._of_wheels(1)
+        return self._of_wheels(1) if self._speeds is None else self._speeds.copy()
 
     @property
     def wheel_momentum(self) -> Array:
-        """Momenta ``H = J (Ω + a·ω)`` of the reaction wheels about their axes, (n, k) in kg m²/s."""
+        """Momenta ``H = J (Ω + a·ω)`` of the reaction wheels about their axes, (n, k) in kg m²/s.
+
+        For a motion read from a file, which has no inertias of wheels, k is 0.
+        """
         return self._of_wheels(0)
 
     def _of_wheels(self, which: int) -> Array:

@@ -83,6 +83,7 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
             _certificate(attributes),
             _crossings(fields),
             attributes=of_user(attributes),
+            _speeds=_speeds(fields),
         )
     except KeyError as error:
         raise ValueError(f"{path}: is not a motion that polhode wrote: {error} is missing") from None
@@ -129,6 +130,20 @@ def _require_states(time: Array, parts: Mapping[str, Array]) -> None:
         raise ValueError(f"times must increase, got {time[k]} s after {time[k - 1]} s at row {k}")
     if wrong := not_unit(parts["attitude"]):
         raise ValueError(f"attitude must be unit quaternions, got norm {wrong[1]:.6g} at row {wrong[0]}")
+
+
+def _speeds(fields: Mapping[str, Any]) -> Array | None:
+    """Return the speeds of wheels (n, k); None without wheels."""
+    if "wheel_speed" not in fields:
+        return None
+    found = np.asarray(fields["wheel_speed"], float)
+    if found.ndim != 2 or len(found) != len(fields["time"]):
+        raise ValueError(
+            f"wheel_speed must have shape ({len(fields['time'])}, k), a row for each time, got {found.shape}"
+        )
+    if len(odd := np.argwhere(~np.isfinite(found))):
+        raise ValueError(f"wheel_speed must be finite, got {found[tuple(odd[0])]} at row {odd[0][0]}")
+    return found
 
 
 def shape_of(name: str) -> tuple[int, ...]:

@@ -3,8 +3,8 @@
 //! A product of blades of grades r and s has one grade k, and the rule says whether it is kept. The
 //! handout's dot is the lowest grade, `abs(r − s)`, scalars included (`3·a = 3a`); its wedge the highest.
 
+use crate::rows::fixed_terms::FixedTerms;
 use crate::rows::tiles::Tiles;
-use crate::rows::written::Written;
 use crate::table::{Algebra, G3};
 use std::sync::OnceLock;
 
@@ -161,7 +161,7 @@ pub struct Plan {
     /// How it is run.
     pub(crate) engine: Engine,
     /// The same product with its terms known to the compiler.
-    pub(crate) written: Option<Written>,
+    pub(crate) fixed_terms: Option<FixedTerms>,
 }
 
 /// The ways to run a plan.
@@ -206,7 +206,7 @@ impl Plan {
             tiles.map_or(Engine::Terms, Engine::Tiles)
         };
         let sizes = (ia.len(), ib.len(), iout.len());
-        Plan { sizes, grades, terms: found, engine, written: None }.recognised()
+        Plan { sizes, grades, terms: found, engine, fixed_terms: None }.recognised()
     }
 
     /// The part of the product in some grades; zeros in those that it lacks.
@@ -218,13 +218,13 @@ impl Plan {
         let kept = |term: &Term| Some(Term { out: to.binary_search(&from[term.out]).ok()?, ..*term });
         let terms = self.terms.iter().filter_map(kept).collect();
         let sizes = (self.sizes.0, self.sizes.1, to.len());
-        Plan { sizes, grades, terms, engine: Engine::Terms, written: None }.recognised()
+        Plan { sizes, grades, terms, engine: Engine::Terms, fixed_terms: None }.recognised()
     }
 
     /// The plan after a change of its terms.
     pub(crate) fn recognised(self) -> Plan {
         let terms = self.terms.iter().map(|t| (t.a, t.b, t.out, t.sign));
-        Plan { written: Written::of(self.sizes, terms), ..self }
+        Plan { fixed_terms: FixedTerms::of(self.sizes, terms), ..self }
     }
 
     /// The plan in [`G3`], made once for each product and pair of grades.

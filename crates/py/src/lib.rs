@@ -67,9 +67,9 @@ mod _native {
     #[pymodule_export]
     use crate::algebra::single::{are_close, normalized_motor, number_of, unit_and_size, versor_action};
     #[pymodule_export]
-    use crate::support::face::register;
-    #[pymodule_export]
     use crate::support::pool::{Buffer, buffer};
+    #[pymodule_export]
+    use crate::support::python_objects::register;
 
     #[pymodule_export]
     use crate::scene::{BinCounts, Scene, SceneError, kept_words, regimes};

@@ -9,15 +9,15 @@
 #![allow(unsafe_code)]
 
 pub mod double;
-pub mod foreseen;
 pub mod lanes;
+pub mod lookahead;
 pub(crate) mod map;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 pub(crate) mod payne_hanek;
 pub(crate) mod short;
-mod squares;
 pub mod threads;
+mod transpose;
 pub(crate) mod traverse;
 mod workers;
 #[cfg(target_arch = "x86_64")]
@@ -35,7 +35,7 @@ use neon::Registers;
 use x86::Registers;
 
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-squares::registers!();
+transpose::registers!();
 
 /// Rows in a block: three operands of eight lanes stay in the first-level cache.
 pub(crate) const LANES: usize = 64;

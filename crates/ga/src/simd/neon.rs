@@ -1,7 +1,7 @@
 //! The path of aarch64.
 
 use super::lanes::Work;
-use super::squares::{self, squares};
+use super::transpose::{self, squares};
 use super::{Element, Lane};
 use std::arch::aarch64::*;
 
@@ -10,7 +10,7 @@ pub(super) fn run<T: Work>(work: T) -> T::Output {
     work.run::<true>()
 }
 
-squares::registers! {
+transpose::registers! {
     float64x2_t load_2 store_2 (p, x)
         f64 vld1q_f64(p), vst1q_f64(p, x);
         f32 vcvt_f64_f32(vld1_f32(p)), vst1_f32(p, vcvt_f32_f64(x));

@@ -3,7 +3,7 @@
 use super::lanes::Work;
 use super::map::{self, Map};
 use super::short::{Numbers, Short};
-use super::squares::{self, squares};
+use super::transpose::{self, squares};
 use super::{Element, Lane};
 use std::arch::x86_64::*;
 
@@ -244,7 +244,7 @@ pub(super) fn prefetch<T>(at: *const T) {
     unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
 }
 
-squares::registers! {
+transpose::registers! {
     __m256d load_4 store_4 (p, x)
         f64 _mm256_loadu_pd(p), _mm256_storeu_pd(p, x);
         f32 _mm256_cvtps_pd(_mm_loadu_ps(p)), _mm_storeu_ps(p, _mm256_cvtpd_ps(x));

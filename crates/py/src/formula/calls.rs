@@ -8,7 +8,7 @@ use super::{Formula, NameKind, batches};
 use crate::algebra::batch::Rows;
 use crate::algebra::signature::g3;
 use crate::algebra::value::{Operand, Storage, operand, scalar, wrap};
-use crate::support::face::LINEAR_MAP;
+use crate::support::python_objects::LINEAR_MAP;
 use polhode_ga::Graded;
 use polhode_ga::formula::{Given, InputKind, Type};
 use pyo3::intern;

@@ -10,7 +10,7 @@ pub(crate) mod program;
 use crate::algebra::signature::{Algebra, g3, largest};
 use crate::algebra::value::Object;
 use crate::support::arrays::bad;
-use crate::support::face::CALL_FORMULA;
+use crate::support::python_objects::CALL_FORMULA;
 use calls::Calls;
 use polhode_ga::formula::{
     Kind, Language, Meaning, Names, Node, RowRunner, Runner, Space, Style, Tree, Type, canonical, compile,

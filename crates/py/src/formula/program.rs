@@ -2,8 +2,8 @@
 
 use super::magnitude::PyMagnitude;
 use crate::support::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, threads};
-use crate::support::face::FORMULA_ERROR;
 use crate::support::interrupts::in_pieces;
+use crate::support::python_objects::FORMULA_ERROR;
 use crate::support::text::byte;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;

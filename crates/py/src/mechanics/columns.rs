@@ -3,7 +3,7 @@
 use super::law_value::{Known, Values, formula};
 use crate::algebra::value::{self, Operand};
 use crate::support::arrays::{Rows, bad, numbers, place};
-use crate::support::face::BATCH;
+use crate::support::python_objects::BATCH;
 use numpy::PyUntypedArrayMethods;
 use polhode_ga::formula::{Given, Input, canonical};
 use polhode_ga::product::Grades;

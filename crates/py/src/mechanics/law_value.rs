@@ -5,7 +5,7 @@ use crate::formula::calls::{Argument, of_map};
 use crate::formula::program::error;
 use crate::formula::{NameKind, names};
 use crate::support::arrays::{Rows, bad, one};
-use crate::support::face::{AS_BIVECTORS, AS_VECTORS, Slot};
+use crate::support::python_objects::{AS_BIVECTORS, AS_VECTORS, Slot};
 use polhode_ga::formula::{Error, Given, Input, InputKind, Names};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};

@@ -6,7 +6,7 @@
 //! This module contains all unsafe code of the crate: a buffer exposes its memory.
 #![allow(unsafe_code)]
 
-use super::face::REQUIRE_MEMORY;
+use super::python_objects::REQUIRE_MEMORY;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyBufferError, PyMemoryError};
 use pyo3::ffi;

@@ -14,7 +14,7 @@
 //! - Heavy bodies of two shapes have an integral of the fourth and of the third degree: S. Kovalevskaya,
 //!   Acta Math. 12 (1889) 177; D. N. Goryachev, Mat. Sb. 21 (1900) 431, and S. A. Chaplygin (1901).
 
-use super::motors::driven;
+use super::driven_wheels::driven;
 use super::torque::{E3, Torque};
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Vector};

@@ -1,7 +1,7 @@
 //! Torques and accelerations for steppers: of bodies in lanes, or of one body.
 
+use super::driven_wheels::driven;
 use super::force::Translation;
-use super::motors::driven;
 use super::torque::{Torque, total_torque};
 use crate::error::SimulateError;
 use crate::error::TorqueError;

@@ -19,7 +19,7 @@ use crate::laws::conserved::{energy, momentum};
 use crate::laws::event::{Event, Quantity};
 use crate::laws::force::{Force, Translation};
 use crate::laws::formula::Formula;
-use crate::laws::motors::{carrier, driven};
+use crate::laws::driven_wheels::{carrier, driven};
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::step_control::Limit;
 use crate::methods::{Method, fastest_rate};

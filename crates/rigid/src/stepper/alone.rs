@@ -2,7 +2,7 @@
 
 use super::{Member, Steps};
 use crate::error::SimulateError;
-use crate::laws::motors::driven;
+use crate::laws::driven_wheels::driven;
 use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::run::engine::Engine;

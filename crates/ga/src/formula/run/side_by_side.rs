@@ -6,7 +6,7 @@ use super::steps::Given;
 use super::tasks::{Schedule, Task};
 use crate::formula::compile::program::Id;
 use crate::graded::size;
-use crate::simd::foreseen::Foreseen;
+use crate::simd::lookahead::Lookahead;
 use crate::simd::{Lane, Path};
 use std::ops::Range;
 
@@ -35,7 +35,7 @@ struct Parameter<'r, const W: usize> {
     now: Option<[u64; W]>,
     /// Whether some row has no value now.
     missing: bool,
-    foreseen: Foreseen,
+    lookahead: Lookahead,
     /// The values for these, one row after the other.
     values: Vec<f64>,
 }
@@ -62,7 +62,7 @@ impl Runner {
             steps: self.part(known, own)?,
             now: None,
             missing: false,
-            foreseen: Foreseen::default(),
+            lookahead: Lookahead::default(),
             values: Vec::new(),
         };
         Some(SideBySide { parameter: Some(Box::new(parameter)), ..self.part(known, others)? })
@@ -170,7 +170,7 @@ impl<const W: usize> Parameter<'_, W> {
     fn fill(&mut self, numbers: &[f64; W], given: &[Range<usize>], lanes: &mut [Lane<W>]) -> bool {
         let count = given.iter().map(ExactSizeIterator::len).sum::<usize>();
         let shared = numbers.iter().all(|x| x.to_bits() == numbers[0].to_bits());
-        if shared && let Some(place) = self.foreseen.find(numbers[0]) {
+        if shared && let Some(place) = self.lookahead.find(numbers[0]) {
             let values = &self.values[place * count..(place + 1) * count];
             for (lane, &x) in given.iter().cloned().flatten().zip(values) {
                 lanes[lane] = Lane::filled(x);
@@ -189,9 +189,9 @@ impl<const W: usize> Parameter<'_, W> {
     }
 
     fn foresee(&mut self, numbers: impl Iterator<Item = f64>) {
-        let Parameter { input, steps, foreseen, values, .. } = self;
+        let Parameter { input, steps, lookahead, values, .. } = self;
         values.clear();
-        for numbers in foreseen.announce(numbers).chunks(W) {
+        for numbers in lookahead.announce(numbers).chunks(W) {
             let mut rows = [numbers[0]; W];
             rows[..numbers.len()].copy_from_slice(numbers);
             steps.set_parameter(*input, &rows);

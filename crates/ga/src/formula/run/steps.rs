@@ -214,7 +214,7 @@ impl Ready {
         match &self.work {
             Work::Turn | Work::TurnBack => Turn(self.grades).is_short(),
             Work::Compose => true,
-            Work::Product(plan) => plan.written.is_some(),
+            Work::Product(plan) => plan.fixed_terms.is_some(),
             _ => false,
         }
     }
@@ -234,7 +234,7 @@ impl Ready {
             Work::Turn => path.short_block::<Turn, T, 4, 3, 3, W>(a, b, out),
             Work::TurnBack => path.short_block::<TurnBack, T, 4, 3, 3, W>(a, b, out),
             Work::Compose => path.short_block::<Compose, T, 4, 4, 4, W>(a, b, out),
-            Work::Product(Plan { written: Some(written), .. }) => written.block_in_registers(path, a, b, out),
+            Work::Product(Plan { fixed_terms: Some(fixed), .. }) => fixed.block_in_registers(path, a, b, out),
             _ => panic!("not a step of short values"),
         }
     }

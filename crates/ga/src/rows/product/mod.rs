@@ -21,15 +21,15 @@ impl ByRow for Plan {
     }
 
     fn in_registers<T: Element>(&self, path: Path, a: &[T], b: &[T], out: &mut [T], streamed: bool) -> usize {
-        self.written.map_or(0, |written| written.in_registers(path, a, b, out, streamed))
+        self.fixed_terms.map_or(0, |fixed| fixed.in_registers(path, a, b, out, streamed))
     }
 }
 
 impl<const W: usize> Kernel<W> for Plan {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
-        if let Some(written) = self.written {
-            return written.block(a, b, out);
+        if let Some(fixed) = self.fixed_terms {
+            return fixed.block(a, b, out);
         }
         out.fill(Lane::filled(0.0));
         // The terms come in order of `out`; up to eight of a lane are added at a time, in registers.

@@ -4,8 +4,8 @@ use crate::laws::forcing::Place;
 use crate::laws::torque::lanes::{Three, gradient, seen};
 use crate::laws::torque::orbit::kepler::Elements;
 use crate::laws::torque::{Orbit, Torque};
-use polhode_ga::simd::foreseen::Foreseen;
 use polhode_ga::simd::lanes::{Lanes, Work, fastest};
+use polhode_ga::simd::lookahead::Lookahead;
 
 /// The orbits of all bodies, with their latest positions.
 pub(super) struct Orbits<const W: usize> {
@@ -18,7 +18,7 @@ pub(super) struct Orbits<const W: usize> {
     /// Whether all bodies have the same orbit.
     shared: bool,
     /// Times to come, and the places on a shared orbit then: lanes hold times instead of bodies.
-    foreseen: Foreseen,
+    lookahead: Lookahead,
     then: Vec<[f64; 3]>,
 }
 
@@ -36,7 +36,7 @@ impl<const W: usize> Orbits<W> {
             times: [f64::NAN; W],
             places: [[0.0; W]; 3],
             shared: orbits.iter().all(|orbit| *orbit == orbits[0]),
-            foreseen: Foreseen::default(),
+            lookahead: Lookahead::default(),
             then: Vec::new(),
         })
     }
@@ -60,7 +60,7 @@ impl<const W: usize> Orbits<W> {
             return;
         }
         self.then.clear();
-        for times in self.foreseen.announce(times).chunks(W) {
+        for times in self.lookahead.announce(times).chunks(W) {
             let mut lanes = [times[0]; W];
             lanes[..times.len()].copy_from_slice(times);
             let [x, y, nearness] = fastest(Places { elements: &self.elements, times: &lanes });
@@ -86,7 +86,7 @@ impl<const W: usize> Work for Moved<'_, W> {
             orbits.times[l] = times[l];
             together &= times[l] == times[0];
         }
-        if together && let Some(place) = orbits.foreseen.find(times[0]) {
+        if together && let Some(place) = orbits.lookahead.find(times[0]) {
             for k in 0..3 {
                 orbits.places[k] = [orbits.then[place][k]; W];
             }

@@ -76,7 +76,7 @@
 //! 30 (2008); DLMF 20.7 (theta functions), 19.7 and 19.8 (integrals).
 
 mod derivatives;
-mod describe;
+mod description;
 pub(super) mod flow;
 pub(crate) mod orbit;
 pub(crate) mod series;

@@ -22,9 +22,9 @@ mod points;
 
 use super::classical::{Bodies, renormalize};
 use crate::error::SimulateError;
+use crate::laws::driven_wheels::driven;
 use crate::laws::force::Translation;
 use crate::laws::forcing::{BodyForcing, Forcing, Place};
-use crate::laws::motors::driven;
 use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;

@@ -19,11 +19,11 @@ macro_rules! registers {
         }
 
         impl Registers for f64 {
-            $(squares::registers!(@ $register $load $store ($p, $x) $load_64, $store_64);)*
+            $(transpose::registers!(@ $register $load $store ($p, $x) $load_64, $store_64);)*
         }
 
         impl Registers for f32 {
-            $(squares::registers!(@ $register $load $store ($p, $x) $load_32, $store_32);)*
+            $(transpose::registers!(@ $register $load $store ($p, $x) $load_32, $store_32);)*
         }
     };
     (@ $register:ident $load:ident $store:ident ($p:ident, $x:ident) $loaded:expr, $stored:expr) => {

@@ -2,13 +2,13 @@
 
 /// Numbers in the order in which they will be used.
 #[derive(Clone, Debug, Default)]
-pub struct Foreseen {
+pub struct Lookahead {
     numbers: Vec<f64>,
     /// The place of the one that was found last.
     last: usize,
 }
 
-impl Foreseen {
+impl Lookahead {
     /// The number of places after the last one at which a number is looked for.
     const NEAR: usize = 4;
 

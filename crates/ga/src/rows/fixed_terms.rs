@@ -9,11 +9,11 @@ use crate::simd::{Element, Lane, Path, by_lanes};
 type Known = (usize, usize, usize, i8);
 
 /// An enum of products of constant terms, and a type of each that multiplies rows.
-macro_rules! written {
+macro_rules! fixed_terms {
     ($($(#[$doc:meta])* $name:ident($a:literal, $b:literal) -> $out:literal [$($term:expr),* $(,)?];)*) => {
         /// The products.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub(crate) enum Written {
+        pub(crate) enum FixedTerms {
             $($(#[$doc])* $name,)*
         }
 
@@ -34,15 +34,15 @@ macro_rules! written {
             }
         )*
 
-        impl Written {
+        impl FixedTerms {
             /// The product of factors of these sizes with these terms, in order.
             pub fn of(
                 sizes: (usize, usize, usize),
                 terms: impl Iterator<Item = Known> + Clone,
-            ) -> Option<Written> {
+            ) -> Option<FixedTerms> {
                 $(
                     if sizes == ($a, $b, $out) && terms.clone().eq([$($term),*]) {
-                        return Some(Written::$name);
+                        return Some(FixedTerms::$name);
                     }
                 )*
                 None
@@ -58,7 +58,7 @@ macro_rules! written {
                 streamed: bool,
             ) -> usize {
                 match self {
-                    $(Written::$name => path.short::<$name, T, $a, $b, $out>(a, b, out, streamed),)*
+                    $(FixedTerms::$name => path.short::<$name, T, $a, $b, $out>(a, b, out, streamed),)*
                 }
             }
 
@@ -71,7 +71,7 @@ macro_rules! written {
                 out: &mut [Lane<W>],
             ) {
                 match self {
-                    $(Written::$name => path.short_block::<$name, T, $a, $b, $out, W>(a, b, out),)*
+                    $(FixedTerms::$name => path.short_block::<$name, T, $a, $b, $out, W>(a, b, out),)*
                 }
             }
 
@@ -79,14 +79,14 @@ macro_rules! written {
             #[inline(always)]
             pub fn block<const W: usize>(self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
                 match self {
-                    $(Written::$name => by_lanes(a, b, out, $name::value),)*
+                    $(FixedTerms::$name => by_lanes(a, b, out, $name::value),)*
                 }
             }
         }
     };
 }
 
-written! {
+fixed_terms! {
     /// `a∧b` of vectors.
     Cross(3, 3) -> 3 [(1, 2, 0, 1), (2, 1, 0, -1), (0, 2, 1, -1), (2, 0, 1, 1), (0, 1, 2, 1), (1, 0, 2, -1)];
     /// `A×B` of bivectors, `A·b` and `a·B`.

@@ -16,6 +16,6 @@ fn common_products_are_known() {
         (Product::Geometric, vector, even),
     ];
     for (product, ga, gb) in common {
-        assert!(Plan::g3(product, ga, gb).written.is_some(), "{product:?} {ga:?} {gb:?}");
+        assert!(Plan::g3(product, ga, gb).fixed_terms.is_some(), "{product:?} {ga:?} {gb:?}");
     }
 }

@@ -5,7 +5,7 @@ use super::steps::{Given, Ready, Work};
 use super::tasks::{Lanes, Schedule, Task};
 use crate::MathError;
 use crate::formula::compile::program::Id;
-use crate::graded::size;
+use crate::graded::{Graded, size};
 use crate::simd::{Lane, Path, lanes};
 use std::ops::Range;
 
@@ -75,98 +75,15 @@ impl Runner {
         let fixed = self.fixed(&known.iter().map(Option::is_some).collect::<Vec<_>>());
         let given = |i: usize| known[i].unwrap_or(Given::Determinant(f64::NAN));
         let values = self.values(given, |id| fixed[id])?;
-        let computed = |id: Id| part.steps[id] && !fixed[id];
-        let (mut last, mut uses) = (vec![0; self.steps.len()], vec![0; self.steps.len()]);
-        for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| computed(*id)) {
-            for &operand in step.operands() {
-                last[operand] = id;
-                uses[operand] += 1;
-            }
-        }
-        part.results.iter().chain(&part.given).for_each(|&id| last[id] = usize::MAX);
-        // The inputs that are read for one step alone, which can do without lanes.
-        let direct = |id: Id| match self.steps[id].work {
-            Work::Input(input) if !stay && computed(id) && uses[id] == 1 => {
-                self.steps.get(last[id]).is_some_and(Ready::is_short).then_some(input)
-            }
-            _ => None,
-        };
-        let direct: Vec<_> = (0..self.steps.len()).map(direct).collect();
-        let mut lanes = Lanes::default();
-        let mut schedule = Schedule {
-            fixed: Vec::new(),
-            tasks: Vec::new(),
-            results: Vec::new(),
-            inputs: vec![0..0; self.inputs.len()],
-            given: Vec::new(),
-            lanes: 0,
-        };
-        let mut places = vec![0..0; self.steps.len()];
-        let mut of_maps = vec![0..0; self.inputs.len()];
-        // Values common to all rows keep their lanes.
-        for id in (0..self.steps.len()).filter(|&id| fixed[id] && last[id] > 0) {
-            places[id] = lanes.take(size(self.steps[id].grades));
-            schedule.fixed.push((places[id].start, values[id].components().to_vec()));
-        }
-        for &id in &part.given {
-            places[id] = lanes.take(size(self.steps[id].grades));
-            schedule.given.push(places[id].clone());
-        }
-        for (input, given) in known.iter().enumerate() {
-            if let Some(map @ (Given::Matrix(_) | Given::Determinant(_))) = given {
-                of_maps[input] = lanes.take(map.numbers().len());
-                schedule.fixed.push((of_maps[input].start, map.numbers().to_vec()));
-            }
-        }
+        let mut planner = Planner::new(self, part, fixed, stay);
+        planner.hold_values(&values);
+        planner.hold_given();
+        planner.hold_maps(known);
         if stay {
-            for input in (0..known.len()).filter(|&input| known[input].is_none()) {
-                schedule.inputs[input] = lanes.take(self.inputs[input].size());
-                of_maps[input] = schedule.inputs[input].clone();
-            }
+            planner.hold_inputs(known);
         }
-        for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| computed(*id)) {
-            // The reverse of a rotor that only turns back.
-            if last[id] == 0 && matches!(step.work, Work::Selection(_)) {
-                continue;
-            }
-            if let Work::Input(input) = step.work
-                && stay
-                && !part.results.contains(&id)
-            {
-                places[id] = schedule.inputs[input].clone();
-                last[id] = usize::MAX;
-                continue;
-            }
-            let mut operands = [0..0, 0..0];
-            for (place, &operand) in operands.iter_mut().zip(step.operands()) {
-                *place = places[operand].clone();
-            }
-            if let Work::Map(input) = step.work {
-                if of_maps[input].is_empty() {
-                    of_maps[input] = lanes.take(self.inputs[input].size());
-                    let to = of_maps[input].clone();
-                    schedule.tasks.push(Task::Read { input, to, direct: false });
-                }
-                operands[1] = of_maps[input].clone();
-            }
-            let to = lanes.take(size(step.grades));
-            places[id] = to.clone();
-            schedule.tasks.push(match step.work {
-                Work::Input(input) => Task::Read { input, to, direct: direct[id].is_some() },
-                _ => {
-                    let mut of = step.operands().iter().map(|&operand| direct[operand]);
-                    let rows = std::array::from_fn(|_| of.next().flatten());
-                    Task::Do { step: id, operands, rows, to }
-                }
-            });
-            for &operand in step.operands().iter().filter(|&&operand| last[operand] == id && !fixed[operand])
-            {
-                lanes.free(places[operand].clone());
-            }
-        }
-        schedule.results = part.results.iter().map(|&id| places[id].start).collect();
-        schedule.lanes = lanes.count();
-        Ok(schedule)
+        (0..self.steps.len()).for_each(|id| planner.plan(id));
+        Ok(planner.finish())
     }
 
     /// Does the tasks for a block of rows, `count` of which matter; false if some row may have no value. `own` is called with
@@ -179,6 +96,148 @@ impl Runner {
         own: impl FnMut(usize, &Task, &mut [Lane<W>]) -> bool,
     ) -> bool {
         path.run(Tasks { runner: self, tasks, path, count, lanes, own })
+    }
+}
+
+/// Plans the tasks of a part of a program, step by step.
+struct Planner<'a> {
+    runner: &'a Runner,
+    part: &'a Part,
+    /// Whether inputs keep lanes of their own.
+    stay: bool,
+    /// The steps with one value for all rows.
+    fixed: Vec<bool>,
+    /// The last step that uses the value of each step; `usize::MAX` for values that keep their lanes.
+    last: Vec<Id>,
+    /// The inputs that are read for one step alone, which can do without lanes.
+    direct: Vec<Option<usize>>,
+    lanes: Lanes,
+    /// The lanes of the values of steps, and of inputs that are maps.
+    places: Vec<Range<usize>>,
+    maps: Vec<Range<usize>>,
+    schedule: Schedule,
+}
+
+impl<'a> Planner<'a> {
+    fn new(runner: &'a Runner, part: &'a Part, fixed: Vec<bool>, stay: bool) -> Planner<'a> {
+        let steps = runner.steps.len();
+        let (mut last, mut uses) = (vec![0; steps], vec![0; steps]);
+        let computed = |id: Id| part.steps[id] && !fixed[id];
+        for (id, step) in runner.steps.iter().enumerate().filter(|(id, _)| computed(*id)) {
+            for &operand in step.operands() {
+                last[operand] = id;
+                uses[operand] += 1;
+            }
+        }
+        part.results.iter().chain(&part.given).for_each(|&id| last[id] = usize::MAX);
+        let direct = |id: Id| match runner.steps[id].work {
+            Work::Input(input) if !stay && computed(id) && uses[id] == 1 => {
+                runner.steps.get(last[id]).is_some_and(Ready::is_short).then_some(input)
+            }
+            _ => None,
+        };
+        let direct = (0..steps).map(direct).collect();
+        let (places, maps) = (vec![0..0; steps], vec![0..0; runner.inputs.len()]);
+        let schedule = Schedule { inputs: maps.clone(), ..Schedule::default() };
+        Planner { runner, part, stay, fixed, last, direct, lanes: Lanes::default(), places, maps, schedule }
+    }
+
+    /// Lanes of its own for the value of a step.
+    fn place(&mut self, id: Id) -> Range<usize> {
+        self.places[id] = self.lanes.take(size(self.runner.steps[id].grades));
+        self.places[id].clone()
+    }
+
+    /// Lanes for the values common to all rows.
+    fn hold_values(&mut self, values: &[Graded]) {
+        for id in (0..values.len()).filter(|&id| self.fixed[id] && self.last[id] > 0).collect::<Vec<_>>() {
+            let first = self.place(id).start;
+            self.schedule.fixed.push((first, values[id].components().to_vec()));
+        }
+    }
+
+    /// Lanes for the values that the caller gives.
+    fn hold_given(&mut self) {
+        for &id in &self.part.given {
+            let place = self.place(id);
+            self.schedule.given.push(place);
+        }
+    }
+
+    /// Lanes for the known maps.
+    fn hold_maps(&mut self, known: &[Option<Given>]) {
+        for (input, given) in known.iter().enumerate() {
+            if let Some(map @ (Given::Matrix(_) | Given::Determinant(_))) = given {
+                self.maps[input] = self.lanes.take(map.numbers().len());
+                self.schedule.fixed.push((self.maps[input].start, map.numbers().to_vec()));
+            }
+        }
+    }
+
+    /// Lanes for the inputs that the caller fills.
+    fn hold_inputs(&mut self, known: &[Option<Given>]) {
+        for input in (0..known.len()).filter(|&input| known[input].is_none()) {
+            let place = self.lanes.take(self.runner.inputs[input].size());
+            self.schedule.inputs[input] = place.clone();
+            self.maps[input] = place;
+        }
+    }
+
+    /// The task of a step, if it has one.
+    fn plan(&mut self, id: Id) {
+        let step = &self.runner.steps[id];
+        // The reverse of a rotor that only turns back is not computed.
+        let is_unused = self.last[id] == 0 && matches!(step.work, Work::Selection(_));
+        if !self.part.steps[id] || self.fixed[id] || is_unused {
+            return;
+        }
+        match step.work {
+            Work::Input(input) if self.stay && !self.part.results.contains(&id) => {
+                self.places[id] = self.schedule.inputs[input].clone();
+                self.last[id] = usize::MAX;
+                return;
+            }
+            Work::Input(input) => {
+                let (to, direct) = (self.place(id), self.direct[id].is_some());
+                self.schedule.tasks.push(Task::Read { input, to, direct });
+            }
+            _ => self.plan_work(id),
+        }
+        for &operand in step.operands() {
+            if self.last[operand] == id && !self.fixed[operand] {
+                self.lanes.free(self.places[operand].clone());
+            }
+        }
+    }
+
+    /// The task of a step that is not an input.
+    fn plan_work(&mut self, id: Id) {
+        let step = &self.runner.steps[id];
+        let (mut operands, mut rows) = ([0..0, 0..0], [None; 2]);
+        for (k, &operand) in step.operands().iter().enumerate() {
+            (operands[k], rows[k]) = (self.places[operand].clone(), self.direct[operand]);
+        }
+        if let Work::Map(input) = step.work {
+            operands[1] = self.map(input);
+        }
+        let to = self.place(id);
+        self.schedule.tasks.push(Task::Do { step: id, operands, rows, to });
+    }
+
+    /// The lanes of a map, which is read before its first use.
+    fn map(&mut self, input: usize) -> Range<usize> {
+        if self.maps[input].is_empty() {
+            let to = self.lanes.take(self.runner.inputs[input].size());
+            self.maps[input] = to.clone();
+            self.schedule.tasks.push(Task::Read { input, to, direct: false });
+        }
+        self.maps[input].clone()
+    }
+
+    fn finish(mut self) -> Schedule {
+        self.schedule.results = self.part.results.iter().map(|&id| self.places[id].start).collect();
+        self.schedule.lanes = self.lanes.count();
+        self.schedule
     }
 }
 

@@ -13,6 +13,7 @@ pub(crate) enum Task {
 }
 
 /// The tasks for each block of rows.
+#[derive(Default)]
 pub(crate) struct Schedule {
     /// Values common to all rows: numbers, each for a lane, and the first lane.
     pub fixed: Vec<(usize, Vec<f64>)>,

@@ -1,26 +1,18 @@
 //! Fixed-step integration of bodies in SIMD lanes.
 
-use super::columns::Record;
 use super::laws::{LaneForcing, Laws};
 use super::member::{Member, Plan, of};
-use super::monitor::{LaneMonitor, LaneStates};
-use super::observe::{LaneBodies, LanePhases};
+use super::recorder::{Recorder, moderate};
 use super::scheduler::Scheduler;
 use super::steppers::{Advance, Components, Kicks, Segment, Stepper};
-use crate::error::SimulateError;
 use crate::laws::torque::{Torque, damping_rate};
 use crate::methods::Method;
 use crate::methods::classical::Bodies;
 use crate::methods::momentum::fixed_momentum;
 use crate::methods::splitting::turns::Turns;
 use crate::run::Progress;
-use crate::run::engine::Engine;
 use crate::run::limits::span;
-use crate::run::stops::{aliasing_warning, is_aliased, turn_warning};
-use crate::run::sweep::is_finite;
-use crate::state::carried::Carried;
-use crate::state::center::Center;
-use crate::state::phase::{Gyrostat, Phase};
+use crate::state::phase::Gyrostat;
 use polhode_ga::simd::lanes::{Work, fastest};
 use std::array;
 use std::borrow::Cow;
@@ -81,118 +73,104 @@ impl<const W: usize> Work for FixedSteps<'_, '_, W> {
 
 impl<const W: usize> FixedSteps<'_, '_, W> {
     fn advance_all<const F: bool, S: Stepper<W>>(self, stepper: &mut S, torques: &[Cow<[Torque]>]) {
-        let FixedSteps { scheduler, plan, mut members, progress } = self;
-        let Plan { start, step, method, .. } = plan;
-        let times = scheduler.times;
-        let (bodies, gyrostats): (LaneBodies<W>, Vec<Gyrostat>) =
-            (LaneBodies::new(&members), members.iter().map(|member| member.gyrostat).collect());
-        let states = |phases, time| LaneStates::new(bodies.points(phases), (&gyrostats[..], torques), time);
-        // Of bodies that move; the others have none.
-        let moving = if members[0].own.centers.is_some() { &members[..] } else { &[] };
-        let centers: Vec<_> = moving.iter().map(|member| scheduler.center(member.body)).collect();
-        let at_start = states(LanePhases::starts(&members), start);
-        let (mut monitor, mut squared_rates) =
-            (LaneMonitor::new(&at_start), at_start.points().squared_rates());
-        // Their products with the numbers of a moderate state are finite.
-        let are_moderate = moderate(bodies.numbers());
-        let mut failures: [Option<(f64, SimulateError)>; W] = [const { None }; W];
-        let mut norm_drifts = [0.0_f64; W];
-        let (mut steps, mut longest, mut so_far) = (0, 0.0_f64, 0);
-        let breaks = breaks(torques, &scheduler.options.breaks);
-        let [begin, end] = span(times, start);
-        let total = (end - begin).max(f64::MIN_POSITIVE);
-        let early = times.partition_point(|&t| t < start);
-        let sides: [&mut dyn Iterator<Item = usize>; 2] = [&mut (0..early).rev(), &mut (early..times.len())];
-        for (side, indices) in sides.into_iter().enumerate() {
-            let mut state = stepper.start(&members);
-            // A body that failed on one side of the start is integrated on the other.
-            let mut lost = [false; W];
-            let mut time = start;
-            for index in indices {
-                for segment in segments(time, times[index], step, &breaks) {
-                    longest = longest.max((segment.to - segment.from).abs() / segment.count as f64);
-                    for first in (0..segment.count).step_by(BETWEEN_CHECKS as usize) {
-                        let last = segment.count.min(first + BETWEEN_CHECKS);
-                        let (part, before) = (first..last, state);
-                        let advance =
-                            Advance::<_, W, F> { stepper, state: &mut state, segment, steps: part.clone() };
-                        fastest(advance);
-                        steps += last - first;
-                        let are_finite = are_moderate && moderate(S::numbers(&state));
-                        for (l, member) in members.iter().enumerate() {
-                            if are_finite {
-                                break;
-                            }
-                            let phase =
-                                |state, step| stepper.phases(&bodies, state).phase(l, segment.begin(step));
-                            let now = phase(&state, last);
-                            if !lost[l] && !is_finite(&Carried::new(now, Center::default())) {
-                                let from = phase(&before, first);
-                                lost[l] = true;
-                                let part = (&segment, part.clone());
-                                let failure = diagnose(method, member, &torques[l], from, part);
-                                failures[l].get_or_insert(failure);
-                            }
-                        }
-                        let gone = segment.begin(last);
-                        let passed = if side == 0 { start - gone } else { gone - begin };
-                        scheduler.count(&mut so_far, passed / total, members.len());
-                        if !scheduler.report(progress) {
-                            return;
-                        }
-                    }
-                }
-                time = times[index];
-                let states = states(stepper.phases(&bodies, &state), time);
-                monitor.record(&states, &lost);
-                let points = states.points();
-                let rates = points.squared_rates();
-                (0..W).for_each(|l| squared_rates[l] = squared_rates[l].max(rates[l]));
-                for (l, member) in members.iter_mut().enumerate() {
-                    if lost[l] {
-                        member.own.unknown(index);
-                        continue;
-                    }
-                    norm_drifts[l] = norm_drifts[l].max(points.off_unit.0[l]);
-                    let (rotor, omega) = points.in_body(l);
-                    member.own.put(index, rotor, omega, points.momentum_of(l), states.energy[l]);
-                    if let Some(center) = centers.get(l) {
-                        member.own.place(index, &center.at(time));
-                    }
-                }
-            }
-        }
-        scheduler.count(&mut so_far, 1.0, members.len());
-        // Laws are of the same kinds for all bodies: the first body stands for all.
-        let first = &members[0];
-        let is_aliased = |law: &&Torque| is_aliased(law, &first.gyrostat, &first.start, [begin, end], step);
-        let aliased = torques[0].iter().filter(is_aliased);
-        let columns = &scheduler.columns;
-        columns.warn(first.body, aliased.map(|law| aliasing_warning(law, step)));
-        let turns_too_far = |l: &usize| {
-            // A failure is reported already.
-            let rate = squared_rates[*l].sqrt();
-            failures[*l].is_none() && method.turns_too_far(&gyrostats[*l], rate, longest)
+        let FixedSteps { scheduler, plan, members, progress } = self;
+        let gyrostats: Vec<Gyrostat> = members.iter().map(|member| member.gyrostat).collect();
+        let (start, times) = (plan.start, scheduler.times);
+        let mut course = Course {
+            breaks: breaks(torques, &scheduler.options.breaks),
+            span: span(times, start),
+            recorder: Recorder::new(scheduler, plan, members, (&gyrostats, torques)),
+            steps: 0,
+            longest: 0.0,
+            so_far: 0,
+            progress,
         };
-        if let Some(l) = (0..members.len()).find(turns_too_far) {
-            columns.warn(members[l].body, [turn_warning(step)]);
-        }
-        let (method, evaluations) = (columns.method(method.name()), steps * plan.evaluations());
-        for (l, Member { body, .. }) in members.iter().enumerate() {
-            let (estimate, norm_drift) = (f64::NAN, norm_drifts[l]);
-            columns.record(*body, Record { method, longest, steps, evaluations, estimate, norm_drift });
-            monitor.finish(l).for_each(|(quantity, numbers)| columns.drift(*body, quantity, numbers));
-        }
-        for (member, failure) in members.iter().zip(failures) {
-            failure.into_iter().for_each(|failure| columns.fail(member.body, failure));
+        let early = times.partition_point(|&t| t < start);
+        if course.side::<F, S>(stepper, (0..early).rev()) && course.side::<F, S>(stepper, early..times.len())
+        {
+            course.finish();
         }
     }
 }
 
-/// Whether products of two of the numbers in the lanes are finite.
-#[inline]
-fn moderate<'a, const W: usize>(mut lanes: impl Iterator<Item = &'a [f64; W]>) -> bool {
-    lanes.all(|numbers| numbers.iter().fold(true, |all, x| all & (x.abs() < 1e100)))
+/// The steps of the bodies in lanes over all times.
+struct Course<'r, 'a, const W: usize> {
+    recorder: Recorder<'r, 'a, W>,
+    /// Ascending times at which the laws are not smooth.
+    breaks: Vec<f64>,
+    /// The earliest and the latest time, in s.
+    span: [f64; 2],
+    /// Number of steps, and the longest in s.
+    steps: u64,
+    longest: f64,
+    /// Parts of the work that are counted.
+    so_far: u64,
+    progress: &'r mut dyn FnMut(Progress) -> bool,
+}
+
+impl<const W: usize> Course<'_, '_, W> {
+    /// Integrates and records the bodies at the times on one side of the start. False if the run was stopped.
+    fn side<const F: bool, S: Stepper<W>>(
+        &mut self,
+        stepper: &mut S,
+        indices: impl Iterator<Item = usize>,
+    ) -> bool {
+        let Plan { start, step, .. } = self.recorder.plan;
+        let mut state = stepper.start(&self.recorder.members);
+        self.recorder.turn_back();
+        let mut time = start;
+        for index in indices {
+            let to = self.recorder.scheduler.times[index];
+            for segment in segments(time, to, step, &self.breaks) {
+                if !self.advance::<F, S>(stepper, &mut state, segment) {
+                    return false;
+                }
+            }
+            time = to;
+            self.recorder.record(stepper.phases(&self.recorder.bodies, &state), index);
+        }
+        true
+    }
+
+    /// Integrates the bodies over a segment. False if the run was stopped.
+    fn advance<const F: bool, S: Stepper<W>>(
+        &mut self,
+        stepper: &mut S,
+        state: &mut S::State,
+        segment: Segment,
+    ) -> bool {
+        self.longest = self.longest.max((segment.to - segment.from).abs() / segment.count as f64);
+        for first in (0..segment.count).step_by(BETWEEN_CHECKS as usize) {
+            let last = segment.count.min(first + BETWEEN_CHECKS);
+            let before = *state;
+            fastest(Advance::<_, W, F> { stepper, state, segment, steps: first..last });
+            self.steps += last - first;
+            if !self.recorder.are_moderate || !moderate(S::numbers(state)) {
+                let phases = [&before, &*state].map(|state| stepper.phases(&self.recorder.bodies, state));
+                self.recorder.check(phases, &segment, first..last);
+            }
+            if !self.report(segment.begin(last)) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Reports the work done at a time. False if the run is to stop.
+    fn report(&mut self, time: f64) -> bool {
+        let Recorder { scheduler, ref members, plan: Plan { start, .. }, .. } = self.recorder;
+        let [begin, end] = self.span;
+        let passed = if time < start { start - time } else { time - begin };
+        let fraction = passed / (end - begin).max(f64::MIN_POSITIVE);
+        scheduler.count(&mut self.so_far, fraction, members.len());
+        scheduler.report(self.progress)
+    }
+
+    fn finish(mut self) {
+        let Recorder { scheduler, ref members, .. } = self.recorder;
+        scheduler.count(&mut self.so_far, 1.0, members.len());
+        self.recorder.finish(self.span, self.steps, self.longest);
+    }
 }
 
 /// Ascending times at which the laws are not smooth; all bodies share such laws.
@@ -223,29 +201,4 @@ fn segments(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Segment> {
         segment
     };
     ends.into_iter().map(part).filter(|segment| segment.from != segment.to).collect()
-}
-
-/// Time and cause of a failure: repeats the steps for the single body.
-#[cold]
-fn diagnose(
-    method: Method,
-    member: &Member,
-    torques: &[Torque],
-    from: Phase,
-    (segment, steps): (&Segment, std::ops::Range<u64>),
-) -> (f64, SimulateError) {
-    let mut at = Carried::new(from, Center::default());
-    let alone = match Engine::new(method, member.gyrostat, torques, None, &member.start) {
-        Ok(alone) => alone,
-        Err(error) => return (from.time, error),
-    };
-    for i in steps {
-        let (begin, end) = (segment.begin(i), segment.begin(i + 1));
-        match alone.step(&at, end - begin, 0.0) {
-            Ok((next, _)) if is_finite(&next) => at = next,
-            Ok(_) => return (begin, SimulateError::Diverged { time: end }),
-            Err(error) => return (begin, error),
-        }
-    }
-    (at.phase.time, SimulateError::Diverged { time: at.phase.time })
 }

@@ -16,6 +16,7 @@ mod member;
 mod monitor;
 mod observe;
 mod output;
+mod recorder;
 pub mod reduce;
 mod scheduler;
 mod steppers;

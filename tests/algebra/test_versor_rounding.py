@@ -144,3 +144,20 @@ def test_the_sign_of_the_meet():
         vee = a.vee(b)
         assert np.all(size(a.meet(b) - vee / vee.norm()) <= 1e-11)
         assert np.all(size(a.join(b) - B.I) <= 1e-11)
+
+
+@pytest.mark.parametrize("shift", [[1, 2, -1], [100.0, -30.0, 7.1], [1e5, 3e4, -2e5]])
+def test_the_inverse_of_a_translation_holds_on_both_sides(shift):
+    """A correction by the residual, which is rounding, would spoil ``T⁻¹ T``."""
+    T = ph.cga(3).translator(ph.vector(shift))
+    rounding = EPS[np.float64] * size(T) ** 2  # of the number ~T T
+    assert size(T.inverse() * T - 1) <= rounding
+    assert size(T * T.inverse() - 1) <= rounding
+
+
+def test_versors_whose_squares_underflow_keep_their_digits():
+    V = (ph.e1 + 2 * ph.e2) * (ph.e3 - ph.e1)
+    whole = (V >> ph.e1).components
+    for exponent in (-140, -150, -158, -160, -161, 120, 150):
+        moved = (10.0**exponent * V) >> ph.e1
+        assert np.abs(moved.components - whole).max() <= 4 * EPS[np.float64]

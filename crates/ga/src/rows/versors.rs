@@ -117,6 +117,9 @@ impl Action {
     }
 }
 
+/// The least `|V ~V|`: products of the components of smaller versors lose digits to underflow.
+const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
 /// What the components of `V ~V` may be beside the sum of the squares of V, for a versor to half of the digits.
 #[derive(Clone, Copy)]
 struct Limits {
@@ -135,7 +138,8 @@ impl Limits {
     /// Whether `V ~V` is a number other than 0: the number, and the largest of the other components.
     #[inline(always)]
     fn allow(self, number: f64, rest: f64, size: f64) -> bool {
-        (rest <= self.rest * size) & (number.abs() > self.number * size) & number.is_finite()
+        let is_a_number = (rest <= self.rest * size) & (number.abs() > self.number * size);
+        is_a_number & number.is_finite() & (number.abs() >= LEAST)
     }
 }
 

@@ -10,16 +10,17 @@ pub(crate) mod noise;
 mod options;
 pub(crate) mod output;
 pub(crate) mod refine;
+mod solver;
 pub(crate) mod stops;
 pub(crate) mod sweep;
 
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::laws::conserved::{energy, momentum};
-use crate::laws::event::{Event, Quantity};
+use crate::laws::driven_wheels::{carrier, driven};
+use crate::laws::event::Quantity;
 use crate::laws::force::{Force, Translation};
 use crate::laws::formula::Formula;
-use crate::laws::driven_wheels::{carrier, driven};
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::step_control::Limit;
 use crate::methods::{Method, fastest_rate};
@@ -29,15 +30,11 @@ use crate::state::checks::{check_horizons, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
 use center::{CenterMotion, center_law};
-use certificate::{Certificate, DriftMonitor, off_unit};
-use closed_form::{ClosedForm, check_kept};
-use engine::Engine;
+use closed_form::ClosedForm;
 use limits::{StepBounds, samples, span};
 use polhode_ga::{Bivector, Rotor};
-use refine::{Accuracy, Convergence, Scales, SweepPlan};
-use stops::{aliasing_warning, is_aliased, turn_warning};
 pub use sweep::Progress;
-use sweep::{Integrator, StepRule, Sweep, check_pieces, is_finite};
+use sweep::check_pieces;
 
 pub use motion::{Motion, States};
 pub use options::{MAX_STEPS, Options};
@@ -220,183 +217,9 @@ impl Problem {
         }
     }
 
-    /// The motion by one method.
-    fn run(
-        &self,
-        times: &[f64],
-        options: &Options,
-        bounds: StepBounds,
-        progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Motion, SimulateError> {
-        let closed = self.closed_form().filter(|_| options.method.is_none() && options.step.is_none());
-        let neglected = closed.as_ref().and_then(|closed| closed.neglected(times));
-        let fine = neglected.unwrap_or(0.0) <= options.rtol.unwrap_or(f64::INFINITY);
-        let closed = closed.filter(|_| options.exact || fine);
-        if options.exact && closed.is_none() {
-            return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
-        }
-        let center = self.center_motion();
-        let method = options.method.unwrap_or_else(|| self.best());
-        let translation = self.translation.clone().filter(|_| center.is_none());
-        let (engine, name) = match closed {
-            Some(closed) => {
-                check_horizons(self.time, times, closed.horizons())?;
-                (Engine::ClosedForm(Box::new(closed)), "exact")
-            }
-            None => (
-                Engine::new(method, self.body, &self.torques, translation, &self.start().phase)?,
-                method.name(),
-            ),
-        };
-        let rate = self.rate();
-        let longest = times.iter().fold(0.0, |m: f64, t| m.max((t - self.time).abs()));
-        let long = |turn: f64| {
-            StepRule::equal((if rate > 0.0 { turn / rate } else { longest.max(1.0) }).min(bounds.longest))
-        };
-        let events: Vec<Event> =
-            options.events.iter().map(|event| event.clone().in_axes(self.frame)).collect();
-        let (rule, sweep, error) = match (&engine, options.step) {
-            (Engine::ClosedForm(closed), _) if events.is_empty() => {
-                (long(1.0), self.sampled(closed, times, progress)?, neglected)
-            }
-            (Engine::ClosedForm(_), _) => {
-                let plan = SweepPlan::only(long(1.0));
-                (plan.rule, self.sweep(&engine, times, (plan, &bounds), &events, progress)?, neglected)
-            }
-            (_, Some(step)) => {
-                let plan = SweepPlan::only(StepRule::equal(step.min(bounds.longest)));
-                (plan.rule, self.sweep(&engine, times, (plan, &bounds), &events, progress)?, None)
-            }
-            (_, None) => {
-                let accuracy = Accuracy::new(method.order(), options.rtol);
-                let first = if method.adapts() { accuracy.first_steps() } else { long(method.first_turn()) };
-                let follow = |from: &Carried, time: f64| {
-                    let mut to = engine.step(from, time - from.phase.time, 0.0).map_or(*from, |(to, _)| to);
-                    center.iter().for_each(|center| to.center = center.at(time));
-                    to
-                };
-                let scales = Scales {
-                    body: self.body,
-                    rounding: engine.rounding(),
-                    in_space: engine.is_in_space(),
-                    is_smooth: bounds.is_smooth,
-                };
-                let mut sweeps = Convergence::new(first, accuracy, scales);
-                let found = loop {
-                    let sweep = self.sweep(&engine, times, (sweeps.next(), &bounds), &events, progress)?;
-                    if let Some(found) = sweeps.take(sweep, &follow)? {
-                        break found;
-                    }
-                };
-                (found.rule, found.sweep, Some(found.error))
-            }
-        };
-        if let Some(state) = sweep.states.iter().find(|s| !is_finite(s)) {
-            return Err(SimulateError::Diverged { time: state.phase.time });
-        }
-        let exact = name == "exact";
-        let warnings = options.step.map_or(Vec::new(), |step| self.warnings(times, step, (method, &sweep)));
-        let certificate = Certificate {
-            method: name,
-            step: if exact { 0.0 } else { sweep.longest },
-            steps: if exact { 0 } else { sweep.steps },
-            evaluations: sweep.evaluations,
-            error_estimate: error,
-            drifts: sweep.drifts,
-            norm_drift: sweep.states.iter().map(|s| off_unit(s.phase.rotor)).fold(0.0, f64::max),
-            warnings,
-        };
-        Ok(Motion {
-            problem: self.clone(),
-            engine,
-            rule,
-            bounds,
-            states: sweep.states,
-            events: sweep.events,
-            certificate,
-        })
-    }
-
-    /// Warnings for fixed steps that are too long for the laws, or for the turns of the body.
-    fn warnings(&self, times: &[f64], step: f64, (method, sweep): (Method, &Sweep)) -> Vec<String> {
-        let start = self.start();
-        let span = span(times, start.phase.time);
-        let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start.phase, span, step);
-        let aliased = self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step));
-        let states = [&start].into_iter().chain(&sweep.states);
-        let fastest = states.map(|state| self.body.omega(state.phase.momentum).norm()).fold(0.0, f64::max);
-        let too_far = method.turns_too_far(&self.body, fastest, sweep.longest);
-        aliased.chain(too_far.then(|| turn_warning(step))).collect()
-    }
-
     /// The best stepping method.
     pub(crate) fn best(&self) -> Method {
         Method::best(&self.body, &self.torques, self.center_motion().is_none(), &self.start().phase)
-    }
-
-    /// One sweep over the times.
-    fn sweep(
-        &self,
-        engine: &Engine,
-        times: &[f64],
-        order: (SweepPlan, &StepBounds),
-        events: &[Event],
-        progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Sweep, SimulateError> {
-        self.sweep_from(self.start(), engine, times, order, events, progress)
-    }
-
-    fn sweep_from(
-        &self,
-        start: Carried,
-        engine: &Engine,
-        times: &[f64],
-        (SweepPlan { rule, number, known_rate, noise }, bounds): (SweepPlan, &StepBounds),
-        events: &[Event],
-        progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Sweep, SimulateError> {
-        let monitor = DriftMonitor::new(self.body, &self.torques, self.start().phase);
-        let integrator = Integrator {
-            body: self.body,
-            engine,
-            monitor,
-            rule,
-            rate: self.rate(),
-            least_rate: bounds.least_rate.max(known_rate),
-            noise,
-            bounds,
-            events,
-            center: self.center_motion(),
-            origin: self.time,
-            mass: self.mass,
-            number,
-            progress,
-        };
-        integrator.sweep(start, times)
-    }
-
-    /// The closed form at all times, as a sweep without steps. An error if it drifts in a conserved quantity.
-    fn sampled(
-        &self,
-        closed: &ClosedForm,
-        times: &[f64],
-        progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Sweep, SimulateError> {
-        /// Times between calls of `progress`.
-        const TOGETHER: usize = 1 << 14;
-        let mut states = Vec::with_capacity(times.len());
-        let mut monitor = DriftMonitor::new(self.body, &self.torques, self.start().phase);
-        for some in times.chunks(TOGETHER) {
-            states.extend(closed.at_many(some));
-            states[states.len() - some.len()..].iter().for_each(|state| monitor.record(&state.phase));
-            let fraction = states.len() as f64 / times.len() as f64;
-            if !progress(Progress { pass: 1, fraction }) {
-                return Err(SimulateError::Interrupted);
-            }
-        }
-        let drifts = monitor.finish();
-        check_kept(&drifts)?;
-        Ok(Sweep { states, drifts, ..Sweep::default() })
     }
 
     fn closed_form(&self) -> Option<ClosedForm> {

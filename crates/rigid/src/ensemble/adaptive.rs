@@ -242,6 +242,9 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
             }
             if run.controller.judge(h, error) {
                 run.sweep.errors += error;
+                if run.controller.is_cut() {
+                    run.sweep.errors_of_cut_steps += error;
+                }
                 match run.arrive(h, next, l, scheduler) {
                     Ok(()) => accepted[l] = true,
                     Err(error) => self.fail(l, error, scheduler),

@@ -49,7 +49,7 @@ impl<'a> BodyRun<'a> {
             body: member.gyrostat,
             rounding: ROUNDING_OF_RUNGE_KUTTA,
             in_space: true,
-            is_smooth: bounds.is_smooth,
+            is_smooth: bounds.is_smooth(),
         };
         let rule = accuracy.first_steps();
         BodyRun {

@@ -43,6 +43,8 @@ pub(crate) struct StepController {
     most: f64,
     /// Whether the previous step was rejected.
     refused: bool,
+    /// Whether a stop cut the last accepted step short.
+    is_cut: bool,
 }
 
 impl StepController {
@@ -61,7 +63,13 @@ impl StepController {
             after_break: false,
             most: longest,
             refused: false,
+            is_cut: false,
         }
+    }
+
+    /// Whether a stop cut the last accepted step short: its length was not chosen by the tolerance.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// Heads for the next stop: an output, or a break, where a law is not smooth.
@@ -105,8 +113,9 @@ impl StepController {
             return false;
         }
         let growth = (0.9 * error.powf(-ROOT)).clamp(0.3, if self.refused { 1.0 } else { 6.0 });
+        self.is_cut = self.cut < self.next;
         // A step cut short by a stop says little about the possible length.
-        self.next = if self.cut < self.next { self.next.max(h * growth) } else { h * growth };
+        self.next = if self.is_cut { self.next.max(h * growth) } else { h * growth };
         self.next = self.next.min(self.longest);
         self.refused = false;
         true

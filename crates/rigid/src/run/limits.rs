@@ -12,8 +12,6 @@ use crate::state::phase::{Gyrostat, Phase};
 pub(crate) struct StepBounds {
     /// Ascending times at which steps end: the laws are not smooth there, or change fast.
     pub breaks: Vec<f64>,
-    /// Whether sampling the laws found no stops.
-    pub is_smooth: bool,
     /// The longest step, in s.
     pub longest: f64,
     pub limit: Limit,
@@ -35,7 +33,6 @@ impl Default for StepBounds {
         let limit = Limit { steps: MAX_STEPS, reports_stiffness: false };
         StepBounds {
             breaks: Vec::new(),
-            is_smooth: true,
             longest: f64::INFINITY,
             limit,
             least_rate: 0.0,
@@ -69,6 +66,11 @@ pub(crate) fn samples(
 }
 
 impl StepBounds {
+    /// Whether the laws change slowly at the scale of steps at all times.
+    pub fn is_smooth(&self) -> bool {
+        self.breaks.is_empty()
+    }
+
     /// The largest number of pieces of steps in which events of an oscillating centre of mass are sought.
     pub fn most_pieces(&self) -> f64 {
         self.limit.steps.max(MAX_STEPS)
@@ -99,7 +101,6 @@ impl StepBounds {
         let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
         StepBounds {
             breaks,
-            is_smooth: samples.iter().flatten().all(|sampled| sampled.stops.is_empty()),
             longest: options.max_step.unwrap_or(f64::INFINITY),
             limit: Limit { steps: options.most_steps(), reports_stiffness: options.may_change_method() },
             least_rate: (torque / largest).sqrt().max(1e-4 * wheels / smallest),

@@ -49,6 +49,10 @@ const COUNTED: f64 = 1e-3;
 const COUNTED_WITHOUT_ORDER: f64 = 0.1;
 const FEW_STEPS: u64 = 16;
 
+/// The same for the sum of the steps that stops cut short. Many keep their lengths from sweep to sweep, so that the
+/// difference does not show their errors.
+const COUNTED_OF_CUT_STEPS: f64 = 0.5;
+
 /// The order of any method where a law has kinks.
 const ORDER_AT_KINKS: f64 = 2.0;
 
@@ -326,15 +330,18 @@ impl Convergence {
         let (mut shorter, mut least_truncation) = (self.by, 0.0);
         if let StepRule::Tolerance(steps) = self.rule {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
-            let sum = fine.errors * self.magnification.map_or(1.0, |known| known.of_sums());
             // Steps cannot meet a smaller tolerance; the difference is used.
-            let sum = if steps.tolerance == LEAST_TOLERANCE { 0.0 } else { sum };
+            let counts = steps.tolerance > LEAST_TOLERANCE;
+            let magnified =
+                if counts { self.magnification.map_or(1.0, |known| known.of_sums()) } else { 0.0 };
+            let (sum, of_cut_steps) = (fine.errors * magnified, fine.errors_of_cut_steps * magnified);
             if shorter < COMPARABLE {
                 return (difference.max(sum), None);
             }
             let shows_order = self.scales.is_smooth && fine.steps >= FEW_STEPS;
             let counted = if shows_order { COUNTED } else { COUNTED_WITHOUT_ORDER };
-            least_truncation = sum.min(counted * self.accuracy.goal);
+            let of_all = sum.min(counted * self.accuracy.goal);
+            least_truncation = of_all.max(of_cut_steps.min(COUNTED_OF_CUT_STEPS * self.accuracy.goal));
             if !self.scales.is_smooth {
                 return (difference.max(least_truncation), Some(shorter));
             }

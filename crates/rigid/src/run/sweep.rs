@@ -101,7 +101,7 @@ impl StepRule {
     pub fn controller(self, rate: f64, bounds: &StepBounds) -> StepController {
         let (tolerance, fractions) = match self {
             StepRule::Step(_) => (f64::INFINITY, [1.0; 2]),
-            StepRule::Tolerance(steps) => (steps.tolerance, steps.fractions(bounds.is_smooth)),
+            StepRule::Tolerance(steps) => (steps.tolerance, steps.fractions(bounds.is_smooth())),
         };
         StepController::new(tolerance, rate, bounds.longest, fractions)
     }
@@ -131,6 +131,8 @@ pub(crate) struct Sweep {
     pub largest: [f64; 3],
     /// The sum of the error estimates of all steps, for methods with estimates.
     pub errors: f64,
+    /// That of the steps that a stop has cut short.
+    pub errors_of_cut_steps: f64,
     /// The longest step.
     pub longest: f64,
     pub steps: u64,
@@ -311,6 +313,9 @@ impl Integrator<'_> {
             if cursor.controller.judge(to - from, error) {
                 sweep.longest = sweep.longest.max((to - from).abs());
                 sweep.errors += error;
+                if cursor.controller.is_cut() {
+                    sweep.errors_of_cut_steps += error;
+                }
                 self.arrive(cursor, next, sweep, done)?;
                 let turn = self.body.omega(next.phase.momentum).norm() * (to - from);
                 self.bounds.limit.check(sweep.steps, to - from, turn, || done(to))?;

@@ -2,7 +2,6 @@
 
 use super::member::{Member, Outcome};
 use super::scheduler::Scheduler;
-use crate::exact::free::{FreeBody, FreeMotions};
 use crate::exact::many::{Tile, Times, at_each};
 use crate::run::Progress;
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
@@ -13,10 +12,10 @@ use crate::state::phase::Phase;
 use polhode_ga::rows::curve::TOGETHER;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use std::{array, slice};
+use std::slice;
 
 /// The name of the method in certificates.
-const METHOD: &str = "exact";
+pub(super) const METHOD: &str = "exact";
 
 /// Members with what their closed form needs.
 type Members<'a> = Vec<(Member<'a>, ExactBody)>;
@@ -29,7 +28,7 @@ impl<'a> Scheduler<'a> {
         }
         if members.len() == TOGETHER {
             if let Some((_, ExactBody::Free(_))) = members.first() {
-                self.free(members);
+                self.free(members.drain(..).map(|(member, _)| member).collect());
             } else if let Some(tile) = ExactBody::tile(members.iter().map(|(_, body)| body)) {
                 self.under_torques(members, &tile);
             }
@@ -42,72 +41,6 @@ impl<'a> Scheduler<'a> {
             }
         }
         self.report(progress);
-    }
-
-    /// Writes the motions of free bodies in lanes.
-    fn free(&self, members: &mut Members<'a>) {
-        let bodies: [FreeBody; TOGETHER] = array::from_fn(|l| free_body(&members[l].0));
-        let mut motions = FreeMotions::default();
-        motions.set_up(&bodies);
-        let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
-        for (index, &time) in self.times.iter().enumerate() {
-            let elapsed = array::from_fn(|l| time - members[l].0.start.time);
-            motions.at(&elapsed, &mut rotors, &mut omegas);
-            for (l, (Member { own, .. }, _)) in members.iter_mut().enumerate() {
-                own.rotors.as_chunks_mut().0[index] = rotors[l];
-                own.omegas.as_chunks_mut().0[index] = omegas[l];
-            }
-        }
-        for (l, (member, _)) in members.drain(..).enumerate() {
-            self.finish_free(member, motions.horizon(l, &bodies[l]));
-        }
-    }
-
-    /// Writes the motion of a free body.
-    fn free_alone(&self, member: Member<'a>) {
-        let (motion, start) = (free_body(&member).motion(), member.start.time);
-        let elapsed: Vec<f64> = self.times.iter().map(|time| time - start).collect();
-        motion.at_many(Threads::ONE, &elapsed, member.own.rotors, member.own.omegas);
-        self.finish_free(member, motion.horizon());
-    }
-
-    /// Completes the motion of a free body from its rotors and angular velocities at the rounded times since the start;
-    /// momentum and energy are those of the start.
-    fn finish_free(&self, mut member: Member<'a>, horizon: f64) {
-        let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
-        let center = self.center(body);
-        if let Err(error) = check_horizons(start.time, self.times, [horizon; 2]) {
-            return self.fail(body, own, METHOD, error);
-        }
-        let since = ElapsedTime::new(start.time, gyrostat, &[]);
-        let momentum = start.rotor.apply_bivector(start.momentum);
-        own.momenta.as_chunks_mut::<3>().0.fill(momentum.0);
-        own.energies.fill(gyrostat.kinetic(start.momentum));
-        let mut monitor = DriftMonitor::new(gyrostat, &[], start);
-        let mut norm_drift = 0.0_f64;
-        let states = own.rotors.as_chunks_mut::<4>().0.iter_mut().zip(own.omegas.as_chunks_mut::<3>().0);
-        for (&time, (rotor, omega)) in self.times.iter().zip(states) {
-            let whole = Rotor::from_unit_components(*rotor);
-            let principal = frame.reverse().apply_bivector(Bivector(*omega));
-            let mut phase = Phase { rotor: whole * frame, momentum: gyrostat.momentum(principal), time };
-            if since.elapsed(time).lo != 0.0 {
-                phase = since.at(phase);
-                *rotor = (phase.rotor * frame.reverse()).components();
-                *omega = frame.apply_bivector(gyrostat.omega(phase.momentum)).0;
-            }
-            norm_drift = norm_drift.max(off_unit(Rotor::from_unit_components(*rotor)));
-            monitor.record(&phase);
-        }
-        for (index, &time) in self.times.iter().enumerate() {
-            own.place(index, &center.at(time));
-        }
-        let drifts = monitor.finish();
-        if let Err(error) = check_kept(&drifts) {
-            return self.fail(body, own, METHOD, error);
-        }
-        let certificate = Certificate { method: METHOD, drifts, norm_drift, ..Certificate::default() };
-        self.count(&mut 0, 1.0, 1);
-        self.record([Outcome { body, certificate, failure: None }]);
     }
 
     /// Writes the motions of bodies under torques, from their rotations in lanes.
@@ -176,8 +109,4 @@ impl<'a> Scheduler<'a> {
         self.count(&mut 0, 1.0, 1);
         self.record([Outcome { body, certificate, failure: None }]);
     }
-}
-
-fn free_body(Member { frame, gyrostat, start, omega, .. }: &Member<'_>) -> FreeBody {
-    FreeBody::in_frame(*frame, gyrostat.moments, start.rotor, *omega)
 }

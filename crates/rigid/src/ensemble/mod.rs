@@ -11,6 +11,7 @@ mod body_run;
 mod columns;
 mod exact;
 mod fixed;
+mod free;
 pub(crate) mod laws;
 mod member;
 mod monitor;

@@ -25,6 +25,16 @@ impl<const W: usize> LanePhases<W> {
         LanePhases { rotor: rotor.map(|lanes| lanes.0), momentum: momentum.map(|lanes| lanes.0) }
     }
 
+    /// Replaces that of one lane.
+    pub fn set(&mut self, lane: usize, phase: &Phase) {
+        for (lanes, x) in self.rotor.iter_mut().zip(phase.rotor.components()) {
+            lanes[lane] = x;
+        }
+        for (lanes, x) in self.momentum.iter_mut().zip(phase.momentum.0) {
+            lanes[lane] = x;
+        }
+    }
+
     /// Of one lane.
     pub fn phase(&self, lane: usize, time: f64) -> Phase {
         Phase {
@@ -102,6 +112,11 @@ impl<const W: usize> LaneBodies<W> {
         momentum
     }
 
+    /// The phases of rotors from body axes to space and angular velocities in body axes.
+    pub fn phases(&self, rotors: &[[f64; 4]; W], omegas: &[[f64; 3]; W]) -> LanePhases<W> {
+        fastest(InPrincipalAxes { bodies: self, rotors, omegas })
+    }
+
     /// The points at these rotors and momenta.
     pub fn points(&self, phases: LanePhases<W>) -> LanePoints<W> {
         let mut points = fastest(Observe { bodies: self, phases: &phases });
@@ -112,6 +127,25 @@ impl<const W: usize> LaneBodies<W> {
             }
         }
         points
+    }
+}
+
+struct InPrincipalAxes<'a, const W: usize> {
+    bodies: &'a LaneBodies<W>,
+    rotors: &'a [[f64; 4]; W],
+    omegas: &'a [[f64; 3]; W],
+}
+
+impl<const W: usize> Work for InPrincipalAxes<'_, W> {
+    type Output = LanePhases<W>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> LanePhases<W> {
+        let InPrincipalAxes { bodies, rotors, omegas } = self;
+        let [f, a, b, c] = bodies.frame;
+        let rotor = product(in_lanes(|l| rotors[l]), bodies.frame).map(|lanes| lanes.0);
+        let momentum = bodies.momentum(turned([f, -a, -b, -c], in_lanes(|l| omegas[l])));
+        LanePhases { rotor, momentum }
     }
 }
 

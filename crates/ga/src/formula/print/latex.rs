@@ -4,6 +4,7 @@
 //! close, `a{\wedge}b`, to show that it binds first.
 
 use super::{Hold, Printer, blade};
+use crate::formula::syntax::grades;
 use crate::formula::syntax::indices::INDICES;
 use crate::formula::syntax::letters::decomposed;
 use crate::formula::syntax::number::{FRACTIONS, Number};
@@ -17,9 +18,7 @@ pub(super) fn hold(node: &Node) -> Hold {
         Kind::Number(x) if number(x).starts_with('\\') => Hold::Prefix,
         Kind::Quotient(_) => Hold::Prefix,
         Kind::Function(Named::Function(Function::Exp | Function::Inverse), _) => Hold::Postfix,
-        Kind::Reverse(x) | Kind::Function(Named::Reverse, x) if leaves(x).is_none_or(|n| n > SHORT) => {
-            Hold::Postfix
-        }
+        Kind::Reverse(x) if leaves(x).is_none_or(|n| n > SHORT) => Hold::Postfix,
         _ => Hold::Primary,
     }
 }
@@ -45,7 +44,8 @@ pub(super) fn bare(node: &Node, followed: bool) -> String {
         Kind::Product(factors) => product(factors, followed),
         Kind::Quotient(pair) => format!("\\frac{{{}}}{{{}}}", inner(&pair.0), inner(&pair.1)),
         Kind::Tight(product, operands) => tight(operands, sign(*product).1),
-        Kind::Reverse(x) | Kind::Function(Named::Reverse, x) => reverse(x),
+        Kind::Reverse(x) => reverse(x),
+        Kind::Function(Named::Reverse, x) => part(x, Hold::Primary) + "^{\\sim}",
         Kind::Power(x, n) => format!("{}^{{{n}}}", part(x, Hold::Primary)),
         Kind::Part(x, grades) => {
             let (text, list) = (inner(x), listed(*grades));
@@ -66,6 +66,9 @@ fn product(factors: &[Node], followed: bool) -> String {
         let followed = followed || i + 1 < factors.len();
         let mut next = match &factor.kind {
             Kind::Total(..) if !followed => inner(factor),
+            Kind::Tight(..) if i + 1 < factors.len() && grades::is_loose(factor) => {
+                Printer::Latex.bracketed(&inner(factor))
+            }
             // A tight product has no space around its sign.
             Kind::Tight(product, operands) => tight(operands, sign(*product).0),
             _ => part(factor, Hold::Tight),

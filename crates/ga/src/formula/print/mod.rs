@@ -7,6 +7,7 @@ mod latex;
 
 pub(crate) use latex::plain_name;
 
+use super::syntax::grades;
 use super::syntax::letters::raised;
 use super::syntax::number::{FRACTIONS, Number};
 use super::syntax::tree::{Kind, Named, Node, Tight, Tree, is_numeric, listed};
@@ -70,13 +71,15 @@ impl Printer {
     fn hold(self, node: &Node) -> Hold {
         match &node.kind {
             Kind::Sum(_) => Hold::Sum,
+            Kind::Product(factors) if factors.len() == 1 && self != Printer::Latex => Hold::Primary,
             Kind::Product(_) | Kind::Total(..) => Hold::Product,
             Kind::Tight(tight, operands) if self.is_called(*tight, operands) => Hold::Primary,
             Kind::Tight(..) => Hold::Tight,
             Kind::Power(..) | Kind::Derivative(_) => Hold::Postfix,
+            Kind::Function(Named::Reverse, _) => Hold::Postfix,
             _ if self == Printer::Latex => latex::hold(node),
             _ if self.is_fraction(node) => Hold::Product,
-            Kind::Reverse(_) | Kind::Function(Named::Reverse, _) => Hold::Prefix,
+            Kind::Reverse(_) => Hold::Prefix,
             _ => Hold::Primary,
         }
     }
@@ -122,12 +125,16 @@ impl Printer {
                     _ => self.applied(name, &self.list(arguments, ", ")),
                 }
             }
+            // `ab~`: of an open name that may become letters.
+            (Kind::Function(Named::Reverse, x), Printer::Text(_)) => self.part(x, Hold::Postfix) + "~",
             (_, Printer::Latex) => latex::bare(node, followed),
             (Kind::Number(x), _) => self.number(x),
             (Kind::Pi, _) => if self.is_ascii() { "pi" } else { "π" }.to_owned(),
             (Kind::Blade(generators), _) => blade(generators),
             (Kind::Pseudoscalar, _) => "I".to_owned(),
             (Kind::Name(name), _) => name.clone(),
+            // Brackets that are kept.
+            (Kind::Product(factors), _) if factors.len() == 1 => self.bracketed(&self.list(factors, "")),
             (Kind::Product(factors), _) => self.product(factors, followed),
             (Kind::Quotient(pair), _) => {
                 // A `/` divides the whole product before it.
@@ -136,9 +143,7 @@ impl Printer {
                 format!("{dividend}/{}", self.part(&pair.1, Hold::Prefix))
             }
             (Kind::Tight(tight, operands), _) => self.tight(*tight, operands),
-            (Kind::Reverse(x) | Kind::Function(Named::Reverse, x), _) => {
-                format!("~{}", self.part(x, Hold::Prefix))
-            }
+            (Kind::Reverse(x), _) => format!("~{}", self.part(x, Hold::Prefix)),
             (Kind::Power(x, n), _) => self.power(x, *n),
             (Kind::Part(x, grades), _) => {
                 let (open, close) = if self.is_ascii() { ('<', '>') } else { ('⟨', '⟩') };
@@ -166,9 +171,12 @@ impl Printer {
     fn product(self, factors: &[Node], followed: bool) -> String {
         let mut text = String::new();
         for (i, factor) in factors.iter().enumerate() {
-            let followed = followed || i + 1 < factors.len();
+            let last = i + 1 == factors.len();
             let next = match factor.kind {
-                Kind::Total(..) if !followed => self.bare(factor, false),
+                Kind::Total(..) if last && !followed => self.bare(factor, false),
+                _ if !last && self.hold(factor) == Hold::Tight && grades::is_loose(factor) => {
+                    self.bracketed(&self.bare(factor, false))
+                }
                 _ if i == 0 && self.is_fraction(factor) => self.bare(factor, true),
                 _ => self.part(factor, Hold::Tight),
             };
@@ -223,6 +231,7 @@ impl Printer {
                 self.bracketed(&self.number(x))
             }
             Kind::Name(name) if name == "e" => "(e)".to_owned(),
+            Kind::Function(Named::Reverse, _) => self.bare(base, false),
             _ => self.part(base, Hold::Primary),
         };
         let exponent = n.to_string();

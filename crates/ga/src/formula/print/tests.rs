@@ -90,5 +90,5 @@ fn functions_keep_their_brackets_and_products_their_space() {
     check(product([x("I"), plus(x("a"), x("b"))]), "I * (a + b)", "I * (a + b)");
     check(product([call("c", []), plus(x("a"), x("b"))]), "c (a + b)", "c (a + b)");
     check(function(Named::Norm, x("a")), "norm(a)", "norm(a)");
-    check(function(Named::Reverse, plus(x("a"), x("b"))), "~(a + b)", "~(a + b)");
+    check(function(Named::Reverse, plus(x("a"), x("b"))), "(a + b)~", "(a + b)~");
 }

@@ -15,6 +15,12 @@ pub(crate) fn indexed(name: &str) -> Option<(&str, &str)> {
     (some && !base.is_empty()).then_some((base, indices))
 }
 
+/// The name of the first value of a name with indices: `ω1` for `ω_k`.
+pub(crate) fn first_of(name: &str) -> Option<String> {
+    let (base, indices) = indexed(name)?;
+    Some(format!("{base}{}{}", "1".repeat(indices.len()), &name[base.len() + 1 + indices.len()..]))
+}
+
 /// Whether a name with indices is built in: `e_k`, `δ_ij`, `ε_ijk`.
 pub(crate) fn is_built_in(name: &str) -> bool {
     let constant =

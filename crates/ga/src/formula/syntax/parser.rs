@@ -7,12 +7,13 @@ mod ambiguity;
 mod exponent;
 mod operand;
 
+use super::grades;
 use super::indices::sum_repeated;
 use super::names::Names;
 use super::number::{FRACTIONS, Number};
 use super::reading::read;
 use super::token::{Item, Token, tokens};
-use super::tree::{Kind, Node, Span, Tight, Tree, is_numeric};
+use super::tree::{Kind, Named, Node, Span, Tight, Tree, is_numeric};
 use crate::formula::{Error, MAX_DEPTH, Space};
 
 /// Levels of a tree. A bracket makes at most four (sum, product, quotient, tight product).
@@ -157,6 +158,7 @@ impl Parser<'_> {
         let mut factors = vec![self.tight()?];
         loop {
             if self.eat(&Item::Star) {
+                factors = self.before_another(factors)?;
                 factors.push(self.tight()?);
             } else if self.eat(&Item::Slash) {
                 let divisor_start = self.span();
@@ -170,11 +172,24 @@ impl Parser<'_> {
                 factors = vec![self.build(kind, self.since(start))?];
             } else if self.begins_operand() {
                 self.check_juxtaposition(&factors)?;
+                factors = self.before_another(factors)?;
                 factors.push(self.tight()?);
             } else {
                 return self.joined(factors, start);
             }
         }
+    }
+
+    /// Keeps the brackets of `(x∧m) v` with a number m, without which it is ambiguous.
+    fn before_another(&self, mut factors: Vec<Node>) -> Result<Vec<Node>, Error> {
+        let keeps = |factor: &mut Node| match &factor.kind {
+            Kind::Tight(_, operands) => self.ends_in_number(operands) && !grades::is_loose(factor),
+            _ => false,
+        };
+        if let Some(last) = factors.pop_if(keeps) {
+            factors.push(self.in_brackets(last)?);
+        }
+        Ok(factors)
     }
 
     fn joined(&self, factors: Vec<Node>, start: Span) -> Parsed {
@@ -221,7 +236,12 @@ impl Parser<'_> {
             self.at += 1;
             let begin = self.span();
             self.prefix()?;
-            return Err(self.ambiguous(tight, other, &spans, self.since(begin)));
+            return Err(self.ambiguous(tight, &other.symbol().to_string(), &spans, self.since(begin)));
+        }
+        if self.begins_operand() && self.ends_in_number(&operands) {
+            let begin = self.span();
+            self.prefix()?;
+            return Err(self.ambiguous(tight, " ", &spans, self.since(begin)));
         }
         self.build(Kind::Tight(tight, operands), self.since(start))
     }
@@ -254,18 +274,27 @@ impl Parser<'_> {
                 powered = true;
                 Kind::Power(Box::new(operand), n)
             } else if self.eat(&Item::Dagger) || self.eat_tilde_behind() {
-                Kind::Reverse(Box::new(operand))
+                self.reversed(operand)
             } else if self.is(&Item::Prime) {
                 if matches!(self.items[self.at - 1].item, Item::Number(_)) {
                     let message = "a prime means a derivative, not minutes of arc or feet";
                     return Err(Error::new(self.span(), message));
                 }
                 self.at += 1;
-                Kind::Derivative(Box::new(operand))
+                Kind::Derivative(Box::new(operand.without_brackets()))
             } else {
                 return Ok(operand);
             };
             operand = self.build(kind, self.since(start))?;
+        }
+    }
+
+    /// `A~`: of an open name of several letters the sign stays behind it, for as letters `ab~` is `a ~b`.
+    fn reversed(&self, operand: Node) -> Kind {
+        match operand.kind {
+            Kind::Function(Named::Reverse, x) => x.kind,
+            _ if self.runs_together(&operand) => Kind::Function(Named::Reverse, Box::new(operand)),
+            _ => Kind::Reverse(Box::new(operand)),
         }
     }
 

@@ -1,9 +1,9 @@
 //! Reader of words: one name, a function, or adjacent letters, depending on the names that are bound.
 
-use super::indices::{INDICES, indexed, is_built_in};
+use super::indices::{INDICES, first_of, is_built_in};
 use super::letters::look_alike;
 use super::names::{Meaning, Names};
-use super::token::{Atom, Item, Token, joined, labelled};
+use super::token::{Atom, Item, Token, joined, labelled, tokens};
 use super::tree::{Named, Span, Tight};
 use crate::diagnostic::{nearest, quote};
 use crate::formula::{Error, Space};
@@ -81,7 +81,7 @@ impl Reader<'_> {
             let letters_alone = || atoms.iter().all(|atom| self.built_in_atom(&atom.name).is_some());
             Some(Ok(match item {
                 Some(item) => item,
-                None if !self.names.is_open() || letters_alone() => return None,
+                None if !self.names.is_open() || letters_alone() || merges(&name, atoms) => return None,
                 None if open.is_some_and(|open| !open.space) => Item::Callable(name, usize::MAX),
                 None => Item::Name(name),
             }))
@@ -172,9 +172,7 @@ impl Reader<'_> {
 
     /// Whether an unbound name stands for several, one for each value of its indices.
     fn is_indexed(&self, name: &str) -> bool {
-        let Some((base, indices)) = indexed(name) else { return false };
-        let first = format!("{base}{}{}", "1".repeat(indices.len()), &name[base.len() + 1 + indices.len()..]);
-        is_built_in(name) || self.names.get(&first).is_some()
+        is_built_in(name) || first_of(name).is_some_and(|first| self.names.get(&first).is_some())
     }
 
     /// Why these generators are not a basis element.
@@ -230,6 +228,12 @@ impl Reader<'_> {
         }
         Error::new(token.span, message)
     }
+}
+
+/// Whether letters written together are fewer in the canonical spelling: `ωₖe` is not `ω_ke`.
+fn merges(name: &str, atoms: &[Atom]) -> bool {
+    let same = |token: &Token| matches!(&token.item, Item::Word(again) if again.len() == atoms.len());
+    !tokens(name).is_ok_and(|tokens| tokens.first().is_some_and(same))
 }
 
 /// What to write for a word with a letter of another script that looks like a Latin one.

@@ -86,6 +86,14 @@ impl Node {
         self.height
     }
 
+    /// The node without brackets that are kept as a product of one factor.
+    pub(crate) fn without_brackets(self) -> Node {
+        match self.kind {
+            Kind::Product(mut factors) if factors.len() == 1 => factors.remove(0),
+            kind => Node { kind, ..self },
+        }
+    }
+
     /// Calls a function with the node and all its descendants.
     pub(crate) fn visit<'n>(&'n self, f: &mut impl FnMut(&'n Node)) {
         f(self);
@@ -120,7 +128,7 @@ pub enum Kind {
     Name(String),
     /// `a + b − c`, or `−a` alone: for each term, whether it is subtracted.
     Sum(Vec<(bool, Node)>),
-    /// The geometric product of two or more factors.
+    /// The geometric product of two or more factors; of one that needs its brackets, as `(ab)` of open names.
     Product(Vec<Node>),
     /// `A/B`, that is `A B⁻¹`.
     Quotient(Box<(Node, Node)>),
@@ -248,4 +256,12 @@ pub(crate) fn is_numeric(node: &Node) -> bool {
 /// The numbers of some grades.
 pub(crate) fn listed(grades: Grades) -> Vec<String> {
     (0..16).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect()
+}
+
+/// The operand of reverses and powers: in `(ab²)·c` the name of several letters.
+pub(crate) fn core(node: &Node) -> &Node {
+    match &node.kind {
+        Kind::Reverse(x) | Kind::Function(Named::Reverse, x) | Kind::Power(x, _) => core(x),
+        _ => node,
+    }
 }

@@ -40,6 +40,17 @@ fn ty(text: &str) -> Type {
     program.steps[program.results[0][0]].ty
 }
 
+#[test]
+fn brackets_round_a_product_that_ends_in_a_number_are_kept() {
+    let names = names();
+    for text in ["(x∧α) v", "(x∧2) v", "x∧α", "(x∧v²) a/2", "v x∧α", "α·β a"] {
+        assert_eq!(parse(text, Space::g3(), &names).unwrap().text(Style::Unicode), text);
+    }
+    let latex = |text| parse(text, Space::g3(), &names).unwrap().latex();
+    assert_eq!(latex("(x∧α) v"), "(x{\\wedge}\\alpha)\\,v");
+    assert_eq!(latex("(x∧2) v"), "(x \\wedge 2)\\,v");
+}
+
 /// Texts that are to be the same formula, step by step.
 fn same(texts: &[&str]) {
     let first = program(texts[0]);
@@ -66,6 +77,10 @@ fn wedge_and_dot_come_before_the_geometric_product() {
     same(&["a ⨯ b", "cross(a, b)", "dual(a∧b)"]);
     same(&["a·−b", "a·(−b)"]);
     same(&["θ/2 e1∧e2", "(θ/2) (e1∧e2)", "(θ/2)*(e1∧e2)"]);
+    same(&["2·3 a", "6 a"]);
+    same(&["α·β a", "(α·β) a"]);
+    same(&["x∧α*v", "(x∧α) v", "(x∧α)*v", "(wedge(x, α)) v"]);
+    same(&["v x∧α", "v (x∧α)"]);
     same(&["α/β/2 a", "((α/β)/2) a"]);
 }
 
@@ -220,9 +235,34 @@ fn names_may_be_open() {
     assert_eq!(inputs("inertia(Ω) e1e2 + aB"), ["Ω", "inertia", "aB"]);
     assert_eq!(inputs("Σ_k ω_k e_k"), ["ω1", "ω2", "ω3"]);
     assert_eq!(inputs("xₙΩ\u{307}"), ["x_n", "Ω\u{307}"]);
+    assert_eq!(inputs("ωₖΩ + Ωₛx"), ["ω_k", "Ω", "Ω_s", "x"]);
     for text in ["R(0) a", "V(x) + I(B)", "R'(t) = 2", "x_n Ω\u{307}"] {
         assert_eq!(parse(text, Space::g3(), &names).unwrap().text(Style::Unicode), text);
     }
+    // Letters may run together, so their brackets stay.
+    for text in [
+        "(Iω)·f",
+        "(ab)²",
+        "a/(bc)",
+        "~(ab) (Ωx)",
+        "(ab)'",
+        "−(ab)",
+        "RaR~",
+        "(ab~)²",
+        "(ab²)·c",
+        "~(ab~)",
+        "(a_B)²",
+    ] {
+        let shown = text.replace("(a_B)", "a_B");
+        assert_eq!(parse(text, Space::g3(), &names).unwrap().text(Style::Unicode), shown);
+    }
+    for (text, shown) in [("e^(-ab) c", "exp(−ab) c"), ("e^(ab)", "exp(ab)"), ("((ab)) c", "(ab) c")] {
+        assert_eq!(parse(text, Space::g3(), &names).unwrap().text(Style::Unicode), shown);
+    }
+    let latex = |text| parse(text, Space::g3(), &names).unwrap().latex();
+    assert_eq!(latex("RaR~ b"), "R a R^{\\sim}\\,b");
+    assert_eq!(latex("(Iω)·f"), "(I \\omega) \\cdot f");
+    assert_eq!(latex("(ab)² + exp((ab)/(cd))"), "(a b)^{2} + e^{\\frac{a b}{c d}}");
     assert!(compiled("cross(e1, a)").is_ok());
     assert!(compiled("cross(e1, e1e2)").is_err());
 }

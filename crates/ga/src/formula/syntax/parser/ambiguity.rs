@@ -2,6 +2,7 @@
 
 use super::Parser;
 use crate::formula::Error;
+use crate::formula::syntax::grades;
 use crate::formula::syntax::token::Item;
 use crate::formula::syntax::tree::{Kind, Node, Span, Tight};
 
@@ -70,14 +71,18 @@ impl Parser<'_> {
         ))
     }
 
-    /// The two readings of `a·b∧c`.
-    pub(super) fn ambiguous(&self, first: Tight, second: Tight, operands: &[Span], last: Span) -> Error {
+    /// Whether the last operand is a number and another is not, as in `x∧2`: in `x∧2 v` it seems to belong to v.
+    pub(super) fn ends_in_number(&self, operands: &[Node]) -> bool {
+        grades::ends_in_number(operands, self.names)
+    }
+
+    /// The two readings of `a·b∧c` or `a·2 c`, where the second sign is a space.
+    pub(super) fn ambiguous(&self, first: Tight, second: &str, operands: &[Span], last: Span) -> Error {
         let cut = |text: &str| {
             if text.chars().count() > 20 { "(…)".to_owned() } else { text.to_owned() }
         };
-        let sign = |tight: Tight| tight.symbol();
         let shown: Vec<String> = operands.iter().map(|&span| cut(self.slice(span))).collect();
-        let (f, s, c) = (sign(first), sign(second), cut(self.slice(last)));
+        let (f, s, c) = (first.symbol(), second, cut(self.slice(last)));
         let (before, b) = match &shown[..] {
             [before @ .., b] if before.len() <= 3 => (before.join(&f.to_string()), b.as_str()),
             _ => ("…".to_owned(), "…"),

@@ -86,7 +86,7 @@ impl Parser<'_> {
         if self.is(&Item::Tilde) {
             return self.prefix();
         }
-        let operand = self.primary()?;
+        let operand = self.primary()?.without_brackets();
         if matches!(self.peek(), Some(Item::Superscript(_) | Item::Caret)) {
             let message = "a power in an exponent needs brackets: `e^(A²)`";
             return Err(Error::new(self.since(start).to(self.span()), message));

@@ -4,8 +4,8 @@ use super::{Parsed, Parser};
 use crate::formula::Error;
 use crate::formula::syntax::indices::indices_in;
 use crate::formula::syntax::number::Number;
-use crate::formula::syntax::token::Item;
-use crate::formula::syntax::tree::{Kind, Named, Node, Span, Tight};
+use crate::formula::syntax::token::{Item, Token, tokens};
+use crate::formula::syntax::tree::{Kind, Named, Node, Span, Tight, core};
 use crate::product::Grades;
 
 impl Parser<'_> {
@@ -46,7 +46,10 @@ impl Parser<'_> {
             }
             Item::Euler => self.exponential(start),
             Item::Total(index) => self.total(start, index),
-            Item::Open(bracket) => self.enclosed(start, &Item::Close(bracket)),
+            Item::Open(bracket) => {
+                let inner = self.enclosed(start, &Item::Close(bracket))?;
+                if self.runs_together(&inner) { self.in_brackets(inner) } else { Ok(inner) }
+            }
             Item::OpenAngle => self.part(start),
             _ => {
                 self.at -= 1;
@@ -62,6 +65,20 @@ impl Parser<'_> {
             parser.close(open, close)?;
             Ok(inner)
         })
+    }
+
+    /// Whether it is a name of several letters, or a call, reverse or power of one: they may become factors once names have
+    /// values.
+    pub(super) fn runs_together(&self, node: &Node) -> bool {
+        let (Kind::Name(name) | Kind::Call(name, _)) = &core(node).kind else { return false };
+        let letters = |token: &Token| if let Item::Word(atoms) = &token.item { atoms.len() } else { 0 };
+        self.names.is_open() && tokens(name).is_ok_and(|tokens| tokens.iter().map(letters).sum::<usize>() > 1)
+    }
+
+    /// Keeps the brackets around a node, as a product of this factor alone.
+    pub(super) fn in_brackets(&self, node: Node) -> Parsed {
+        let span = node.span;
+        self.build(Kind::Product(vec![node]), span)
     }
 
     fn close(&mut self, open: Span, sign: &Item) -> Result<(), Error> {

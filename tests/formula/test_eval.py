@@ -243,6 +243,11 @@ MISTAKES = {
     "bracket too many": ("a + b)", "formula:1:6: error: `)` closes no bracket"),
     "wrong grade": ("cross(a∧b, b)", "formula:1:7: error: "),
     "ambiguous chain": ("a·b∧a", "ambiguous without brackets: `(a·b)∧a` or `a·(b∧a)`"),
+    "a number between": ("b∧2a", "ambiguous without brackets: `(b∧2) a` or `b∧(2 a)`"),
+    "a command of LaTeX": (
+        r"a \wedge b",
+        r"formula:1:3: error: `\wedge` has no meaning in a formula; write `∧`",
+    ),
     "a division": ("a/2b", "formula:1:1: error: ambiguous divisor; write"),
     "deep nesting": (
         "(" * 150 + "a" + ")" * 150,
@@ -278,6 +283,7 @@ WRONG_LETS = {
         "--let:1:3: error: an equation is not a value that a name can have",
     ),
     "unknown": ("x=2 q", "--let:1:5: error: `q` has no value"),
+    "components": ("x=1,2,3", "--let:1:4: error: commas are allowed only between arguments"),
     "later name": ("x=y", "--let:1:3: error: `y` has no value"),
     "unknown unit": ("x=5 degs", ". Did you mean the unit `deg`?"),
     "a unit in words": ("x=2 revolutions", ". Did you mean the unit `rev`?"),

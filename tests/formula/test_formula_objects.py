@@ -41,6 +41,9 @@ def test_spellings():
     assert f.ascii.isascii()
     assert f._repr_latex_() == f"${f.latex}$"
     assert r"\wedge" in f.latex
+    # Letters without values may be factors later.
+    for text in ("(Iω)·f", "(ab)²", "a/(bc)", "RaR~"):
+        assert str(ph.formula(text)) == text
 
 
 def test_trees_know_their_text_and_grades():

@@ -14,7 +14,7 @@ pub use languages::{Language, is_function_name};
 
 use super::Error;
 use super::compile::program::{Input, InputKind, Program};
-use super::print::plain_name;
+use super::syntax::commands::plain_name;
 use super::syntax::names::Type;
 use super::syntax::tree::{Span, listed};
 use crate::product::Grades;

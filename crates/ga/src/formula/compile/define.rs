@@ -3,7 +3,7 @@
 use crate::formula::syntax::letters::is_space;
 use crate::formula::syntax::names::{Definition, Meaning, Names, Type};
 use crate::formula::syntax::parser::parse;
-use crate::formula::syntax::token::{canonical, tokens};
+use crate::formula::syntax::token::{Item, Token, canonical, joined, tokens};
 use crate::formula::syntax::tree::{Kind, Node, Span};
 use crate::formula::{Error, Space};
 use crate::product::Grades;
@@ -21,7 +21,8 @@ pub fn define(head: &str, body: &str, space: Space, names: &mut Names) -> Result
     for (name, meaning) in parameters.iter().zip(hidden) {
         names.restore(name, meaning);
     }
-    let tree = tree?;
+    let tree =
+        tree.map_err(|error| if is_about(&error, body, &name) { recursive(&error, &name) } else { error })?;
     let whole = Span { start: 0, end: body.len() };
     let [body] = <[Node; 1]>::try_from(tree.sides).map_err(|_| {
         Error::new(whole, format!("`{head}` cannot be defined by an equation; write one side only"))
@@ -56,6 +57,22 @@ pub(crate) fn named(head: &str) -> Option<(String, Vec<String>)> {
     };
     let (name, parameters) = call.split_once('(')?;
     Some((canonical(name)?, parameters.split(',').map(canonical).collect::<Option<_>>()?))
+}
+
+/// Whether an error is that this name has no value.
+fn is_about(error: &Error, text: &str, name: &str) -> bool {
+    let word = text.get(error.span.start..error.span.end).and_then(|word| tokens(word).ok());
+    let holds = |token: &Token| match &token.item {
+        Item::Word(atoms) => {
+            joined(atoms).is_some_and(|word| word == name) || atoms.iter().any(|a| a.name == name)
+        }
+        _ => false,
+    };
+    error.message.contains("has no value") && word.is_some_and(|word| word.iter().any(holds))
+}
+
+fn recursive(error: &Error, name: &str) -> Error {
+    Error::new(error.span, format!("`{name}` has no value in its own definition; formulas have no recursion"))
 }
 
 /// Whether a body calls a function, itself or through others.

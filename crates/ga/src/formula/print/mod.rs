@@ -5,8 +5,6 @@
 
 mod latex;
 
-pub(crate) use latex::plain_name;
-
 use super::syntax::grades;
 use super::syntax::letters::raised;
 use super::syntax::number::{FRACTIONS, Number};

@@ -21,7 +21,7 @@ pub(crate) fn is_loose(node: &Node) -> bool {
 }
 
 /// The grades that a part may hold; `None` if they are not plain to see.
-fn grades(node: &Node, names: &Names) -> Option<Grades> {
+pub(crate) fn grades(node: &Node, names: &Names) -> Option<Grades> {
     let of = |node: &Node| grades(node, names);
     match &node.kind {
         Kind::Number(_) | Kind::Pi => Some(Grades::SCALAR),

@@ -1,5 +1,6 @@
 //! Syntax: from the text of a formula to its tree.
 
+pub(crate) mod commands;
 pub(crate) mod grades;
 pub(crate) mod indices;
 pub(crate) mod letters;

@@ -6,6 +6,7 @@
 mod ambiguity;
 mod exponent;
 mod operand;
+mod unexpected;
 
 use super::grades;
 use super::indices::sum_repeated;
@@ -84,31 +85,6 @@ impl Parser<'_> {
 
     fn slice(&self, span: Span) -> &str {
         self.text.get(span.start..span.end).unwrap_or_default()
-    }
-
-    fn unexpected(&self) -> Error {
-        let Some(read) = self.ahead(0) else {
-            return Error::new(
-                self.span(),
-                "the formula ends where a name, a number or an opening bracket is expected",
-            );
-        };
-        let text = self.slice(read.span);
-        let message = match &read.item {
-            Item::Close(_) | Item::CloseAngle if self.depth == 0 => {
-                format!("`{text}` closes no bracket")
-            }
-            Item::Tight(Tight::Dot) if text == "|" => {
-                "`|` is a dot product, `a|b`, and needs its left factor; a magnitude is `norm(a)`".to_owned()
-            }
-            Item::Comma => "commas are allowed only between arguments of a function".to_owned(),
-            Item::Underscore => "a subscript must directly follow a letter or `⟨…⟩`".to_owned(),
-            Item::Subscript(_) => "a subscript must directly follow a letter or `⟩`".to_owned(),
-            Item::Prime => "a prime must directly follow a letter or a bracket".to_owned(),
-            Item::Superscript(_) => "a power must follow its base; powers of powers need brackets".to_owned(),
-            _ => format!("expected a name, a number or an opening bracket, got `{text}`"),
-        };
-        Error::new(read.span, message)
     }
 
     fn build(&self, kind: Kind, span: Span) -> Parsed {

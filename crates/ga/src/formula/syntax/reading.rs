@@ -1,11 +1,11 @@
 //! Reader of words: one name, a function, or adjacent letters, depending on the names that are bound.
 
+mod unknown;
+
 use super::indices::{INDICES, first_of, is_built_in};
-use super::letters::look_alike;
 use super::names::{Meaning, Names};
 use super::token::{Atom, Item, Token, joined, labelled, tokens};
 use super::tree::{Named, Span, Tight};
-use crate::diagnostic::{nearest, quote};
 use crate::formula::{Error, Space};
 
 /// Replaces all words of a formula by their meanings.
@@ -47,7 +47,8 @@ impl Reader<'_> {
             return None;
         }
         let name = labelled(atoms, rest)?;
-        (unknown || self.names.get(&name).is_some()).then_some((name, rest[2].span))
+        let apart = matches!(&rest[1].item, Item::Word(label) if joined(label).is_some_and(|name| merges(&name, label)));
+        (unknown && !apart || self.names.get(&name).is_some()).then_some((name, rest[2].span))
     }
 
     fn word(
@@ -190,61 +191,12 @@ impl Reader<'_> {
             format!("is not a basis element; the basis vectors are e{first} to e{}", end.saturating_sub(1))
         })
     }
-
-    /// The error for a name without a value, which was also read letter by letter.
-    fn unknown(&self, token: &Token, atoms: &[Atom], called: bool, before: &[Token]) -> Error {
-        let word: String = atoms.iter().map(|atom| &atom.name[..]).collect();
-        let mut message = format!("{} has no value", quote(&word));
-        let missing: Vec<&str> =
-            atoms.iter().filter(|a| self.atom(a, false).is_none()).map(|a| &a.name[..]).collect();
-        if let Some(letter) = missing.iter().find_map(|name| name.chars().find(|&c| look_alike(c).is_some()))
-        {
-            return Error::new(token.span, message + &in_latin(letter, &word));
-        }
-        if called && word == "grade" {
-            return Error::new(token.span, message + "; write the part of grade 2 as `⟨A⟩_2` or `<A>_2`");
-        }
-        if atoms.len() > 1 {
-            let mut shown: Vec<&str> = missing.iter().take(5).copied().collect();
-            shown.dedup();
-            let (verb, list) = (if shown.len() == 1 { "has" } else { "have" }, shown.join(", "));
-            message += &format!(" as one name; read as adjacent letters, {list} {verb} none");
-        }
-        let functions = Named::ALL.iter().map(|f| f.name()).chain(Tight::ALL.iter().map(|t| t.name()));
-        let known: Vec<&str> = self.names.iter().collect();
-        if let Some(near) = nearest(&word, known.iter().copied().chain(functions)) {
-            message += &format!("; did you mean `{near}`?");
-        } else if known.is_empty() {
-            message += "; no names have values here";
-        } else {
-            let more = if known.len() > 8 { ", …" } else { "" };
-            message += &format!("; names with values: {}{more}", known[..known.len().min(8)].join(", "));
-        }
-        let after_factor = before.last().is_some_and(|last| {
-            matches!(last.item, Item::Name(_) | Item::Blade(_) | Item::Pseudoscalar | Item::Close(_))
-        });
-        if word == "x" && token.space && after_factor {
-            message += ". Write the cross product as `a ⨯ b` or `cross(a, b)`";
-        }
-        Error::new(token.span, message)
-    }
 }
 
 /// Whether letters written together are fewer in the canonical spelling: `ωₖe` is not `ω_ke`.
 fn merges(name: &str, atoms: &[Atom]) -> bool {
     let same = |token: &Token| matches!(&token.item, Item::Word(again) if again.len() == atoms.len());
     !tokens(name).is_ok_and(|tokens| tokens.first().is_some_and(same))
-}
-
-/// What to write for a word with a letter of another script that looks like a Latin one.
-fn in_latin(letter: char, word: &str) -> String {
-    let script = if ('\u{370}'..='\u{3ff}').contains(&letter) { "Greek" } else { "Cyrillic" };
-    let latin = |c| look_alike(c).unwrap_or(c);
-    let (like, written) = (latin(letter), quote(&word.chars().map(latin).collect::<String>()));
-    let code = letter as u32;
-    format!(
-        "; `{letter}` is the {script} letter U+{code:04X}, not the Latin `{like}`: write {written} in Latin letters"
-    )
 }
 
 /// `Σ_k` after this spelling of the sign.

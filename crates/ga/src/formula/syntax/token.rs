@@ -1,5 +1,7 @@
 //! Lexer: cuts text into numbers, words and signs.
 
+mod foreign;
+
 use super::letters::{
     TILDE, below_tilde, composed, folded, is_letter, is_mark, is_space, part_sign, primes, subscript,
     superscript,
@@ -8,6 +10,7 @@ use super::number::{Number, fraction};
 use super::tree::{Named, Span, Tight};
 use crate::diagnostic::quote;
 use crate::formula::{Error, MAX_NODES};
+use foreign::foreign;
 use std::str::Chars;
 
 /// A letter with its marks, subscripts and primes.
@@ -260,7 +263,7 @@ impl Lexer<'_> {
         }
         let piece = if underscore {
             let in_braces = self.eat(|c| c == '{');
-            let piece = self.run(|c| Some(c).filter(|&c| c.is_ascii_digit() || is_letter(c)));
+            let piece = self.lowered(in_braces);
             if piece.is_empty() || in_braces && !self.eat(|c| c == '}') {
                 let message = "a subscript must be letters and digits, such as `Ω_B` or `e_12`";
                 return Err(Error::new(self.since(start), message));
@@ -272,11 +275,33 @@ impl Lexer<'_> {
         if piece.is_empty() {
             return Ok(false);
         }
-        if !(below.is_empty() && piece.bytes().all(|b| b.is_ascii_digit())) {
+        if !below.is_empty() || !piece.starts_with(|c: char| c.is_ascii_digit()) {
             below.push('_');
         }
         below.push_str(&piece);
         Ok(true)
+    }
+
+    /// A subscript after `_`: letters with their marks, and digits. Without braces, one that begins with a digit has no
+    /// letters: `e_1e_2` is two names.
+    fn lowered(&mut self, in_braces: bool) -> String {
+        let mut piece = self.run(digit);
+        if !in_braces && !piece.is_empty() {
+            return piece;
+        }
+        loop {
+            let last = piece.chars().last().filter(|&c| !c.is_ascii_digit());
+            let mark = last.and_then(|_| self.take(|c| Some(c).filter(|&c| is_mark(c) && c != TILDE)));
+            let both = last.zip(mark).and_then(|(letter, mark)| composed(letter, mark));
+            if both.is_some() {
+                piece.pop();
+            }
+            let next = both
+                .or(mark)
+                .or_else(|| self.take(|c| Some(c).filter(|&c| digit(c).is_some() || is_letter(c))));
+            let Some(c) = next else { return piece };
+            piece.push(c);
+        }
     }
 
     fn sign(&mut self, c: char) -> Result<Item, Error> {
@@ -306,7 +331,10 @@ impl Lexer<'_> {
             '<' | '⟨' | '〈' => Item::OpenAngle,
             '>' | '⟩' | '〉' => Item::CloseAngle,
             _ if primes(c).is_some() => Item::Prime,
-            _ => return Err(Error::new(self.since(start), no_meaning(c))),
+            _ => {
+                let (length, message) = foreign(&self.text[start..]);
+                return Err(Error::new(Span { start, end: start + length }, message));
+            }
         };
         if sign == Item::Equals {
             self.eat(|c| c == '=');
@@ -316,33 +344,6 @@ impl Lexer<'_> {
         }
         Ok(sign)
     }
-}
-
-/// The error for a character outside the language.
-fn no_meaning(c: char) -> String {
-    let remedy = match c {
-        '\\' | '$' => "; write plain text, `θ/2 e1∧e2`, not LaTeX",
-        '.' => "; write a product as `a b`, `a·b` or `a∧b`",
-        '"' | '`' => "; write names without quotes",
-        '∨' | '&' => "; join and meet are methods in Python",
-        '‖' | '∥' => "; write a magnitude as `norm(a)`",
-        '√' => "; write a square root as `sqrt(A)`",
-        '÷' | ':' => "; divide with `/`",
-        '↦' | '→' | '⇒' | ';' => "; write one formula or equation at a time",
-        '°' => "; angles are in radians: write 90 degrees as `90 π/180`",
-        '∫' => "; there are sums (Σ) but no integrals",
-        _ => "",
-    };
-    if is_invisible(c) {
-        return format!("the invisible character U+{:04X} has no meaning in a formula; remove it", c as u32);
-    }
-    format!("`{c}` has no meaning in a formula{remedy}")
-}
-
-/// Control characters, and those that join, divide and reorder text.
-fn is_invisible(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{ad}' | '\u{200c}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// The canonical spelling of a name, such as `Ω_B`, `a1` for `a_1` and `a₁`, or `R(0)`; `None` for anything else.
@@ -369,19 +370,10 @@ pub(crate) fn labelled(atoms: &[Atom], rest: &[Token]) -> Option<String> {
     brackets.then_some(format!("{}({label})", joined(atoms)?))
 }
 
-/// The canonical name of letters that form one name; `None` if one of them is reversed, or would lose its mark.
+/// The canonical name of letters that form one name; `None` if one of them is reversed.
 pub(crate) fn joined(atoms: &[Atom]) -> Option<String> {
-    let name: String = atoms.iter().map(|atom| atom.name.as_str()).collect();
-    (!atoms.iter().any(|atom| atom.reversed) && !marks_subscript(&name)).then_some(name)
-}
-
-/// Whether a mark follows letters of a subscript: that of `x_nΩ̇` stands above x, unlike that of `xₙΩ̇`.
-fn marks_subscript(name: &str) -> bool {
-    let mut below = false;
-    name.chars().any(|c| {
-        below = c == '_' || below && primes(c).is_none() && part_sign(c).is_none();
-        below && is_mark(c)
-    })
+    let reversed = atoms.iter().any(|atom| atom.reversed);
+    (!reversed).then(|| atoms.iter().map(|atom| atom.name.as_str()).collect())
 }
 
 #[cfg(test)]

@@ -84,7 +84,51 @@ fn errors_have_messages_and_places() {
         ("(S)'", "`S'` has no value; a derivative in this formula needs it", "S"),
         ("a $ b", "`$` has no meaning", "$"),
         ("sin(90°)", "write 90 degrees as `90 π/180`", "°"),
-        ("\\theta", "write plain text, `θ/2 e1∧e2`, not LaTeX", "\\"),
+        ("\\theta", "`\\theta` has no meaning in a formula; write `θ`", "\\theta"),
+        ("a \\wedge b", "write `∧` or `^`", "\\wedge"),
+        ("a\\cdot b", "write `·` or `|`", "\\cdot"),
+        ("a\\times b", "a cross product as `cross(a, b)`", "\\times"),
+        ("\\tilde R", "write a reverse as `~R`", "\\tilde"),
+        ("R^\\dagger", "write a reverse as `~R`", "\\dagger"),
+        ("\\frac12", "write a fraction as `½`", "\\frac"),
+        ("\\mathbf{a}", "write the name alone, `a`", "\\mathbf"),
+        ("\\left(a", "write the bracket alone", "\\left"),
+        ("\\phi", "write `φ`", "\\phi"),
+        ("a\\,b", "write a space", "\\,"),
+        ("\\hat n", "with its mark, `n\u{302}`", "\\hat"),
+        ("90^\\circ", "angles are in radians", "\\circ"),
+        ("\\foo", "write plain text, `θ/2 e1∧e2`, not LaTeX", "\\foo"),
+        ("\\", "write plain text, `θ/2 e1∧e2`, not LaTeX", "\\"),
+        ("theta a", "did you mean `θ`?", "theta"),
+        ("Omega_B", "did you mean `Ω_B`?", "Omega_B"),
+        ("Ṙ a", "did you mean `R'`?", "Ṙ"),
+        ("v̇", "did you mean `v'`?", "v̇"),
+        ("a:=b", "`:=` has no meaning in a formula; write `=`", ":="),
+        ("a:b", "divide with `/`", ":"),
+        ("R a R*", "write a reverse as `~R`, `R~` or `R†`", ""),
+        ("(R a R*)", "write a reverse as", ")"),
+        ("R a R^*", "write a reverse as", "*"),
+        ("R^†", "write a reverse as", "†"),
+        ("R^~ + b", "write a reverse as", "+"),
+        ("aΛb", "write a wedge as `∧` or `^`", "aΛb"),
+        ("a⋏b", "write a wedge as `∧` or `^`", "⋏"),
+        ("a — b", "write a minus as", "—"),
+        ("a ＋ b", "it is the full-width U+FF0B: write `+`", "＋"),
+        ("a ≠ b", "there are no other comparisons", "≠"),
+        ("a ≈ b", "write an equation with `=`", "≈"),
+        ("∞", "numbers are finite", "∞"),
+        ("∇v", "the gradient of a formula", "∇"),
+        ("∂v", "derivatives are primes", "∂"),
+        ("abs(a)", "write a magnitude as `norm(a)`", "abs"),
+        ("det(F)", "the determinant of a linear map F as `F(I)/I`", "det"),
+        ("(1,2,3)", "write a vector as `1 e1 + 2 e2 + 3 e3`", ","),
+        ("1,2,3", "write a vector as `1 e1 + 2 e2 + 3 e3`", ","),
+        ("attitudea", "`attitudea` has no value; write `attitude a`", "attitudea"),
+        ("Bcross(a, b)", "write `B cross(…)`", "Bcross"),
+        ("Attitude", "`Attitude` has no value; did you mean `attitude`?", "Attitude"),
+        ("qpi", "read as adjacent letters", "qpi"),
+        ("api", "write `a pi`", "api"),
+        ("Ω_Be_1", "write `Ω_B e_1`", "Ω_Be_1"),
         ("a_", "a subscript must be letters and digits", "_"),
         ("1e+999", "beyond the range", "1e+999"),
         ("1e400", "`e400` is not a basis element, and as a power of ten beyond the range", "e400"),
@@ -104,6 +148,39 @@ fn errors_have_messages_and_places() {
         assert!(found.contains(message), "{text}: {found}");
         assert_eq!(at, place, "{text}: {found}");
     }
+}
+
+/// Where I is the inertia, `I (B)` on paper is nonetheless the pseudoscalar times B.
+#[test]
+fn the_pseudoscalar_and_the_inertia_are_told_apart() {
+    let mut names = names();
+    names.bind("I".to_owned(), Meaning::Map { grade: 2 });
+    let message = |text: &str| {
+        let read = parse(text, Space::g3(), &names).and_then(|tree| compile(&tree, Space::g3(), &names));
+        read.err().map(|error| error.message)
+    };
+    let ambiguous =
+        "ambiguous with a space; write `I(a∧b)` for the value of `I`, `I*(a∧b)` with the pseudoscalar";
+    assert_eq!(message("2 I (a∧b)").as_deref(), Some(ambiguous));
+    assert!(message("I (M)").is_some_and(|message| message.contains("`I*(M)`")));
+    for text in ["I(a∧b)", "I*(a∧b)", "I a∧b", "I B"] {
+        assert_eq!(message(text), None, "{text}");
+    }
+    // Only one reading is possible.
+    assert!(message("I (a)").is_some_and(|message| message.contains("needs a bivector")));
+}
+
+#[test]
+fn a_definition_cannot_use_itself() {
+    let mut names = names();
+    for (head, body, place) in
+        [("V(y)", "y V(y − 1)", "V"), ("W(y)", "aW(y)", "aW"), ("fac(y)", "2 fac(y)", "fac")]
+    {
+        let error = define(head, body, Space::g3(), &mut names).unwrap_err();
+        assert!(error.message.contains("in its own definition; formulas have no recursion"), "{error}");
+        assert_eq!(&body[error.span.start..error.span.end], place);
+    }
+    assert!(define("V(y)", "q y", Space::g3(), &mut names).unwrap_err().message.contains("`q` has no value"));
 }
 
 /// Formulas that are too long or too deep are refused quickly, at the place where they become so.

@@ -19,7 +19,7 @@ pub(super) fn names() -> Names {
     ] {
         meanings.extend(names.split(' ').map(|name| (name.to_owned(), value(grades))));
     }
-    for name in ["R", "S", "R(0)", "attitude"] {
+    for name in ["R", "R0", "S", "R(0)", "attitude"] {
         meanings.push((name.to_owned(), Meaning::Value(Type::ROTOR)));
     }
     meanings.push(("inertia".to_owned(), Meaning::Map { grade: 2 }));
@@ -90,6 +90,9 @@ fn letters_run_together() {
     same(&["RaR̃", "R a ~R", "R a R~", "R a R†", "R a reverse(R)"]);
     same(&["½Ω_B R", "½ Ω_B R", "(1/2) Ω_B R"]);
     same(&["e1e2e3", "e1 e2 e3", "e123", "I", "e₁₂₃"]);
+    same(&["e_1e_2e_3", "e_{1}e_2 e_3", "I"]);
+    same(&["ω_3R", "ω3 R"]);
+    same(&["R_0e^{-Bθ/2}", "R0 exp(−B θ/2)"]);
     same(&["e21", "-e12"]);
     same(&["βI", "β I"]);
     same(&["attitude a", "attitude*a"]);
@@ -159,6 +162,7 @@ fn grades_are_inferred() {
     assert_eq!(grades("F(1 + a + B + I)"), 0b1111);
     assert_eq!(grades("cos(θ) − B sin(θ)"), 0b0101);
     assert_eq!(grades("log(R)"), 0b0100);
+    assert_eq!(grades("F(I)/I"), 0b0001);
     assert_eq!(grades("e1∧e2∧e3∧a"), 0b0001); // vanishes
 }
 

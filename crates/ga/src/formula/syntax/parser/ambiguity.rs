@@ -3,6 +3,7 @@
 use super::Parser;
 use crate::formula::Error;
 use crate::formula::syntax::grades;
+use crate::formula::syntax::names::Meaning;
 use crate::formula::syntax::token::Item;
 use crate::formula::syntax::tree::{Kind, Node, Span, Tight};
 
@@ -69,6 +70,21 @@ impl Parser<'_> {
                  `{name} {x} ~{name}` for {x} turned by a rotor, or give `{name}({x})` itself a value"
             ),
         ))
+    }
+
+    /// Fails for `I (B)` where I is a map or a function: on paper it is the pseudoscalar times B.
+    pub(super) fn check_pseudoscalar(&self, start: Span, arguments: &[Node]) -> Result<(), Error> {
+        let [argument] = arguments else { return Ok(()) };
+        let of_bivectors = matches!(self.names.get("I"), Some(Meaning::Map { grade: 2 }));
+        if of_bivectors && grades::grades(argument, self.names).is_some_and(|g| !g.contains(2)) {
+            return Ok(());
+        }
+        let x = self.slice(argument.span);
+        let x = if x.chars().count() > 20 { "…" } else { x };
+        let message = format!(
+            "ambiguous with a space; write `I({x})` for the value of `I`, `I*({x})` with the pseudoscalar"
+        );
+        Err(Error::new(self.since(start), message))
     }
 
     /// Whether the last operand is a number and another is not, as in `x∧2`: in `x∧2 v` it seems to belong to v.

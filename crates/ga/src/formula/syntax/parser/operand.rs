@@ -20,10 +20,14 @@ impl Parser<'_> {
             Item::Pseudoscalar => self.build(Kind::Pseudoscalar, start),
             Item::Name(name) => self.build(Kind::Name(name), start),
             Item::Callable(name, count) => {
+                let apart = self.ahead(0).is_some_and(|open| open.space);
                 let arguments = match count {
                     0 => Vec::new(),
                     _ => self.arguments(start, &name, count)?,
                 };
+                if apart && name == "I" {
+                    self.check_pseudoscalar(start, &arguments)?;
+                }
                 self.build(Kind::Call(name, arguments), self.since(start))
             }
             Item::Function(function) => {

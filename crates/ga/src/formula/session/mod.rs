@@ -16,6 +16,7 @@ use super::{
     Tree, Type, compile, define, parse,
 };
 use crate::graded::Graded;
+use crate::product::Grades;
 use std::collections::BTreeMap;
 
 /// The outcome of a line; empty for an empty line.
@@ -184,7 +185,7 @@ impl Session {
 /// The meaning of a name whose line is invalid; it is never evaluated.
 fn placeholder(parameters: Vec<String>) -> Meaning {
     match parameters.is_empty() {
-        true => Meaning::Value(Type::SCALAR),
+        true => Meaning::Value(Type::of(Grades::ALL)),
         false => Meaning::Function(Definition { parameters, body: Node::new(Kind::Pi, Span::default()) }),
     }
 }

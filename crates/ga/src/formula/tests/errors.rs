@@ -171,6 +171,16 @@ fn the_pseudoscalar_and_the_inertia_are_told_apart() {
 }
 
 #[test]
+fn a_name_whose_line_is_invalid_is_not_a_number() {
+    let units = session::Units { quantities: |_, _| Ok(Vec::new()), near: |_| None };
+    let mut session = session::Session::new(units);
+    let mut message = |number, line: &str| session.run(number, line).err().map(|(_, error)| error.message);
+    assert!(message(1, "a = e1 +").is_some());
+    assert_eq!(message(2, "x = e1"), None);
+    assert_eq!(message(3, "x∧a x").as_deref(), Some("`a` has no value, because line 1 has an error"));
+}
+
+#[test]
 fn a_definition_cannot_use_itself() {
     let mut names = names();
     for (head, body, place) in

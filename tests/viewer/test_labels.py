@@ -10,6 +10,15 @@ from viewer_page import VIEWER
 # Everything at once, which crowds the labels.
 ALL = {"shown": {"axial": True, "omega": True, "momentum": True, "poinsot": True, "herpolhode": True}}
 PLATES = f"{VIEWER}.shadowRoot.querySelector('.stage canvas[data-plates]').dataset.plates"
+# The boxes of the legend's entries in the picture.
+LEGEND = f"""() => {{
+    const root = {VIEWER}.shadowRoot;
+    const stage = root.querySelector(".stage").getBoundingClientRect();
+    return [...root.querySelectorAll(".key .entry")].map((entry) => {{
+        const {{ left, top, right, bottom }} = entry.getBoundingClientRect();
+        return [left - stage.left, top - stage.top, right - stage.left, bottom - stage.top];
+    }});
+}}"""
 # Plates of successive frames of a motion that plays slowly, whatever the time that a frame takes here.
 PLAY = f"""async ([count, step]) => {{
     const model = await {VIEWER}.ready;
@@ -58,6 +67,25 @@ def test_plates_do_not_overlap(name, width, opened):
         assert len(found) >= 5
         assert overlaps(found) == 0
         assert all(box.min() >= 0 for box in found.values())
+
+
+@pytest.mark.parametrize(
+    ("size", "compact"), [((736, 544), True), ((1280, 800), False), ((390, 844), False)], ids=str
+)
+def test_labels_keep_clear_of_the_legend(size, compact, opened):
+    """At its start the T-handle has L at the bottom of its picture, where the legend is."""
+    page = opened("t-handle", viewport=dict(zip(("width", "height"), size, strict=True)))
+    page.page.evaluate(f"compact => {VIEWER}.toggleAttribute('compact', compact)", compact)
+    toggle = page.page.locator("#legend-toggle")
+    if toggle.get_attribute("aria-expanded") == "false":
+        toggle.click()
+    page.drawn()
+    entries = page.page.evaluate(LEGEND)
+    assert len(entries) == 7
+    found = plates(page.page.evaluate(PLATES))
+    assert len(found) >= 6
+    for entry in entries:
+        assert [name for name, box in found.items() if overlaps({"": np.array(entry), name: box})] == []
 
 
 def test_labels_do_not_jump_while_the_motion_plays(opened):

@@ -3,7 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import type { Shown } from "../document.ts";
 import { idOf } from "../glossary/glossary.ts";
 import { Icon } from "../inputs/button.tsx";
-import type { Model } from "../model/model.ts";
+import type { Covered, Model } from "../model/model.ts";
 import { firstRow } from "../model/speed.ts";
 import { hasEnergyView } from "../stage/energy.ts";
 import { actingOn, largestTorque } from "../stage/figure.ts";
@@ -27,7 +27,11 @@ export function Legend({ model }: { model: Model }) {
   useEffect(() => {
     const width = place.current!.parentElement!.clientWidth;
     open.value ??= width >= ROOM.width && place.current!.closest(".seen")!.clientHeight >= ROOM.height;
-    return () => point(null);
+    const leave = cover(place.current!, (covered) => (model.covered.value = covered));
+    return () => {
+      leave();
+      point(null);
+    };
   }, []);
   const entries = useComputed(() => {
     const motion = model.motion.value;
@@ -80,4 +84,18 @@ export function Legend({ model }: { model: Model }) {
         ))}
     </div>
   );
+}
+
+/** Reports the size of the legend, up to the lower left corner of the picture, whenever it changes; null at the end. */
+function cover(legend: HTMLElement, report: (covered: Covered | null) => void): () => void {
+  const picture = legend.closest(".seen")!;
+  const observer = new ResizeObserver(() => {
+    const [own, whole] = [legend.getBoundingClientRect(), picture.getBoundingClientRect()];
+    report({ width: own.right - whole.left, height: whole.bottom - own.top });
+  });
+  observer.observe(legend);
+  return () => {
+    observer.disconnect();
+    report(null);
+  };
 }

@@ -41,6 +41,12 @@ export type CurveName = "polhode" | "herpolhode" | "trace" | "separatrix" | "nei
 /** What the pointer is on: a layer in the legend, which is emphasized, or a curve in a picture, which is marked in all. */
 type Pointed = { layer: keyof Shown; curve?: never } | { curve: CurveName; layer?: never };
 
+/** The size of what lies over the lower left corner of the picture, in CSS pixels. */
+export interface Covered {
+  width: number;
+  height: number;
+}
+
 /** The name of a scene, and the files that it refers to. */
 interface Opened {
   name: string;
@@ -88,6 +94,8 @@ export class Model {
   /** Whether the tip of Ω is marked, in the picture in space and on the energy ellipsoid. */
   readonly marked = signal(false);
   readonly pointed = signal<Pointed | null>(null);
+  /** The size of the legend; labels keep clear of it. */
+  readonly covered = signal<Covered | null>(null);
   /** The name of the built-in scene that is open; null for others. */
   readonly preset = signal<string | null>(null);
   /** Caption of the picture. */

@@ -52,13 +52,15 @@ interface Piece {
   y: number;
 }
 
-/** The layer of labels over the canvas: each on a plate, none over another. Those without room are hidden. */
+/** The layer of labels over the canvas: each on a plate, none over another or under the legend. Those without room are hidden. */
 export class Labels {
   readonly element = document.createElement("canvas");
   /** Colours of letters are readable on this one's background, which is also that of plates. */
   palette = LIGHT;
   /** Whether labels go to other places at once: for readers who prefer reduced motion. */
   calm = false;
+  /** A part of the canvas without labels, in CSS pixels: the legend covers it. */
+  covered: Box2 | null = null;
   /** Whether labels are still on their way to their places. */
   gliding = false;
   private readonly context = this.element.getContext("2d")!;
@@ -171,9 +173,10 @@ export class Labels {
     return { pieces, width };
   }
 
-  /** The plate of a label, in the picture and beside those that are taken; null without room. */
+  /** The plate of a label in the picture, clear of the other plates and the legend; null without room. */
   private free(label: Label, point: Point, best: Box2, size: Vector2): Box2 | null {
     const taken = this.placed.map(({ box }) => box);
+    if (this.covered) taken.push(this.covered);
     const room = (box: Box2, margin = 0): boolean => {
       const { min, max } = box;
       if (min.x < 0 || max.x > size.x || min.y < 0 || max.y > size.y) return false;

@@ -1,10 +1,10 @@
 import type { ReadonlySignal } from "@preact/signals";
-import { Group, Vector2, Vector3 } from "three";
+import { Box2, Group, Vector2, Vector3 } from "three";
 import { type About, State } from "../core/core.ts";
 import type { Motion } from "../core/wasm.ts";
 import type { CameraName, Pose, Shown } from "../document.ts";
 import { namedAxes } from "./axes.ts";
-import type { Model } from "../model/model.ts";
+import type { Covered, Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { acting } from "./acting.ts";
 import { body } from "./body.ts";
@@ -88,13 +88,14 @@ export class Stage extends Viewport {
       if (turn && turn !== turned) this.viewpoint.turn(turn);
       turned = turn;
       void tools?.changed.value;
-      const { motion, row, shown, marked, pointed, bodiesKnown, camera, pose, playing } = model;
+      const { motion, row, shown, marked, pointed, covered, bodiesKnown, camera, pose, playing } = model;
       for (const watched of [
         motion,
         row,
         shown,
         marked,
         pointed,
+        covered,
         bodiesKnown,
         camera,
         pose,
@@ -184,6 +185,7 @@ export class Stage extends Viewport {
       const description = this.description(shown);
       if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
+    this.labels.covered = this.whole ? null : corner(model.covered.peek(), this.screen.value);
     const time = model.time.peek();
     const steady = !this.whole && (model.playing.peek() || time === this.shownAt);
     this.shownAt = time;
@@ -311,6 +313,13 @@ export class Stage extends Viewport {
     const bodies = about?.ensemble ? ` One of ${about.ensemble} bodies.` : "";
     return `${about?.title ?? "A rigid body in motion"}.${bodies} Drawn: ${drawn.join(", ") || "nothing"}. The keys I, J, K and L turn the view, + and − zoom, F fits it.`;
   }
+}
+
+/** The box of a size at the lower left of a picture. */
+function corner(covered: Covered | null, picture: Vector2): Box2 | null {
+  return (
+    covered && new Box2(new Vector2(0, picture.y - covered.height), new Vector2(covered.width, picture.y))
+  );
 }
 
 /** The axes of the body in words. */

@@ -106,6 +106,14 @@ def test_formulas_stay_whole_in_wrapped_texts():
     assert " ".join(lines).count(r"$\Omega_B = \Sigma\,\omega_k\,I e_k$") == 6
 
 
+def test_numbers_stay_with_their_units_in_wrapped_texts():
+    parts = ["$E$ = 0.1162 J", "about the axis, 15 kg m²/s", "moments 0.0001755, 0.0002354 kg m²", "in 18 s"]
+    whole = ["= 0.1162 J", "15 kg m²/s", "0.0002354 kg m²", "18 s"]
+    for width in np.linspace(1.0, 4.0, 25):
+        lines = wrapped(", ".join(parts * 4), width, 9.0).split("\n")
+        assert [sum(line.count(text) for line in lines) for text in whole] == [4] * 4, width
+
+
 def test_widths_in_several_units():
     assert width_of("85mm") == width_of("8.5 cm") == pytest.approx(3.3464567)
     assert width_of(None) is None

@@ -7,7 +7,7 @@ import numpy as np
 from polhode._algebra.constructors import e3
 from polhode._algebra.rotor import Rotor
 from polhode._figures.palette import BLACK, HERPOLHODE, MOMENTUM
-from polhode._figures.style import Axes, Figure, at_rest, drawing, dress, mark, scaled_unit
+from polhode._figures.style import Axes, Figure, at_rest, drawing, dress, halo, mark, scaled_unit
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.smooth import samples
 from polhode._mechanics.trajectory import Trajectory
@@ -42,7 +42,8 @@ def herpolhode_figure(figure: Figure, trajectory: Trajectory) -> str:
     axes.plot(omega[:, 0], omega[:, 1], color=HERPOLHODE, lw=0.7 if crowded else 1.4, zorder=3)
     mark(axes, omega[0, :2], HERPOLHODE)
     axes.plot(0, 0, "+", color=MOMENTUM, ms=10, mew=1.8, zorder=6)
-    axes.annotate("$L$", (0, 0), xytext=(6, 5), textcoords="offset points", color=MOMENTUM, zorder=6)
+    label = axes.annotate("$L$", (0, 0), xytext=(6, 5), textcoords="offset points", color=MOMENTUM, zorder=6)
+    label.set_path_effects([halo(3)])
     dress(axes)
     axes.set_aspect("equal")
     reach = 1.08 * largest if largest > 1e-9 * float(np.abs(omega).max()) else float(np.abs(omega).max())

@@ -57,7 +57,8 @@ def drift_figure(figure: Figure, trajectory: Trajectory) -> str:
         _put_legend_above(panels[0])
     for axes, (name, values) in zip(panels[bool(sizes) : -1], drifts.items(), strict=True):
         label, unit = QUANTITIES[name]
-        _draw_change(axes, t, values, f"{label}, {proof.conserved[name]:.6g} {unit} at the start", ORANGE)
+        start = f"{proof.conserved[name]:.6g}".replace("-", "\N{MINUS SIGN}")
+        _draw_change(axes, t, values, f"{label}, {start} {unit} at the start", ORANGE)
     _draw_change(
         panels[-1], t, np.asarray(trajectory.rotor.norm()) - 1, "norm of the rotor, $|R| - 1$", BLACK
     )
@@ -131,7 +132,8 @@ def _draw_sizes(axes: Axes, sizes: dict[str, Array], t: Array) -> None:
 def _conserved(trajectory: Trajectory) -> str:
     """Return what is conserved, and how well, as a sentence of the caption."""
     kept = [
-        f"{QUANTITIES[name][0]} to {np.abs(values).max():.0e}" for name, values in trajectory.drifts().items()
+        QUANTITIES[name][0] + (f" to {np.abs(values).max():.0e}" if values.any() else " exactly")
+        for name, values in trajectory.drifts().items()
     ]
     return f"Conserved, relative: {', '.join(kept)}." if kept else ""
 

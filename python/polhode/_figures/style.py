@@ -41,6 +41,9 @@ _LEAST_FONT = 7.0
 _LETTERS = 124.0
 _INCHES = {"mm": 1 / 25.4, "cm": 1 / 2.54, "in": 1.0}
 _LEAST_WIDTH, _LARGEST_WIDTH = 1.5, 40.0
+# Spaces at which no line ends: around an equals sign, after a number and inside units.
+_UNIT = r"(?:kg m²(?:/s)?|N m|rad/s|degrees|J|m|kg|s|min|h|d|yr)(?![\w²/])"
+_BOUND = re.compile(rf" (?==)|(?<==) |(?<=\d) (?={_UNIT})|(?<=kg) (?=m²)|(?<=N) (?=m\b)")
 # Mathematics in a text of Matplotlib.
 _FORMULA = r"(?<!\\)\$[^$]+\$"
 
@@ -149,7 +152,7 @@ def _look(scale: float) -> dict[str, Any]:
 def wrapped(text: str, width: float, size: float) -> str:
     """Return a text in lines of a width in inches, for letters of this size in points.
 
-    A formula between dollar signs stays whole; its length is that of its symbols.
+    A formula between dollar signs stays whole; its length is that of its symbols. Numbers keep their units.
     """
     formulas = re.findall(_FORMULA, text)
     lengths = [
@@ -158,11 +161,15 @@ def wrapped(text: str, width: float, size: float) -> str:
     # While the lines are found, letters of a private plane of Unicode stand for the formulas.
     stand_ins = iter(lengths)
     filled = re.sub(_FORMULA, lambda _: "\ue000" * max(next(stand_ins), 1), text)
+    # A line ends at spaces of ASCII only.
     lines = textwrap.fill(
-        filled, int(_LETTERS * width / size), break_long_words=False, break_on_hyphens=False
+        _BOUND.sub("\N{NO-BREAK SPACE}", filled),
+        int(_LETTERS * width / size),
+        break_long_words=False,
+        break_on_hyphens=False,
     )
     back = iter(formulas)
-    return re.sub("\ue000+", lambda _: next(back), lines)
+    return re.sub("\ue000+", lambda _: next(back), lines).replace("\N{NO-BREAK SPACE}", " ")
 
 
 def drawing(

@@ -44,7 +44,7 @@ class Viewer(SphinxDirective):
             return [nodes.paragraph(text=f"{self.arguments[0]}: these pages were built without the viewer.")]
         data = json.dumps(document.of_file(path)).replace("<", "\\u003c")
         # A lesson has its text below the picture.
-        height = 58 if path.suffix == ".md" else 34
+        height = 58 if path.suffix == ".md" else 38
         script = os.path.relpath("_static/polhode-viewer.js", Path(self.env.docname).parent)
         html = (
             f'<script src="{script}"></script>'

@@ -60,3 +60,28 @@ def test_playback_has_two_rows_on_phones(duration, opened):
     middles = sorted(page.page.evaluate(ROWS))
     rows = 1 + sum(after - before > 12 for before, after in pairwise(middles))
     assert rows == 2
+
+
+@pytest.mark.parametrize("size", [(736, 608), (1100, 608), (360, 608)], ids=str)
+def test_compact_pages_show_picture_and_caption_at_once(size, opened):
+    """Those in guides: the caption is above the playback bar without scrolling, and the title is whole."""
+    width, height = size
+    page = opened("t-handle", viewport={"width": width, "height": 1000})
+    page.page.evaluate(
+        f"""height => {{
+            {VIEWER}.style.height = `${{height}}px`;
+            {VIEWER}.toggleAttribute("compact", true);
+        }}""",
+        height,
+    )
+    if page.page.locator("#strip-toggle").get_attribute("aria-expanded") == "true":
+        page.page.locator("#strip-toggle").click()
+    page.drawn()
+    caption = page.page.locator(".caption").bounding_box()
+    bar = page.page.locator(".playback").bounding_box()
+    assert bar["y"] + bar["height"] <= height
+    # Two lines of caption; a phone may have a third below.
+    assert caption["y"] + min(caption["height"], 60) <= bar["y"]
+    title = page.page.get_by_role("heading", name="T-handle")
+    assert title.bounding_box()["width"] > 180
+    assert page.page.locator(".stage").bounding_box()["height"] >= 192

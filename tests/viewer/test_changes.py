@@ -166,3 +166,15 @@ def test_recorded_motions_are_shown_at_their_times(opened, follow):
     followed = follow("magnetic")
     page = opened(document.of_trajectory(followed.motion))
     page.compare(followed)
+
+
+def test_small_parameters_fit_into_their_fields(box):
+    """A law shows its formula, with the letters of its parameters; small numbers are powers of ten."""
+    box.page.locator("#laws").select_option("here")
+    box.page.locator("#law-viscous_damping").check()
+    assert "T = -d(Ω)" in box.page.locator("#panel-laws").inner_text()
+    type_in(box, "viscous-damping-value", "0.00001234")
+    box.until("model.scene.value.includes('0.00001234') || model.scene.value.includes('1.234e-5')")
+    field = box.page.locator("#viscous-damping-value-number")
+    assert field.input_value() == "1.234e-5"
+    assert field.evaluate("field => field.scrollWidth <= field.clientWidth")

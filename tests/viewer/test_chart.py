@@ -69,7 +69,7 @@ def test_axes_are_named_by_their_moments(opened):
     page.page.evaluate(f"""async () => (await {VIEWER}.ready).change("body.moments = [2, 2, 3]")""")
     page.drawn()
     assert page.page.locator(".strip .axis-3 .name").inner_text() == "symmetry axis"
-    assert page.page.locator(".strip .axis-1 .name").inner_text() == "any axis across"
+    assert page.page.locator(".strip .axis-1 .name").inner_text() == "transverse axis"
 
 
 def band_heights(page):
@@ -125,7 +125,7 @@ def test_pointer_shows_values(opened, follow):
     assert page.data("time") == 0
     motion = ph.FreeMotion(ph.Inertia.from_principal_moments(1, 2, 3), ph.Rotor.identity(), [0.01, 1, 0.01])
     shown = page.page.locator(".strip li .digits").all_inner_texts()[:3]
-    values = [float(text.replace("−", "-").replace(" × 10", "e").translate(RAISED)) for text in shown]
+    values = [float(text.replace("−", "-").replace("\xa0×\xa010", "e").translate(RAISED)) for text in shown]
     np.testing.assert_allclose(values, motion.at(time).omega_body.components, rtol=6e-3, atol=1e-12)
 
 

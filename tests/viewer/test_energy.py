@@ -86,5 +86,5 @@ def test_energy_ellipsoid_follows_the_scene(opened):
     page.page.evaluate(f"""async () => (await {VIEWER}.ready).change("body.moments = [2, 2, 3]")""")
     assert page.page.locator(".legend .dashed").count() == 0
     page.page.locator("#panel-view summary").click()
-    page.page.get_by_label("Energy ellipsoid, beside").uncheck()
+    page.page.get_by_label("Energy ellipsoid in body axes").uncheck()
     page.page.locator(".energy").wait_for(state="detached")

@@ -30,7 +30,7 @@ def body(moments, *spin):
 @pytest.mark.parametrize(
     ("scene", "words"),
     [
-        (body([1, 2, 3], 0.01, 1, 0.01), f"It turns over again and again, every {FLIP:.3g} s"),
+        (body([1, 2, 3], 0.01, 1, 0.01), f"It turns over again and again, every {FLIP:.3g}\u00a0s"),
         (TUMBLING, "It tumbles"),
         (body([2, 2, 1], 0.2, 0, 3), "It wobbles steadily: its axis circles the axis of L, once in"),
         (HELD, "its path has cusps"),
@@ -51,6 +51,16 @@ def body(moments, *spin):
 )
 def test_motion_is_described_in_words(scene, words, opened):
     assert words in sentence(opened, scene)
+
+
+def test_numbers_of_laws_have_names_and_units(opened):
+    law = (
+        "[torque]\ngravity_gradient = { rate = 0.5, eccentricity = 0.1 }\nviscous_damping = [0.1, 0.2, 0.3]\n"
+    )
+    page = opened({"format": 1, "scene": TUMBLING + law + RUN}, **WIDE)
+    facts = page.page.locator(FACTS).inner_text().replace("\xa0", " ")
+    assert "n = 0.5 rad/s, eccentricity = 0.1, mean anomaly = 0 rad" in facts
+    assert "d = (0.1, 0.2, 0.3) N m s" in facts
 
 
 def test_details_are_folded_on_narrow_screens_and_remembered(opened, new_page, tmp_path):

@@ -104,5 +104,5 @@ def test_labels_do_not_jump_while_the_motion_plays(opened):
         before = found
     assert seen > 300
     # Labels whose ways cross change places at once, lest one covers the other; here 13 of 540 do,
-    # where names such as "any axis across" are long.
+    # where names such as "transverse axis" are long.
     assert jumps <= seen / 30

@@ -22,7 +22,7 @@ export function significant(number: number, digits = 6): string {
   const exponent = exponentOf(number);
   if (exponent < -4 || exponent > 7) {
     const [mantissa, power] = number.toExponential(digits - 1).split("e");
-    return `${minus(trimmed(mantissa!))} × ${powerOfTen(Number(power))}`;
+    return times(minus(trimmed(mantissa!)), Number(power));
   }
   return minus(trimmed(number.toPrecision(digits)));
 }
@@ -30,8 +30,11 @@ export function significant(number: number, digits = 6): string {
 /** A magnitude with three digits and its unit; trailing zeros are kept so that a changing value does not jump. */
 export function quantity(size: number, unit: string): string {
   const exponent = exponentOf(size);
-  if (exponent >= -3 && exponent < 4) return `${size.toFixed(Math.max(2 - exponent, 0))} ${unit}`;
-  return `${(size / 10 ** exponent).toFixed(2)}·${powerOfTen(exponent)} ${unit}`;
+  const plain = exponent >= -3 && exponent < 4;
+  const digits = plain
+    ? size.toFixed(Math.max(2 - exponent, 0))
+    : times((size / 10 ** exponent).toFixed(2), exponent);
+  return `${digits}\u00a0${unit}`;
 }
 
 /** A number as text for an input field. */
@@ -39,11 +42,18 @@ export function typed(number: number, digits = 6): string {
   return String(Number(number.toPrecision(digits)));
 }
 
+/** A number as text for a short input field: `0.0042`, `4.2e-5`. */
+export function shortlyTyped(number: number, digits: number): string {
+  const plain = typed(number, digits);
+  const power = Number(plain).toExponential().replace("+", "");
+  return power.length < plain.length ? power : plain;
+}
+
 /** An error or a drift: `3 × 10⁻¹⁶`, `0`. */
 export function small(number: number): string {
   if (number === 0) return "0";
   const [mantissa, power] = number.toExponential(0).split("e");
-  return `${minus(mantissa!)} × ${powerOfTen(Number(power))}`;
+  return times(minus(mantissa!), Number(power));
 }
 
 /** The common format of numbers of similar magnitude: a power of ten is factored out. */
@@ -70,6 +80,11 @@ export function scaleFor(size: number): Scale {
 export function scaled(number: number, scale: Scale): { negative: boolean; digits: string } {
   const digits = (Math.abs(number) * scale.factor).toFixed(scale.decimals);
   return { negative: number < 0 && /[1-9]/.test(digits), digits: digits.padStart(scale.width, "\u2007") };
+}
+
+/** `1.2 × 10⁻⁷`, without a place to break the line. */
+function times(mantissa: string, power: number): string {
+  return `${mantissa}\u00a0×\u00a0${powerOfTen(power)}`;
 }
 
 function trimmed(digits: string): string {

@@ -19,15 +19,17 @@ const RATES = [unit("rev/s", TURN), unit("deg/s", TURN / 360), unit("deg/day", T
 export const DEGREE = unit("°", TURN / 360, "deg");
 export const DENSITY = unit("g/cm³", 1000, "g/cm^3");
 
+/** A unit as the core spells it, `kg m^2/s`, with raised digits. */
+export const unitLabel = (unit: string): string => unit.replace("^2", "²").replace("^3", "³");
 export const lengthUnit = (length: number): Unit => pick(LENGTHS, length, 0.8);
 export const massUnit = (mass: number): Unit => pick(MASSES, mass, 0.1);
 /** Minutes from 2 min on, hours from 2 h on and so forth, which keeps numbers short. */
 export const timeUnit = (time: number): Unit => pick(TIMES, Math.abs(time), 2);
 export const rateUnit = (rate: number): Unit => pick(RATES, rate, 0.02);
 
-/** `3.2 d`: a time in a suitable unit. */
+/** `3.2 d`: a time in a suitable unit, with a space that does not break. */
 export function duration(time: number, digits = 5, fit = timeUnit(time)): string {
-  return `${significant(time / fit.size, digits)} ${fit.label}`;
+  return `${significant(time / fit.size, digits)}\u00a0${fit.label}`;
 }
 
 function pick(units: Unit[], size: number, least: number): Unit {

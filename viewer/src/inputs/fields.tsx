@@ -1,7 +1,7 @@
 import { useSignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { idOf, split } from "../glossary/glossary.ts";
-import { typed } from "../format/numbers.ts";
+import { shortlyTyped } from "../format/numbers.ts";
 import type { Unit } from "../format/units.ts";
 import { accepted, POSITIONS, positionOf, type Range, valueAt } from "./range.ts";
 
@@ -50,7 +50,7 @@ export function Slider(props: {
   onChange: (value: number) => void;
 }) {
   const { id, label, value, range, unit, onChange } = props;
-  const shown = typed(value / unit.size, 4);
+  const shown = shortlyTyped(value / unit.size, 4);
   return (
     <div class="slider">
       <label for={id}>{label}</label>

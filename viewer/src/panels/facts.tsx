@@ -1,7 +1,7 @@
 import type { ComponentChildren } from "preact";
-import { type About, hasMass, type LawEntry, type Triple } from "../core/core.ts";
+import { type About, hasMass, type LawArgument, type LawEntry, type Triple } from "../core/core.ts";
 import { significant, small } from "../format/numbers.ts";
-import { DEGREE, duration } from "../format/units.ts";
+import { DEGREE, duration, unitLabel } from "../format/units.ts";
 import { Defined, Term } from "../glossary/term.tsx";
 import { axisNames, ordered } from "../stage/axes.ts";
 import type { Model } from "../model/model.ts";
@@ -22,8 +22,11 @@ export function Facts({ model, wide }: { model: Model; wide: boolean }) {
   const facts: Fact[] = [
     ["Regime", regime && <Defined text={`${regime}${circles || ""}`} />, "regime"],
     ...about.laws.map(({ name, text }): Fact => {
-      const shown = about.heavy && HOLDING.has(name) ? `m g l = (${list(about.heavy)}) N m` : shortened(text);
-      return [labelOf(name, model.core.laws), <code>{shown}</code>];
+      const weight = about.heavy && HOLDING.has(name) && `m g l = (${list(about.heavy)}) N m`;
+      return [
+        labelOf(name, model.core.laws),
+        <code>{weight || described(name, text, model.core.laws)}</code>,
+      ];
     }),
     ...(free ? freeFacts(free) : []),
     ...(top ? topFacts(top) : []),
@@ -116,10 +119,33 @@ function list(numbers: readonly number[]): string {
   return numbers.map((number) => significant(number, 5)).join(", ");
 }
 
-/** The arguments of a law, rounded; a formula is left as it is. */
-function shortened(text: string): string {
+const NUMBER = /-?\d[\d.]*(e[-+]?\d+)?/g;
+
+/** How many numbers an argument of a law has, by its shape. */
+const COUNTS: Partial<Record<LawArgument["shape"], number>> = {
+  scalar: 1,
+  vector: 3,
+  bivector: 3,
+  gains: 3,
+  rotor: 4,
+};
+
+/** The arguments of a law, rounded, with their names and units in `registry`; a formula is left as it is. */
+function described(name: string, text: string, registry: readonly LawEntry[]): string {
   if (/[^-+\d.e(), ]/.test(text)) return text;
-  return text.replace(/\d[\d.]*(e[-+]?\d+)?/g, (number) => significant(Number(number), 5));
+  const numbers = [...text.matchAll(NUMBER)].map(([number]) => Number(number));
+  const argued = registry.find((law) => law.name === name)?.arguments ?? [];
+  const counts = argued.map(({ shape }) => COUNTS[shape] ?? Number.NaN);
+  if (counts.reduce((sum, count) => sum + count, 0) !== numbers.length)
+    return text.replace(NUMBER, (number) => significant(Number(number), 5));
+  return argued
+    .map((argument, k) => {
+      const own = numbers.splice(0, counts[k]);
+      const value = own.length === 1 ? list(own) : `(${list(own)})`;
+      const unit = argument.unit && `\u00a0${unitLabel(argument.unit)}`;
+      return `${argument.name.replaceAll("_", " ")} = ${value}${unit}`;
+    })
+    .join(", ");
 }
 
 /** The method and its error estimate in words. */
@@ -132,7 +158,7 @@ export function methodOf(about: About): string {
 
 function Conserved({ about }: { about: About }) {
   const rows = about.conserved.map(({ name, value, drift }) => ({
-    name: name.replaceAll("_", " "),
+    name: name.replaceAll("_", " ").replace("jacobi", "Jacobi"),
     value: significant(value, 7),
     drift,
   }));

@@ -32,6 +32,7 @@ export function LawsPanel({ controls }: { controls: Controls }) {
 
 function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; controls: Controls }) {
   const on = choice.on.has(law.name);
+  const formula = controls.model.core.laws.find(({ name }) => name === law.name)?.formula;
   const toggle = (): void => {
     const names = new Set(choice.on);
     if (!names.delete(law.name)) names.add(law.name);
@@ -42,6 +43,11 @@ function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; cont
   return (
     <div class="law">
       <Check id={`law-${law.name}`} label={law.label} checked={on} onChange={toggle} />
+      {on && formula && (
+        <p class="note">
+          <code>T = {formula}</code>
+        </p>
+      )}
       {on &&
         law.parameters.map((parameter) => {
           const common = {

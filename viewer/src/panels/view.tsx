@@ -16,7 +16,7 @@ const PARTS: [keyof Shown, string][] = [
   ["polhode", "Polhode"],
   ["herpolhode", "Herpolhode"],
   ["poinsot", "Poinsot’s ellipsoid"],
-  ["energy", "Energy ellipsoid, beside"],
+  ["energy", "Energy ellipsoid in body axes"],
   ["ghost", "Ghost 0.1° away"],
   ["gravity", "Pivot and weight"],
 ];

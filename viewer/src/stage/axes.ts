@@ -10,8 +10,8 @@ export function ordered(moments: Triple): Triple {
 }
 
 /**
- * The names of the principal axes by their moments of inertia. Two axes with equal moments have no names of their own: all
- * directions across the symmetry axis are alike, and all directions in a ball.
+ * The names of the principal axes by their moments of inertia. Two axes with equal moments have the same name: all axes across
+ * the symmetry axis are alike, and all axes of a ball.
  */
 export function axisNames(moments: Triple): [string, string, string] {
   const [small, middle, large] = ordered(moments);
@@ -20,7 +20,7 @@ export function axisNames(moments: Triple): [string, string, string] {
   if (equal(small, large)) return ["any axis", "any axis", "any axis"];
   const alike = equal(small, middle) ? large : equal(middle, large) ? small : null;
   if (alike !== null)
-    return names.map((_, k) => (k === alike ? "symmetry axis" : "any axis across")) as never;
+    return names.map((_, k) => (k === alike ? "symmetry axis" : "transverse axis")) as never;
   [names[small], names[middle], names[large]] = ["smallest", "middle", "largest"];
   return names;
 }

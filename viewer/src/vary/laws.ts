@@ -1,5 +1,5 @@
 import type { About, LawArgument, LawEntry, Triple } from "../core/core.ts";
-import { lengthUnit, si, timeUnit, type Unit } from "../format/units.ts";
+import { lengthUnit, si, timeUnit, type Unit, unitLabel } from "../format/units.ts";
 import { around, type Range } from "../inputs/range.ts";
 import { table } from "./toml.ts";
 
@@ -105,7 +105,7 @@ function parameter(
 }
 
 function parametersOf({ name, field, period, unit, shape }: LawArgument, value: number): Parameter[] {
-  const shown = period ? timeUnit(value) : si(unit.replace("^2", "²"), unit);
+  const shown = period ? timeUnit(value) : si(unitLabel(unit), unit);
   const size = parameter(period || field || VALUE, period ? "Period" : name, shown, value);
   if (shape !== "bivector" && shape !== "vector") return [size];
   return [parameter(AXIS, "Plane", si(""), 2, { min: 0, max: 2, scale: "linear" }), size];

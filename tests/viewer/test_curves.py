@@ -1,7 +1,9 @@
 """Curves under the pointer are named and marked, in both pictures; frames reuse what they draw with."""
 
+import numpy as np
 import pytest
 
+from pictures import colours, near, picture
 from viewer_page import VIEWER
 from viewer_scenes import RUN, TUMBLING
 
@@ -100,6 +102,19 @@ def test_frames_make_no_buffers(torque, opened):
     page.until("model.time.value > time + 0.0003", time=time)
     page.drawn()
     assert page.page.evaluate("window.made") == 0
+
+
+def test_paths_of_damped_motions_begin_at_the_start(opened):
+    """Before it ω was many times as large, and its path went across the whole picture."""
+    scene = TUMBLING + '[torque]\ndamping = "0.3 /s"\n' + RUN
+    shown = {"labels": False, "omega": False, "momentum": False, "torque": False, "trace": False}
+    page = opened({"format": 1, "scene": scene, "view": {"shown": shown}}, color_scheme="light")
+    page.seek(1)
+    pixels = picture(page)
+    # The legend is below, and the buttons.
+    height, width, _ = pixels.shape
+    edges = pixels[8 : int(0.7 * height), np.r_[: width // 8, width - width // 8 : width]]
+    assert near(edges, colours("LIGHT")["background"]) == edges.shape[0] * edges.shape[1]
 
 
 def test_long_work_is_done_in_parts(opened):

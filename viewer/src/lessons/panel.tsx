@@ -43,8 +43,7 @@ export function LessonPanel({ lessons }: { lessons: Lessons }) {
         <p>
           {lesson.title}
           <span class="note">
-            {" "}
-            {index + 1} of {count}
+            , step {index + 1} of {count}
           </span>
         </p>
         <IconButton

@@ -169,7 +169,7 @@ function Conserved({ about }: { about: About }) {
           <th scope="col">
             <Term term="conserved" text="Conserved" />
           </th>
-          <th scope="col">Value, SI</th>
+          <th scope="col">{hasMass(about) ? "Value, SI" : "Value"}</th>
           <th scope="col">Drift</th>
         </tr>
       </thead>

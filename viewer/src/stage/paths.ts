@@ -137,7 +137,7 @@ export class Paths implements Part {
     // Times are multiples of one step, so that successive stretches have the same points.
     const [first, last] = span(figure.about);
     const step = Math.min(3 * this.tail, last - first) / POINTS;
-    const from = Math.ceil(Math.max(first, time - 1.5 * this.tail) / step);
+    const from = Math.ceil(Math.max(beginning(figure, time) ?? first, time - 1.5 * this.tail) / step);
     const to = Math.floor(Math.min(last, time + 1.5 * this.tail) / step);
     const times = Float64Array.from({ length: Math.max(to - from + 1, 1) }, (_, k) =>
       Math.min(Math.max((from + k) * step, first), last),
@@ -211,6 +211,15 @@ function* resolved(figure: Figure, tail: number): Steps<boolean> {
     if (seen && before.angleTo(after) > 0.3) bent++;
   }
   return bent <= 0.02 * count;
+}
+
+/**
+ * Where paths begin that are seen at a time from the start on; null for as early as they are known. Before the start of a
+ * damped motion ω is larger the earlier it is.
+ */
+function beginning({ about }: Figure, time: number): number | null {
+  const bounded = about.free !== null || about.top !== null;
+  return about.exact && !bounded && time >= about.start.time ? about.start.time : null;
 }
 
 /** Whether the motion is known for a duration from its start. */

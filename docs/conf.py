@@ -30,6 +30,7 @@ html_show_sourcelink = False
 html_copy_source = False
 html_static_path = ["static"]
 html_css_files = ["page.css", "handout.css", "derivation.css"]
+html_js_files = [("viewer-theme.js", {"defer": "defer"})]
 
 
 class Viewer(SphinxDirective):

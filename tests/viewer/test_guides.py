@@ -25,6 +25,22 @@ def test_guides_contain_viewers(name, new_page):
         assert viewer.get_attribute("data-time") == "0"
 
 
+def test_viewers_have_the_colours_chosen_for_the_page(new_page):
+    if not (PAGES / "_static/polhode-viewer.js").exists():
+        left_out("build/docs is missing, or has no viewer: make docs")
+    page = new_page(color_scheme="light")
+    page.page.goto((PAGES / "index.html").as_uri())
+    page.settled()
+    surface = "element => getComputedStyle(element).getPropertyValue('--background')"
+    light = page.viewer.evaluate(surface)
+    page.page.evaluate("() => void (document.body.dataset.theme = 'dark')")
+    page.drawn()
+    assert page.viewer.evaluate(surface) != light
+    page.page.evaluate("() => void (document.body.dataset.theme = 'auto')")
+    page.drawn()
+    assert page.viewer.evaluate(surface) == light
+
+
 def test_every_guide_has_a_page():
     if not (PAGES / "index.html").exists():
         left_out("build/docs is missing: make docs")

@@ -25,7 +25,7 @@ export function Facts({ model, wide }: { model: Model; wide: boolean }) {
       const weight = about.heavy && HOLDING.has(name) && `m g l = (${list(about.heavy)}) N m`;
       return [
         labelOf(name, model.core.laws),
-        <code>{weight || described(name, text, model.core.laws)}</code>,
+        <code>{weight || described(name, text, model.core.laws, hasMass(about))}</code>,
       ];
     }),
     ...(free ? freeFacts(free) : []),
@@ -130,8 +130,11 @@ const COUNTS: Partial<Record<LawArgument["shape"], number>> = {
   rotor: 4,
 };
 
-/** The arguments of a law, rounded, with their names and units in `registry`; a formula is left as it is. */
-function described(name: string, text: string, registry: readonly LawEntry[]): string {
+/**
+ * The arguments of a law, rounded, with their names in `registry`; a formula is left as it is. Units of mass and force are left
+ * out unless the mass is known.
+ */
+function described(name: string, text: string, registry: readonly LawEntry[], massive: boolean): string {
   if (/[^-+\d.e(), ]/.test(text)) return text;
   const numbers = [...text.matchAll(NUMBER)].map(([number]) => Number(number));
   const argued = registry.find((law) => law.name === name)?.arguments ?? [];
@@ -142,8 +145,9 @@ function described(name: string, text: string, registry: readonly LawEntry[]): s
     .map((argument, k) => {
       const own = numbers.splice(0, counts[k]);
       const value = own.length === 1 ? list(own) : `(${list(own)})`;
-      const unit = argument.unit && `\u00a0${unitLabel(argument.unit)}`;
-      return `${argument.name.replaceAll("_", " ")} = ${value}${unit}`;
+      const unit =
+        (massive || !/kg|N/.test(argument.unit)) && argument.unit && `\u00a0${unitLabel(argument.unit)}`;
+      return `${argument.name.replaceAll("_", " ")} = ${value}${unit || ""}`;
     })
     .join(", ");
 }

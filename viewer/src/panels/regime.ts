@@ -18,7 +18,7 @@ export function inWords(about: About | null, registry: readonly LawEntry[]): str
   if (held) return "A heavy body turns about a fixed point. Its weight changes L all the time.";
   if (laws.length === 0) return "";
   if (laws.every(({ name }) => name === "gyrostat"))
-    return "No torque acts from outside, so L stays at rest. A wheel in the body carries a part of it.";
+    return "No torque acts from outside, so L is constant. A wheel in the body carries a part of it.";
   const labels = registry
     .filter((law) => laws.some(({ name }) => name === law.name))
     .map(({ label }) => label);

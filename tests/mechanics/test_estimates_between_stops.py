@@ -54,7 +54,7 @@ def test_estimates_with_dense_tables_are_not_far_below_the_error(rows, kind, fra
 
 
 def test_the_estimate_with_dense_outputs_is_not_far_below_the_error():
-    """Outputs cut most steps of both sweeps, which share these errors: the estimate was 20 times too small."""
+    """Outputs cut most steps of both sweeps, which share these errors."""
     law = ph.torque.formula("exp(sin(k t)) A", frame="space", k=9.28, A=ph.bivector([-2.08, -0.14, 10.2]))
     rotor = ph.Rotor.from_quaternion([-0.49, -0.265, -0.643, 0.525], order="wxyz")
     problem = INERTIA, ph.State(rotor, [1.01, -0.256, 0.286]), np.linspace(0, 11.68, 1001), law

@@ -114,7 +114,7 @@ impl<'a> BodyRun<'a> {
                 let stop = next_stop(&self.bounds.breaks, at.phase.time, time);
                 // A body that has changed lanes is on its way to this stop.
                 if stop != self.stop {
-                    self.controller.head_for(at.phase.time, stop, stop != time);
+                    self.controller.head_for(at.phase.time, stop);
                     self.stop = stop;
                 }
                 return Ok(None);

@@ -10,6 +10,7 @@ use crate::methods::Method;
 use crate::methods::classical::Bodies;
 use crate::methods::momentum::fixed_momentum;
 use crate::methods::splitting::turns::Turns;
+use crate::methods::step_control::step_count;
 use crate::run::Progress;
 use crate::run::limits::span;
 use crate::state::phase::Gyrostat;
@@ -195,7 +196,7 @@ fn segments(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Segment> {
     ends.push(to);
     let mut begin = from;
     let part = |end: f64| {
-        let count = ((end - begin).abs() / step).ceil().max(1.0) as u64;
+        let count = step_count(end - begin, step) as u64;
         let segment = Segment { from: begin, to: end, count };
         begin = end;
         segment

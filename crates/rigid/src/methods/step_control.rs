@@ -23,6 +23,11 @@ const FIRST_TURN: f64 = 2.0;
 /// Parts of a way to a stop below this, relative to the times, are not divided: stops may be adjacent floats.
 const LEAST_PART: f64 = 1e-14;
 
+/// The number of equal steps of at most this length in a span, both in s: k steps up to rounding are k.
+pub(crate) fn step_count(span: f64, step: f64) -> f64 {
+    (span.abs() / step * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0)
+}
+
 /// Chooses the lengths of adaptive steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepController {
@@ -34,25 +39,23 @@ pub(crate) struct StepController {
     cut: f64,
     /// The longest allowed, in s.
     longest: f64,
-    /// The longest steps as fractions of the way, on the way to the first stop and next to a break.
+    /// The longest steps as fractions of the way, to the first stop and to later ones.
     fractions: [f64; 2],
-    /// Whether the first stop is ahead, and whether the last one was a break.
+    /// Whether the first stop is ahead.
     is_first: bool,
-    after_break: bool,
     /// The longest step to the next stop, in s.
     most: f64,
     /// Whether the previous step was rejected.
     refused: bool,
-    /// Whether a stop cut the last accepted step short.
+    /// Whether a stop or the longest length cut the last accepted step short.
     is_cut: bool,
 }
 
 impl StepController {
     /// For a tolerance, the fastest rate of the laws and the body in rad/s, and the longest step in s. Steps to the first
-    /// stop are at most the first of these `fractions` of the way, and those to or from a break the second.
+    /// stop are at most the first of these `fractions` of the way, and those to later stops the second.
     pub fn new(tolerance: f64, rate: f64, longest: f64, fractions: [f64; 2]) -> StepController {
         let first = FIRST_TURN * tolerance.powf(ROOT) / rate.max(f64::MIN_POSITIVE);
-        let first = first.min(longest);
         StepController {
             tolerance,
             next: first,
@@ -60,38 +63,32 @@ impl StepController {
             longest,
             fractions,
             is_first: true,
-            after_break: false,
-            most: longest,
+            most: f64::INFINITY,
             refused: false,
             is_cut: false,
         }
     }
 
-    /// Whether a stop cut the last accepted step short: its length was not chosen by the tolerance.
+    /// Whether a stop or the longest length cut the last accepted step short: its length was not chosen by the tolerance.
     pub fn is_cut(&self) -> bool {
         self.is_cut
     }
 
-    /// Heads for the next stop: an output, or a break, where a law is not smooth.
-    pub fn head_for(&mut self, from: f64, stop: f64, is_break: bool) {
+    /// Heads for the next stop.
+    pub fn head_for(&mut self, from: f64, stop: f64) {
         let rest = (stop - from).abs();
-        let [first, at_breaks] = self.fractions;
-        let fraction = match (self.is_first, is_break || self.after_break) {
-            (true, _) => first,
-            (_, true) => at_breaks,
-            _ => 1.0,
-        };
+        let [first, later] = self.fractions;
+        let fraction = if self.is_first { first } else { later };
         let least = (LEAST_PART * from.abs().max(stop.abs())).max(f64::MIN_POSITIVE);
         let divides = fraction * rest > least;
         self.most = if divides { fraction * rest } else { rest };
         self.is_first &= !divides;
-        self.after_break = is_break;
     }
 
     /// Where a step ends on the way from one time to another.
     pub fn end(&mut self, from: f64, time: f64) -> Result<f64, SimulateError> {
         let rest = (time - from).abs();
-        let next = self.next.min(self.most);
+        let next = self.next.min(self.most).min(self.longest);
         // Two steps of half the way avoid a tiny last one.
         let cut = if next >= rest { rest } else { next.min(0.5 * rest.max(next)) };
         let to = if cut >= rest { time } else { from + (time - from).signum() * cut };
@@ -114,9 +111,8 @@ impl StepController {
         }
         let growth = (0.9 * error.powf(-ROOT)).clamp(0.3, if self.refused { 1.0 } else { 6.0 });
         self.is_cut = self.cut < self.next;
-        // A step cut short by a stop says little about the possible length.
+        // A step that is cut short says little about the possible length.
         self.next = if self.is_cut { self.next.max(h * growth) } else { h * growth };
-        self.next = self.next.min(self.longest);
         self.refused = false;
         true
     }

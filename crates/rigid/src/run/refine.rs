@@ -294,7 +294,7 @@ impl Convergence {
                 return Ok(Some(self.converged(fine, error)));
             }
             let least = if stuck { error } else { self.floor(error / rounding, fine.steps) };
-            let reached = least.max(if rounding > LINEAR { 1.0 } else { 0.0 });
+            let reached = least.max(if rounding > LINEAR { 1.0 } else { self.accuracy.goal });
             return Err(SimulateError::NotConverged {
                 rtol: self.accuracy.goal,
                 reached,

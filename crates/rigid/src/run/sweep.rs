@@ -10,7 +10,7 @@ use super::noise::Noise;
 use crate::error::SimulateError;
 use crate::laws::conserved::Conserved;
 use crate::laws::event::{Event, Occurrence};
-use crate::methods::step_control::{ROOT, StepController, next_stop};
+use crate::methods::step_control::{ROOT, StepController, next_stop, step_count};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Gyrostat;
@@ -57,11 +57,11 @@ impl ToleranceSteps {
         ToleranceSteps { tolerance: (self.tolerance / by.powi(8)).max(LEAST_TOLERANCE), ..self }
     }
 
-    /// The longest steps on the way to the first stop and next to a break, as fractions of the way.
+    /// The longest steps on the way to the first stop and to later ones, as fractions of the way.
     ///
-    /// Steps shorten with the tolerance, also those that it does not limit: the first, those to the first stop, and those
-    /// next to the breaks of a law that is not smooth. Two sweeps with the same steps there would also share their errors,
-    /// which their difference would not show.
+    /// Steps shorten with the tolerance, also those that it does not limit: the first, those to the first stop, and under laws
+    /// that are not smooth those to any stop. Two sweeps with the same steps there would also share their errors, which their
+    /// difference would not show.
     fn fractions(self, is_smooth: bool) -> [f64; 2] {
         let shorter = (self.tolerance / self.first).powf(ROOT);
         [shorter, if is_smooth { 1.0 } else { shorter }]
@@ -91,8 +91,8 @@ impl EqualSteps {
 
     /// Number of steps between stops a distance `span` apart, in s.
     fn count(&self, span: f64) -> f64 {
-        let first = (span / self.first).ceil().max(1.0);
-        if first < FEW { first * self.parts } else { (span / self.step).ceil() }
+        let first = step_count(span, self.first);
+        if first < FEW { first * self.parts } else { step_count(span, self.step) }
     }
 }
 
@@ -262,7 +262,7 @@ impl Integrator<'_> {
             match self.rule {
                 StepRule::Step(steps) => self.equal_steps(cursor, to, steps, sweep, done)?,
                 StepRule::Tolerance(_) => {
-                    cursor.controller.head_for(cursor.at.phase.time, to, to != time);
+                    cursor.controller.head_for(cursor.at.phase.time, to);
                     self.adapted_steps(cursor, to, sweep, done)?;
                 }
             }

@@ -13,7 +13,7 @@ use crate::laws::driven_wheels::carrier;
 use crate::laws::force::Translation;
 use crate::laws::torque::{Axes, Torque, Wheels, wheel};
 use crate::methods::Method;
-use crate::methods::step_control::next_stop;
+use crate::methods::step_control::{next_stop, step_count};
 use crate::run::center::center_law;
 use crate::run::check_body;
 use crate::run::engine::Engine;
@@ -260,8 +260,7 @@ impl Stepper {
         while begin != to || pieces.is_empty() {
             let end = next_stop(&self.jumps, begin, to);
             let dt = if (begin, end) == (from, to) { dt } else { end - begin };
-            // A dt of k longest steps, up to rounding, has k steps.
-            let count = (dt.abs() / self.longest * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0) as u64;
+            let count = step_count(dt, self.longest) as u64;
             pieces.push(Steps { from: begin, to: end, dt, count });
             begin = end;
         }

@@ -15,7 +15,9 @@ use crate::run::closed_form::ExactBody;
 use crate::run::limits::{Samples, StepBounds, samples};
 use crate::run::output::BodyOutput;
 use crate::run::{Options, Progress, check_body};
+use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
+use crate::state::point::Point;
 use polhode_ga::rows::curve::TOGETHER;
 use polhode_ga::simd::threads::Threads;
 use std::borrow::Cow;
@@ -210,7 +212,9 @@ impl<'a> Scheduler<'a> {
     /// Bounds of the steps of a body under its torques. Laws in lanes are not user functions, so sampling does not fail.
     pub fn bounds(&self, member: &Member, torques: &[Torque]) -> StepBounds {
         let Member { gyrostat, start, .. } = member;
-        let sample = || samples(torques, gyrostat, start, self.times, self.options, true).unwrap_or_default();
+        // Forces that are not linear are not in lanes.
+        let at = Point { body: gyrostat, mass: f64::NAN, phase: start, center: &Center::default() };
+        let sample = || samples(torques, &[], &at, self.times, self.options, true).unwrap_or_default();
         let own;
         // They depend on the law alone, which the bodies may share.
         let samples = match &self.samples {

@@ -1,6 +1,6 @@
 //! Forces on the centre of mass, and its motion `x' = v`, `v' = F/m` (handout eq. 4.1: `y = R x ~R + x0`).
 
-use super::formula::Formula;
+use super::formula::{Formula, Motion};
 use crate::error::TorqueError;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
@@ -71,6 +71,29 @@ impl Force {
     /// Whether it is constant, or linear in position and velocity by a number: the centre of mass moves in closed form.
     pub fn is_linear(&self) -> bool {
         matches!(self, Force::Constant(_) | Force::Drag(_) | Force::Spring(..))
+    }
+
+    /// Whether the force does not depend on time explicitly, as far as is known.
+    pub fn is_autonomous(&self) -> bool {
+        match self {
+            Force::Formula(law) => !law.needs(|motion| motion == Motion::Time),
+            Force::Function(_) => false,
+            _ => true,
+        }
+    }
+
+    /// The values at other times of a point; fails with the first time that has none.
+    pub(crate) fn values(&self, at: &Point, times: &[f64]) -> Result<Vec<Vector>, (f64, TorqueError)> {
+        if let Force::Formula(law) = self
+            && let Some(numbers) = law.numbers_at(at, times)
+        {
+            return Ok(numbers.as_chunks().0.iter().map(|&force| Vector(force)).collect());
+        }
+        let value = |&time: &f64| {
+            let phase = &Phase { time, ..*at.phase };
+            self.value(&Point { phase, ..*at }).map_err(|error| (time, error))
+        };
+        times.iter().map(value).collect()
     }
 
     /// The force in space, in N.

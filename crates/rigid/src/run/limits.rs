@@ -1,11 +1,13 @@
 //! Bounds of steps: their stops, largest length and number.
 
-use super::stops::{Sampled, sampled};
+use super::stops::{InTime, Sampled, sampled};
 use super::{MAX_STEPS, Options};
 use crate::error::SimulateError;
+use crate::laws::force::Force;
 use crate::laws::torque::Torque;
 use crate::methods::step_control::Limit;
 use crate::state::phase::{Gyrostat, Phase};
+use crate::state::point::Point;
 
 /// Bounds of the steps of a run.
 #[derive(Clone, Debug)]
@@ -45,11 +47,11 @@ impl Default for StepBounds {
 pub(crate) type Samples = Vec<[Sampled; 2]>;
 
 /// Samples the laws over the output times, for a method that `adapts` its steps or refines equal ones; given steps need no
-/// samples.
+/// samples. The torques come first, then the forces.
 pub(crate) fn samples(
     torques: &[Torque],
-    body: &Gyrostat,
-    start: &Phase,
+    forces: &[Force],
+    start: &Point,
     times: &[f64],
     options: &Options,
     adapts: bool,
@@ -57,12 +59,15 @@ pub(crate) fn samples(
     if options.step.is_some() {
         return Ok(Vec::new());
     }
-    let [first, last] = span(times, start.time);
-    let both = |law: &Torque| -> Result<[Sampled; 2], SimulateError> {
-        let side = |times| sampled(law, body, start, times, adapts);
-        Ok([side([first, start.time])?, side([start.time, last])?])
+    let time = start.phase.time;
+    let [first, last] = span(times, time);
+    let torques = torques.iter().map(|law| InTime::of_torque(law, start.body, start.phase));
+    let laws = torques.chain(forces.iter().map(|force| InTime::of_force(force, start)));
+    let both = |law: Option<InTime>| -> Result<[Sampled; 2], SimulateError> {
+        let Some(law) = law else { return Ok(Default::default()) };
+        Ok([sampled(&law, [first, time], adapts)?, sampled(&law, [time, last], adapts)?])
     };
-    torques.iter().map(both).collect()
+    laws.map(both).collect()
 }
 
 impl StepBounds {

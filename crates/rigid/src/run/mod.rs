@@ -182,7 +182,8 @@ impl Problem {
         let begin = self.start();
         let start = begin.phase;
         let adapts = options.method.unwrap_or_else(|| self.best()).adapts();
-        let samples = samples(&self.torques, &self.body, &start, times, &options, adapts)?;
+        let point = Point { body: &self.body, mass: self.mass, phase: &start, center: &begin.center };
+        let samples = samples(&self.torques, self.forces(), &point, times, &options, adapts)?;
         let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options);
         let center = self.center_motion();
         bounds.limit.reports_stiffness &= center.is_some();
@@ -193,7 +194,6 @@ impl Problem {
                 check_pieces(&center.law, (self.time - first).max(last - self.time), &bounds)?;
             }
         }
-        let point = Point { body: &self.body, mass: self.mass, phase: &start, center: &begin.center };
         for event in &options.events {
             let quantity = event.clone().in_axes(self.frame).quantity;
             bounds.piece = bounds.piece.min(0.5 * quantity.oscillates_within(&point, span(times, self.time)));
@@ -231,6 +231,10 @@ impl Problem {
         let stepped = self.translation.as_ref().filter(|_| self.center_motion().is_none());
         let translation = stepped.map_or(0.0, |t| t.rate(&self.center));
         fastest_rate(&self.body, &self.torques, &self.start().phase).max(translation)
+    }
+
+    fn forces(&self) -> &[Force] {
+        self.translation.as_ref().map_or(&[], |translation| &translation.forces)
     }
 
     /// The motion of the centre of mass, if it has a closed form.

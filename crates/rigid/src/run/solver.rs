@@ -5,7 +5,7 @@ use super::closed_form::{ClosedForm, check_kept};
 use super::engine::Engine;
 use super::limits::{StepBounds, span};
 use super::refine::{Accuracy, Converged, Convergence, Scales, SweepPlan};
-use super::stops::{aliasing_warning, is_aliased, turn_warning};
+use super::stops::{aliasing_warning, force_aliasing_warning, is_aliased, is_aliased_force, turn_warning};
 use super::sweep::{Integrator, Progress, StepRule, Sweep, is_finite};
 use super::{Motion, NO_CLOSED_FORM, Options, Problem};
 use crate::error::SimulateError;
@@ -14,6 +14,7 @@ use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::state::carried::Carried;
 use crate::state::checks::check_horizons;
+use crate::state::point::Point;
 
 impl Problem {
     /// The motion by one method.
@@ -141,6 +142,9 @@ impl Problem {
         let span = span(times, start.phase.time);
         let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start.phase, span, step);
         let aliased = self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step));
+        let at = Point { body: &self.body, mass: self.mass, phase: &start.phase, center: &start.center };
+        let forces = self.forces().iter().filter(|force| is_aliased_force(force, &at, span, step));
+        let aliased = aliased.chain(forces.map(|force| force_aliasing_warning(force, step)));
         let states = [&start].into_iter().chain(&sweep.states);
         let fastest = states.map(|state| self.body.omega(state.phase.momentum).norm()).fold(0.0, f64::max);
         let too_far = method.turns_too_far(&self.body, fastest, sweep.longest);

@@ -6,11 +6,15 @@
 //! finest intervals are sampled again and bisected further, so that a change sharper than the samples lies between close
 //! stops: the error estimate of a step across it may be small by chance.
 
-use crate::error::SimulateError;
+use crate::error::{SimulateError, TorqueError};
+use crate::laws::force::Force;
 use crate::laws::torque::Torque;
 use crate::methods::LARGEST_TURN;
+use crate::methods::step_control::step_count;
+use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::{Bivector, Rotor};
+use crate::state::point::Point;
+use polhode_ga::{Bivector, Rotor, Vector};
 use std::array;
 use std::ops::Range;
 
@@ -45,36 +49,74 @@ pub(crate) struct Sampled {
     pub peak: Option<f64>,
 }
 
-/// Samples a law between two times. Laws that are not smooth at known times have stops of their own.
+/// Values of a law at times.
+type Values<'a> = dyn Fn(&[f64]) -> Result<Vec<Bivector>, (f64, TorqueError)> + 'a;
+
+/// A law that depends on time, at one state; forces are written as bivectors of their components.
 ///
-/// User functions, which may be defined for such states only, are evaluated at `start`; formulas and orbits in general
-/// position, so that the stops depend on the law alone. The finest intervals are sampled again if the method `adapts` its steps:
-/// equal steps become shorter everywhere, whatever their error estimates are.
-pub(crate) fn sampled(
-    law: &Torque,
-    body: &Gyrostat,
-    start: &Phase,
-    [from, to]: [f64; 2],
-    adapts: bool,
-) -> Result<Sampled, SimulateError> {
-    let circular = matches!(law, Torque::GravityGradient(orbit) if orbit.is_circular());
-    if from == to || circular || !is_to_be_sampled(law) {
+/// User functions, which may be defined for such states only, are evaluated at the start. Formulas and orbits are evaluated in
+/// general position, so that the stops of torques depend on the law alone; positions and velocities are near the start.
+pub(crate) struct InTime<'a> {
+    values: Box<Values<'a>>,
+    is_function: bool,
+}
+
+impl<'a> InTime<'a> {
+    /// None for a law that does not depend on time, or is not smooth at known times.
+    pub fn of_torque(law: &'a Torque, body: &Gyrostat, start: &Phase) -> Option<InTime<'a>> {
+        let circular = matches!(law, Torque::GravityGradient(orbit) if orbit.is_circular());
+        if circular || !is_to_be_sampled(law) {
+            return None;
+        }
+        let is_function = matches!(law, Torque::Function(_));
+        let (body, phase) = if is_function { (*body, *start) } else { (GENERAL, general(start.time)) };
+        Some(InTime { values: Box::new(move |times| law.values(&body, &phase, times)), is_function })
+    }
+
+    /// None for a force that does not depend on time.
+    pub fn of_force(force: &'a Force, &Point { body, mass, phase, center }: &Point) -> Option<InTime<'a>> {
+        if force.is_autonomous() {
+            return None;
+        }
+        let is_function = matches!(force, Force::Function(_));
+        let (body, phase, center) = if is_function {
+            (*body, *phase, *center)
+        } else {
+            let aside =
+                |x: Vector| x + Vector([0.37, -0.21, 0.29]) * if x.norm() > 0.0 { x.norm() } else { 1.0 };
+            let center = Center { position: aside(center.position), velocity: aside(center.velocity) };
+            (*body, general(phase.time), center)
+        };
+        let values = move |times: &[f64]| {
+            let at = Point { body: &body, mass, phase: &phase, center: &center };
+            Ok(force.values(&at, times)?.into_iter().map(|force| Bivector(force.0)).collect())
+        };
+        Some(InTime { values: Box::new(values), is_function })
+    }
+}
+
+/// A body and a state without symmetry.
+const GENERAL: Gyrostat = Gyrostat { moments: [1.0, 1.25, 1.75], wheel: Bivector([0.0; 3]) };
+
+fn general(time: f64) -> Phase {
+    let rotor = Rotor::from_unit_components([0.76, 0.48, -0.24, 0.36]).renormalized();
+    Phase { rotor, momentum: Bivector([0.6, -0.5, 0.9]), time }
+}
+
+/// Samples a law between two times.
+///
+/// The finest intervals are sampled again if the method `adapts` its steps: equal steps become shorter everywhere, whatever
+/// their error estimates are.
+pub(crate) fn sampled(law: &InTime, [from, to]: [f64; 2], adapts: bool) -> Result<Sampled, SimulateError> {
+    if from == to {
         return Ok(Sampled::default());
     }
-    let general = Gyrostat::rigid([1.0, 1.25, 1.75]);
-    let (body, state) = match law {
-        Torque::Function(_) => (body, *start),
-        _ => {
-            let rotor = Rotor::from_unit_components([0.76, 0.48, -0.24, 0.36]).renormalized();
-            (&general, Phase { rotor, momentum: Bivector([0.6, -0.5, 0.9]), time: from })
-        }
-    };
     let time = |k: usize| from + (to - from) * (k as f64 / SAMPLES as f64);
     let times: Vec<f64> = (0..=SAMPLES).map(time).collect();
-    let values = match law.values(body, &state, &times) {
+    let values = match (law.values)(&times) {
         Ok(values) => values,
         // An error of a user's function is reported; a formula may fail at this state only.
-        Err((time, error)) if matches!(law, Torque::Function(_)) => {
+        Err((time, error)) if law.is_function => {
             return Err(SimulateError::Torque { time, message: error.0 });
         }
         Err(_) => return Ok(Sampled::default()),
@@ -88,12 +130,9 @@ pub(crate) fn sampled(
     let (mut found, mut finest) = (Vec::new(), Vec::new());
     bisect(&values, 0..SAMPLES, allowed, &mut found, &mut finest);
     let mut stops: Vec<f64> = found.into_iter().map(time).collect();
-    let most = if matches!(law, Torque::Function(_)) { MOST_FINER_OF_FUNCTIONS } else { MOST_FINER };
-    let finer = Finer {
-        values: &|times| law.values(body, &state, times).ok(),
-        allowed,
-        least: LEAST * (to - from).abs(),
-    };
+    let most = if law.is_function { MOST_FINER_OF_FUNCTIONS } else { MOST_FINER };
+    let finer =
+        Finer { values: &|times| (law.values)(times).ok(), allowed, least: LEAST * (to - from).abs() };
     for part in finest.iter().filter(|_| adapts) {
         let mut left = (most / finest.len()).min(MOST_FINER_EACH);
         finer.bisect([time(part.start), time(part.end)], &mut left, &mut stops);
@@ -190,6 +229,18 @@ pub(crate) fn aliasing_warning(law: &Torque, step: f64) -> String {
         Torque::Function(_) => "the torque of a function".to_owned(),
         _ => "a torque".to_owned(),
     };
+    too_fast(&what, step)
+}
+
+/// The warning for an aliased force.
+pub(crate) fn force_aliasing_warning(force: &Force, step: f64) -> String {
+    match force {
+        Force::Formula(formula) => too_fast(&format!("the force `{}`", formula.text()), step),
+        _ => too_fast("the force of a function", step),
+    }
+}
+
+fn too_fast(what: &str, step: f64) -> String {
     format!("{what} changes too fast for step = {step} s; use a shorter step, or omit step")
 }
 
@@ -201,8 +252,7 @@ pub(crate) fn turn_warning(step: f64) -> String {
     )
 }
 
-/// Whether fixed steps miss more than a tenth of the impulse of a law that depends on time: compares Simpson's rule,
-/// which a method's evaluations amount to, with the mean of finer samples.
+/// Whether fixed steps miss more than a tenth of the impulse of a law that depends on time.
 pub(crate) fn is_aliased(
     law: &Torque,
     body: &Gyrostat,
@@ -210,25 +260,37 @@ pub(crate) fn is_aliased(
     [from, to]: [f64; 2],
     step: f64,
 ) -> bool {
-    if to <= from || !is_to_be_sampled(law) {
-        return false;
-    }
-    let steps = ((to - from) / step).ceil().max(1.0);
-    let h = (to - from) / steps;
     // Along an orbit a gradient has harmonics of the true anomaly up to the fifth, and Simpson's rule misses
     // `h⁴/2880` of the fourth derivative: of steps this short, less than a thousandth.
     if let Torque::GravityGradient(orbit) = law
-        && orbit.fastest_turn() * h <= 0.1
+        && orbit.fastest_turn() * (to - from) / step_count(to - from, step) <= 0.1
     {
         return false;
     }
+    is_to_be_sampled(law) && misses_impulse(&|times| law.values(body, start, times), [from, to], step)
+}
+
+/// The same for a force, at a point.
+pub(crate) fn is_aliased_force(force: &Force, at: &Point, span: [f64; 2], step: f64) -> bool {
+    let values =
+        |times: &[f64]| Ok(force.values(at, times)?.into_iter().map(|force| Bivector(force.0)).collect());
+    !force.is_autonomous() && misses_impulse(&values, span, step)
+}
+
+/// Compares Simpson's rule, which a method's evaluations amount to, with the mean of finer samples.
+fn misses_impulse(values: &Values, [from, to]: [f64; 2], step: f64) -> bool {
+    if to <= from {
+        return false;
+    }
+    let steps = step_count(to - from, step);
+    let h = (to - from) / steps;
     let checked = (steps as usize).min(CHECKED_STEPS);
     let times = (0..checked).flat_map(|k| {
         let begin = from + h * (steps * k as f64 / checked as f64).floor();
         let inside = (0..INSIDE).map(move |j| (j as f64 + 0.5) / INSIDE as f64);
         [0.0, 0.5, 1.0].into_iter().chain(inside).map(move |part| begin + h * part)
     });
-    let Ok(values) = law.values(body, start, &times.collect::<Vec<_>>()) else { return false };
+    let Ok(values) = values(&times.collect::<Vec<_>>()) else { return false };
     let (mut missed, mut all) = (0.0, 0.0);
     for of_step in values.chunks_exact(3 + INSIDE) {
         let (seen, inside) = of_step.split_at(3);

@@ -107,9 +107,9 @@ def test_a_missing_bundle_is_reported_with_the_remedy(tmp_path, monkeypatch, cap
 
 @needs_bundle
 def test_pages_are_small():
-    """The core and the drawing library take 1.9 MB; compressed, as servers send it, a page has 1.0 MB."""
+    """The core and the drawing library take 2.0 MB; compressed, as servers send it, a page has 1.0 MB."""
     text = _html.page(document.document(EXAMPLES / "toutatis.toml"))
-    assert len(text.encode()) < 2_000_000
+    assert len(text.encode()) < 2_050_000
     assert len(Page(text).all("script")) == 2
 
 

@@ -241,10 +241,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
                 continue;
             }
             if run.controller.judge(h, error) {
-                run.sweep.errors += error;
-                if run.controller.is_cut() {
-                    run.sweep.errors_of_cut_steps += error;
-                }
+                run.sweep.add_error(error, &run.controller);
                 match run.arrive(h, next, l, scheduler) {
                     Ok(()) => accepted[l] = true,
                     Err(error) => self.fail(l, error, scheduler),

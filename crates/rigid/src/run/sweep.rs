@@ -142,6 +142,14 @@ pub(crate) struct Sweep {
 }
 
 impl Sweep {
+    /// Adds the error estimate of the step that this controller has just accepted.
+    pub fn add_error(&mut self, error: f64, controller: &StepController) {
+        self.errors += error;
+        if controller.is_cut() {
+            self.errors_of_cut_steps += error;
+        }
+    }
+
     /// Updates the largest magnitudes with a point of the motion.
     pub fn update_largest(&mut self, omega: f64, center: &Center) {
         let sizes = [omega, center.position.norm(), center.velocity.norm()];
@@ -312,10 +320,7 @@ impl Integrator<'_> {
             let (next, error) = self.step(&cursor.at, to, cursor.fastest, sweep)?;
             if cursor.controller.judge(to - from, error) {
                 sweep.longest = sweep.longest.max((to - from).abs());
-                sweep.errors += error;
-                if cursor.controller.is_cut() {
-                    sweep.errors_of_cut_steps += error;
-                }
+                sweep.add_error(error, &cursor.controller);
                 self.arrive(cursor, next, sweep, done)?;
                 let turn = self.body.omega(next.phase.momentum).norm() * (to - from);
                 self.bounds.limit.check(sweep.steps, to - from, turn, || done(to))?;

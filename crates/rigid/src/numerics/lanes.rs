@@ -1,7 +1,7 @@
 //! Arithmetic in lanes without branches: phase reduction, exponentials, sine and cosine.
 
-use super::double_double::DoubleDouble;
-use polhode_ga::simd::double::{add, multiply, quick_two_sum, sin_cos, two_product, two_sum};
+use super::double_double::{DoubleDouble, DoubleDoubles};
+use polhode_ga::simd::double::{add, quick_two_sum, sin_cos, two_product, two_sum};
 use std::f64::consts::FRAC_PI_2;
 
 /// Adding 1.5·2⁵² rounds to an integer in the last bits, the nearest up to 2⁵¹.
@@ -119,44 +119,102 @@ pub(crate) fn exp_minus(x: f64) -> (f64, f64) {
 /// A double-double number `hi + lo`, as [`DoubleDouble`], in a lane.
 pub(crate) type Pair = (f64, f64);
 
-/// `e^x` and `e^x − 1` in double-double precision, for |x| up to 720. With `x = n ln 2 + 2⁶ r` a short series gives
-/// `e^r − 1`, and `e^{2r} − 1 = (e^r − 1)(2 + (e^r − 1))` doubles the exponent without cancellation.
+/// How often [`exp_of_pairs`] doubles an exponent.
+const DOUBLINGS: usize = 6;
+
+/// `e^x` and `e^x − 1` of double-double numbers, for |x| up to 720, to 2⁻⁹⁰ of them.
+///
+/// With `x = n ln 2 + 2⁶ r` a short series gives `e^r − 1`, and `e^{2r} − 1 = (e^r − 1)(2 + (e^r − 1))` doubles the exponent
+/// without cancellation. Each step waits for the one before it, so each is done for all lanes before the next one, and
+/// low parts are left up to a few ulps of the high ones: products and sums of such pairs are still exact to 2⁻¹⁰⁰.
 #[inline(always)]
-pub(crate) fn exp_of_pair<const FMA: bool>(x: Pair) -> [Pair; 2] {
+pub(crate) fn exp_of_pairs<const W: usize, const FMA: bool>(
+    x: &DoubleDoubles<W, FMA>,
+) -> [DoubleDoubles<W, FMA>; 2] {
+    let (n, r) = exponent_and_rest::<W, FMA>(x);
+    let mut p = exp_less_1_of_small::<W, FMA>(&r);
+    for _ in 0..DOUBLINGS {
+        for l in 0..W {
+            // 2p + p².
+            let double = (p.hi[l] + p.hi[l], p.lo[l] + p.lo[l]);
+            let (square, error) = two_product::<FMA>(p.hi[l], p.hi[l]);
+            (p.hi[l], p.lo[l]) = loose_sum(double, (square, error + double.0 * p.lo[l]));
+        }
+    }
+    let mut powers = [DoubleDoubles::all(DoubleDouble::ZERO); 2];
+    for l in 0..W {
+        // 2ⁿ in two factors, for it may be less than the least normal number.
+        let half = nearest(0.5 * n[l]);
+        let power = power_of_two(half) * power_of_two(n[l] - half);
+        let scaled = (p.hi[l] * power, p.lo[l] * power);
+        (powers[0].hi[l], powers[0].lo[l]) = add((power, 0.0), scaled);
+        (powers[1].hi[l], powers[1].lo[l]) = add(scaled, two_sum(power, -1.0));
+    }
+    powers
+}
+
+/// n and r of `x = n ln 2 + 2⁶ r`, with `|r| < 0.0055`.
+#[inline(always)]
+fn exponent_and_rest<const W: usize, const FMA: bool>(
+    x: &DoubleDoubles<W, FMA>,
+) -> ([f64; W], DoubleDoubles<W, FMA>) {
     const LN_2: Pair = (std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17);
-    const DOUBLINGS: usize = 6;
+    const SCALE: f64 = 1.0 / (1 << DOUBLINGS) as f64;
+    let (mut n, mut r) = ([0.0; W], DoubleDoubles::all(DoubleDouble::ZERO));
+    for l in 0..W {
+        n[l] = if x.hi[l].abs() <= 0.35 { 0.0 } else { nearest(x.hi[l] * std::f64::consts::LOG2_E) };
+        // The difference of the high parts is exact, for the product is 0 or within a factor of two of x.
+        let (product, error) = two_product::<FMA>(LN_2.0, n[l]);
+        let rest = two_sum(x.hi[l] - product, (x.lo[l] - error) - LN_2.1 * n[l]);
+        (r.hi[l], r.lo[l]) = (rest.0 * SCALE, rest.1 * SCALE);
+    }
+    (n, r)
+}
+
+/// `e^r − 1` for `|r| < 0.0055`: the terms from `r⁵/5!` on are below 1e-11 of it, where doubles are enough; those from
+/// `r¹²/12!` on are below 1e-33.
+#[inline(always)]
+fn exp_less_1_of_small<const W: usize, const FMA: bool>(r: &DoubleDoubles<W, FMA>) -> DoubleDoubles<W, FMA> {
     /// 1/(k + 1)!
-    const LARGE: [Pair; 6] = [
+    const LARGE: [Pair; 4] = [
         (1.0, 0.0),
         (0.5, 0.0),
         (0.166_666_666_666_666_66, 9.251_858_538_542_97e-18),
         (0.041_666_666_666_666_664, 2.312_964_634_635_742_7e-18),
-        (0.008_333_333_333_333_333, 1.156_482_317_317_871_4e-19),
-        (0.001_388_888_888_888_889, -5.300_543_954_373_577e-20),
     ];
-    const SMALL: [f64; 6] = reciprocal_factorials(7);
-    let n = if x.0.abs() <= 0.35 { 0.0 } else { nearest(x.0 * std::f64::consts::LOG2_E) };
-    let rest = add(x, multiply::<FMA>(LN_2, (-n, 0.0)));
-    let scale = 0.5 / (1 << (DOUBLINGS - 1)) as f64;
-    let r = (rest.0 * scale, rest.1 * scale);
-    // |r| < 0.0055: the terms from r⁶/7! on are below 1e-17, where doubles are enough; those from r¹²/13! on are below
-    // 1e-36.
-    let mut series = (horner(&SMALL, r.0), 0.0);
-    for k in (0..LARGE.len()).rev() {
-        series = add_smaller(LARGE[k], multiply::<FMA>(series, r));
+    const SMALL: [f64; 7] = reciprocal_factorials(5);
+    let mut sum = DoubleDoubles::all(DoubleDouble::ZERO);
+    for l in 0..W {
+        let r = r.hi[l];
+        let r2 = r * r;
+        let low = (SMALL[0] + r * SMALL[1]) + r2 * (SMALL[2] + r * SMALL[3]);
+        let high = (SMALL[4] + r * SMALL[5]) + r2 * SMALL[6];
+        (sum.hi[l], sum.lo[l]) = loose_sum(LARGE[3], (r * (low + (r2 * r2) * high), 0.0));
     }
-    let mut p = multiply::<FMA>(series, r);
-    for _ in 0..DOUBLINGS {
-        // 2p + p².
-        let double = (p.0 + p.0, p.1 + p.1);
-        let (square, error) = two_product::<FMA>(p.0, p.0);
-        p = add_smaller(double, (square, error + double.0 * p.1));
+    for k in (0..LARGE.len() - 1).rev() {
+        for l in 0..W {
+            let product = loose_product::<FMA>((sum.hi[l], sum.lo[l]), (r.hi[l], r.lo[l]));
+            (sum.hi[l], sum.lo[l]) = loose_sum(LARGE[k], product);
+        }
     }
-    // 2ⁿ in two factors, for it may be less than the least normal number.
-    let half = nearest(0.5 * n);
-    let power = power_of_two(half) * power_of_two(n - half);
-    let scaled = (p.0 * power, p.1 * power);
-    [add_smaller((power, 0.0), scaled), add(scaled, two_sum(power, -1.0))]
+    for l in 0..W {
+        (sum.hi[l], sum.lo[l]) = loose_product::<FMA>((sum.hi[l], sum.lo[l]), (r.hi[l], r.lo[l]));
+    }
+    sum
+}
+
+/// The product of double-double numbers, with a low part up to a few ulps of the high one.
+#[inline(always)]
+fn loose_product<const FMA: bool>(a: Pair, b: Pair) -> Pair {
+    let (hi, error) = two_product::<FMA>(a.0, b.0);
+    (hi, error + (a.0 * b.1 + a.1 * b.0))
+}
+
+/// The sum of double-double numbers of which the first is larger, with a low part up to a few ulps of the high one.
+#[inline(always)]
+fn loose_sum(a: Pair, b: Pair) -> Pair {
+    let (hi, error) = quick_two_sum(a.0, b.0);
+    (hi, error + (a.1 + b.1))
 }
 
 /// The nearest integer.
@@ -169,13 +227,6 @@ fn nearest(x: f64) -> f64 {
 #[inline(always)]
 fn power_of_two(n: f64) -> f64 {
     f64::from_bits((n + INTEGER).to_bits().wrapping_add(1023) << 52)
-}
-
-/// The sum of double-double numbers of which the first is larger, to twice the precision of the larger one.
-#[inline(always)]
-fn add_smaller(a: Pair, b: Pair) -> Pair {
-    let (hi, error) = quick_two_sum(a.0, b.0);
-    quick_two_sum(hi, error + (a.1 + b.1))
 }
 
 /// A polynomial, coefficients by rising powers.

@@ -1,9 +1,10 @@
 //! States of a damped body at any time: those of the free body at the time τ, of one motion or of `C` in lanes.
 
-use crate::exact::free::flow::{Flow as FreeFlow, Pairs};
+use crate::exact::free::flow::Flow as FreeFlow;
 use crate::exact::free::series::Series;
 use crate::exact::lanes::Coefficients;
-use crate::numerics::lanes::{Pair, exp_of_pair, in_lane};
+use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
+use crate::numerics::lanes::{exp_of_pairs, in_lane};
 use polhode_ga::rows::curve::Curve;
 use polhode_ga::simd::double::{quick_two_sum, two_product};
 
@@ -50,12 +51,12 @@ impl<S: Series<C>, const C: usize> Coefficients<C> for Flow<S, C> {
 impl<S: Series<C>, const C: usize> Curve<4, 3> for Flow<S, C> {
     #[inline(always)]
     fn values<const W: usize, const FMA: bool>(&self, times: &[f64; W]) -> ([[f64; W]; 4], [[f64; W]; 3]) {
-        let (mut pairs, mut factor) = (Pairs { high: [0.0; W], low: [0.0; W] }, [0.0; W]);
+        let (mut g, mut per_g) = ([0.0; W], [0.0; W]);
         for l in 0..W {
-            let (g, per_g) = (in_lane(&self.damping, l), in_lane(&self.per_damping, l));
-            ((pairs.high[l], pairs.low[l]), factor[l]) = time_and_factor::<FMA>(g, per_g, times[l]);
+            (g[l], per_g[l]) = (in_lane(&self.damping, l), in_lane(&self.per_damping, l));
         }
-        let (rotor, mut omega) = self.free.states::<W, FMA>(&pairs);
+        let (tau, factor) = times_and_factors::<W, FMA>(&g, &per_g, times);
+        let (rotor, mut omega) = self.free.states::<W, FMA>(&tau);
         for k in 0..3 {
             for l in 0..W {
                 omega[k][l] *= factor[l];
@@ -65,18 +66,31 @@ impl<S: Series<C>, const C: usize> Curve<4, 3> for Flow<S, C> {
     }
 }
 
-/// The time τ of the free body in double-double precision, and `e^{−gt}`.
+/// The times τ of the free body in double-double precision, and `e^{−gt}`.
 #[inline(always)]
-fn time_and_factor<const FMA: bool>(g: f64, per_g: f64, t: f64) -> (Pair, f64) {
-    let (hi, lo) = two_product::<FMA>(-g, t);
-    let vanished = hi < -VANISHED;
-    let exponent = (if vanished { -VANISHED } else { hi }, if vanished { 0.0 } else { lo });
-    let [factor, less] = exp_of_pair::<FMA>(exponent);
-    // (1 − e^{−gt})/g: the quotient to a few roundings, and that of the remainder.
-    let still = less.0.abs() < STILL;
-    let quotient = -less.0 * per_g;
-    let (product, error) = two_product::<FMA>(quotient, g);
-    let rest = (((-less.0 - product) - error) - less.1) * per_g;
-    let (hi, lo) = quick_two_sum(quotient, rest);
-    ((if still { t } else { hi }, if still { 0.0 } else { lo }), factor.0 + factor.1)
+fn times_and_factors<const W: usize, const FMA: bool>(
+    g: &[f64; W],
+    per_g: &[f64; W],
+    times: &[f64; W],
+) -> (DoubleDoubles<W, FMA>, [f64; W]) {
+    let zeros = DoubleDoubles::all(DoubleDouble::ZERO);
+    let (mut exponents, mut tau, mut factor) = (zeros, zeros, [0.0; W]);
+    for l in 0..W {
+        let (hi, lo) = two_product::<FMA>(-g[l], times[l]);
+        let vanished = hi < -VANISHED;
+        exponents.hi[l] = if vanished { -VANISHED } else { hi };
+        exponents.lo[l] = if vanished { 0.0 } else { lo };
+    }
+    let [factors, less] = exp_of_pairs::<W, FMA>(&exponents);
+    for l in 0..W {
+        // (1 − e^{−gt})/g: the quotient to a few roundings, and that of the remainder.
+        let still = less.hi[l].abs() < STILL;
+        let quotient = -less.hi[l] * per_g[l];
+        let (product, error) = two_product::<FMA>(quotient, g[l]);
+        let rest = (((-less.hi[l] - product) - error) - less.lo[l]) * per_g[l];
+        let (hi, lo) = quick_two_sum(quotient, rest);
+        (tau.hi[l], tau.lo[l]) = (if still { times[l] } else { hi }, if still { 0.0 } else { lo });
+        factor[l] = factors.hi[l] + factors.lo[l];
+    }
+    (tau, factor)
 }

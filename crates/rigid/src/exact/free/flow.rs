@@ -5,6 +5,7 @@
 
 use super::series::{Series, State};
 use crate::exact::lanes::{Coefficients, Phases, mapped, unit_rotor};
+use crate::numerics::double_double::DoubleDoubles;
 use crate::numerics::lanes::{Phase, in_lane, sin_cos_turns};
 use polhode_ga::rows::curve::Curve;
 
@@ -59,16 +60,10 @@ impl<const W: usize> Times<W> for [f64; W] {
     }
 }
 
-/// Times in double-double precision.
-pub(crate) struct Pairs<const W: usize> {
-    pub high: [f64; W],
-    pub low: [f64; W],
-}
-
-impl<const W: usize> Times<W> for Pairs<W> {
+impl<const W: usize, const FUSED: bool> Times<W> for DoubleDoubles<W, FUSED> {
     #[inline(always)]
     fn turns<const FMA: bool>(&self, l: usize, scale: f64, phase: Phase) -> (f64, f64) {
-        phase.turns_at_pair::<FMA>((self.high[l] * scale, self.low[l] * scale))
+        phase.turns_at_pair::<FMA>((self.hi[l] * scale, self.lo[l] * scale))
     }
 }
 

@@ -397,3 +397,14 @@ def test_repr():
     text = repr(ph.Body.sphere(1, mass=2))
     assert "2 kg" in text
     assert "0.8" in text
+
+
+def test_principal_moments_come_one_by_one_or_as_an_array():
+    batch = np.array([[1.0, 2.0, 2.5], [2.0, 2.0, 3.0]])
+    assert ph.Inertia.from_principal_moments([1, 2, 2.5]) == ph.Inertia.from_principal_moments(1, 2, 2.5)
+    for found, expected in zip(ph.Inertia.from_principal_moments(batch), batch, strict=True):
+        assert found == ph.Inertia.from_principal_moments(*expected)
+    with pytest.raises(TypeError, match="i3 is missing"):
+        ph.Inertia.from_principal_moments(1, 2)
+    with pytest.raises(ValueError, match="an array of principal moments needs 3 components"):
+        ph.Inertia.from_principal_moments([1, 2])

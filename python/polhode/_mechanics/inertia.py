@@ -18,7 +18,7 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.foreign_tables import INERTIA
 from polhode._mechanics.parameters import common
-from polhode._support.arrays import Array, Shape, as_floats
+from polhode._support.arrays import Array, Shape, as_components, as_floats
 from polhode._support.calls import explains_calls_of
 from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 from polhode._support.memory import require_array
@@ -30,6 +30,18 @@ _BYTES = 800  # of an inertia, in Python and in the core
 def matrices(inertias: Iterable[Inertia]) -> Array:
     """Return the matrices (n, 3, 3) of inertias."""
     return _native.Inertia.matrices(list(inertias)).reshape(-1, 3, 3)
+
+
+def _three(i1: Any, i2: Any, i3: Any) -> Iterable[Any]:
+    """Return the three moments, which may be one array (..., 3)."""
+    if i2 is None and i3 is None:
+        return np.moveaxis(as_components(i1, 3, "an array of principal moments"), -1, 0)
+    if i2 is None or i3 is None:
+        missing = "i2" if i2 is None else "i3"
+        raise TypeError(
+            f"give three moments i1, i2 and i3, or one array (..., 3) of them; {missing} is missing"
+        )
+    return i1, i2, i3
 
 
 @with_foreign_names(INERTIA)
@@ -67,19 +79,21 @@ class Inertia(LinearMap, metaclass=ListsOwnNames):
         self._core = _core[0]
 
     @staticmethod
-    def from_principal_moments(i1: Any, i2: Any, i3: Any) -> Inertia:
+    def from_principal_moments(i1: Any, i2: Any = None, i3: Any = None) -> Inertia:
         """Return the inertia with moments (kg m²) about e1, e2, e3, i.e. in the planes e2e3, e3e1, e1e2.
 
         Arrays of moments (...), which broadcast, give an array (...) of inertias, for a batch of bodies::
 
             bodies = ph.Inertia.from_principal_moments(1, 2, np.linspace(2.2, 2.9, 8))
 
+        A single argument is an array (..., 3) of all three.
+
         Examples
         --------
         >>> ph.Inertia.from_principal_moments(1, 2, 3)
         Inertia(principal moments 1, 2, 3 kg m²)
         """
-        parts = [as_floats(x, f"moment i{k}") for k, x in enumerate((i1, i2, i3), 1)]
+        parts = [as_floats(x, f"moment i{k}") for k, x in enumerate(_three(i1, i2, i3), 1)]
         if not any(part.ndim for part in parts):
             return Inertia(_native.Inertia.from_principal_moments(np.array(parts)))
         shape = common({f"i{k}": part.shape for k, part in enumerate(parts, 1)}, "the moments")

@@ -125,6 +125,8 @@ def _misfit(
         if remedies and "positional" in error and "given" in error:
             remedy = f"write {next(iter(remedies.values()))}"
         own = function.__qualname__.removesuffix(".__init__")
+        if "self" in wanted:
+            error = _without_self(error)
         return re.sub(r"^[\w.<>]+\(\)", f"{own}()", error) + f"; {remedy}"
     meant = [ours for ours in _OURS.get(unknown[0].lower(), ()) if ours in names]
     if unknown[0] in remedies:
@@ -134,6 +136,16 @@ def _misfit(
         remedy = f"write {' or '.join(f'{ours}=' for ours in meant)}{values}"
     title = function.__qualname__.removesuffix(".__init__")
     return f"{title} has no argument {unknown[0]!r}; {remedy}"
+
+
+def _without_self(error: str) -> str:
+    """Return Python's message for too many arguments, with numbers that do not count the object itself."""
+    counts = re.search(r"takes (?:from \d+ to )?\d+ positional arguments? but \d+ (?:was|were) given", error)
+    if not counts:
+        return error
+    fewer = re.sub(r"\d+", lambda number: str(int(number[0]) - 1), counts[0])
+    fewer = re.sub(r"(?<!to )\b1 positional arguments", "1 positional argument", fewer)
+    return error.replace(counts[0], fewer.replace("but 1 were given", "but 1 was given"))
 
 
 def _listed(parameters: list[inspect.Parameter]) -> str:

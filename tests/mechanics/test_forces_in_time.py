@@ -67,3 +67,23 @@ def test_a_stepper_takes_as_many_steps_as_a_simulation(method):
     two = ph.State(start.rotor, [[1, 0.3, 2]] * 2)
     many = ph.simulate(inertia, two, [dt], law, method=method, step=0.2)
     assert np.abs(many.omega_body.components[:, -1] - stepped.omega_body.components).max() <= 1e-14
+
+
+def test_a_body_at_rest_begins_to_move_when_its_force_starts():
+    """Errors of its first steps are relative to the speed that the force causes, not to the speed so far."""
+    body = ph.Body.sphere(0.1, mass=2)
+    still = ph.State(ph.Rotor.identity(), [0, 0, 0], position=[0, 0, 0], velocity=[0, 0, 0])
+    late = 7.123456
+    switched = ph.force.function(lambda t, x, v, R: [float(t > late), 0, 0])
+    ramp = ph.force.formula("(norm(t - s) + t - s)/2 e1", s=late)
+    for breaks in ([late], []):
+        motion = ph.simulate(body, still, [5, 10], force=switched, breaks=breaks)
+        reached = motion.position.components[:, 0]
+        assert reached[0] == 0
+        assert abs(reached[1] - (10 - late) ** 2 / 4) <= 3 * motion.certificate.error_estimate * reached[1]
+        motion = ph.simulate(body, still, [5, 10], force=ramp, breaks=breaks)
+        reached = motion.position.components[:, 0]
+        assert abs(reached[1] - (10 - late) ** 3 / 12) <= 3 * motion.certificate.error_estimate * reached[1]
+    begun = ph.State(ph.Rotor.identity(), [0, 0, 0], time=1e6, position=[0, 0, 0], velocity=[0, 0, 0])
+    motion = ph.simulate(body, begun, [1e6 + 2], force=ph.force.formula("(t - s) e1", s=1e6))
+    assert motion.position.components[-1, 0] == pytest.approx(2**3 / 12, rel=1e-9)

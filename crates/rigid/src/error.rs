@@ -86,6 +86,9 @@ pub enum SimulateError {
     /// A law cannot be evaluated at this time.
     #[error("at t = {} s: {message}", seconds(*time))]
     Torque { time: f64, message: String },
+    /// A law has no finite value at this time.
+    #[error("at t = {} s: {message}", seconds(*time))]
+    Undefined { time: f64, message: String },
     #[error("the motion became NaN or infinite at t = {} s; use a shorter time, or a shorter step where one is given", seconds(*time))]
     Diverged { time: f64 },
     #[error(
@@ -104,6 +107,7 @@ impl SimulateError {
         match self {
             SimulateError::StepTooSmall { time, .. }
             | SimulateError::Torque { time, .. }
+            | SimulateError::Undefined { time, .. }
             | SimulateError::Diverged { time } => Some(*time),
             _ => None,
         }
@@ -202,5 +206,32 @@ fn others(number: usize, moments: &[f64; 3]) -> String {
 
 /// Why a law is invalid or cannot be evaluated at some point of the motion; the caller adds the time.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{0}")]
-pub struct TorqueError(pub String);
+#[error("{message}")]
+pub struct TorqueError {
+    /// What is wrong, and the remedy.
+    pub message: String,
+    /// Whether the law just has no finite value at this point: a step that is too long may lead there.
+    pub is_undefined: bool,
+}
+
+impl TorqueError {
+    /// That of a law that is invalid, or whose evaluation fails.
+    pub fn new(message: impl Into<String>) -> TorqueError {
+        TorqueError { message: message.into(), is_undefined: false }
+    }
+
+    /// That of a law without a finite value at a point.
+    pub fn undefined(message: impl Into<String>) -> TorqueError {
+        TorqueError { message: message.into(), is_undefined: true }
+    }
+
+    /// The error of a motion at a time.
+    pub fn at(self, time: f64) -> SimulateError {
+        let message = self.message;
+        if self.is_undefined {
+            SimulateError::Undefined { time, message }
+        } else {
+            SimulateError::Torque { time, message }
+        }
+    }
+}

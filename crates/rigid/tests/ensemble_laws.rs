@@ -295,7 +295,7 @@ fn a_body_that_fails_fails_alone() {
     // Functions that give up.
     let function = |until: f64| {
         Torque::Function(Function::new(move |&Seen { time, omega, .. }| {
-            if time > until { Err(TorqueError("too late".into())) } else { Ok(omega * -0.1) }
+            if time > until { Err(TorqueError::new("too late")) } else { Ok(omega * -0.1) }
         }))
     };
     let failing = with(&|body| function(if ill.contains(&body) { 0.4 } else { 2.0 }));

@@ -88,5 +88,5 @@ fn invalid_torques_are_errors_with_a_place() {
     let (body, mut state) = state();
     state.time = 1.0;
     let error = law("k Ω + Ω/(t − 1)", Axes::Body).unwrap().value(&body, &state).unwrap_err();
-    assert!(error.0.contains("`Ω/(t − 1)` in the formula"), "{error}");
+    assert!(error.message.contains("`Ω/(t − 1)` in the formula"), "{error}");
 }

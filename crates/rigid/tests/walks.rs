@@ -97,7 +97,7 @@ fn a_touch_is_not_a_crossing() {
 fn a_zero_at_the_end_is_a_crossing_where_nothing_is_known_beyond() {
     let quantity = Quantity::Function(Function::new(|seen| match seen.time {
         t if t <= 2.0 => Ok(t - 2.0),
-        _ => Err(TorqueError("too late".into())),
+        _ => Err(TorqueError::new("too late")),
     }));
     let events = vec![Event { quantity, direction: None, terminal: false }];
     let motion = problem().simulate(&[2.0], Options { events, ..Options::default() }, &mut |_| true);
@@ -107,7 +107,7 @@ fn a_zero_at_the_end_is_a_crossing_where_nothing_is_known_beyond() {
 #[test]
 fn errors_have_a_time() {
     let late = |seen: &polhode_rigid::state::point::Seen| {
-        if seen.time > 0.5 { Err(TorqueError("too late".into())) } else { Ok(Vector::default()) }
+        if seen.time > 0.5 { Err(TorqueError::new("too late")) } else { Ok(Vector::default()) }
     };
     let late = [Force::Function(Function::new(late))];
     let motion = problem().with_center(Center::default(), 1.0, &late).simulate(

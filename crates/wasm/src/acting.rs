@@ -11,7 +11,7 @@ use serde_json::Value;
 pub fn acting(of: &Opened, state: [f64; 8]) -> Result<Value, String> {
     let [time, s, x, y, z, omega @ ..] = state;
     let rotor = Rotor::from_unit_components([s, x, y, z]);
-    let torque = of.setup.torque_in_space(time, rotor, Bivector(omega)).map_err(|error| error.0)?;
+    let torque = of.setup.torque_in_space(time, rotor, Bivector(omega)).map_err(|error| error.message)?;
     let thrusts = of.scene.thrusts(&of.body).map(|(force, at)| facts! { along: force.0, at: at.0 });
     let facts = facts! {
         torque: torque.0,

@@ -183,7 +183,7 @@ impl Callback {
     ) -> Result<T, TorqueError> {
         let what = || format!("the {} that the function returned at t = {time} s", self.what);
         Python::attach(|py| read(self.call.bind(py).call1(arguments(py)?)?, &what)).map_err(|error| {
-            let message = TorqueError(error.to_string());
+            let message = TorqueError::new(error.to_string());
             *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
             message
         })

@@ -173,7 +173,7 @@ pub(crate) fn run<T: Send>(
     match (result, error) {
         (Ok(found), _) => Ok(found),
         (Err(SimulateError::Interrupted), Some(error)) => Err(error),
-        (Err(error @ SimulateError::Torque { .. }), _) => {
+        (Err(error @ (SimulateError::Torque { .. } | SimulateError::Undefined { .. })), _) => {
             Err(failed(callbacks.iter().map(|one| one.bind(py)), error))
         }
         (Err(error), _) => Err(bad(error)),

@@ -182,7 +182,9 @@ impl Stepper {
         }
         let bound = || self.callbacks.iter().map(|one| one.bind(py));
         done.map_err(|(body, error): Failed| match error {
-            SimulateError::Torque { .. } => failed(bound(), format!("{}{error}", place(body, &self.shape))),
+            SimulateError::Torque { .. } | SimulateError::Undefined { .. } => {
+                failed(bound(), format!("{}{error}", place(body, &self.shape)))
+            }
             _ => bad(format!("{}{error}", place(body, &self.shape))),
         })?;
         if self.callbacks.is_empty() { Ok(()) } else { interrupted(bound()) }

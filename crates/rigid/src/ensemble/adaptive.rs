@@ -214,7 +214,10 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
             let from = self.at.time.0[l];
             match run.controller.end(from, run.stop) {
                 Ok(to) => (h.0[l], ends.0[l]) = (to - from, to),
-                Err(error) => self.fail(l, error, scheduler),
+                Err(error) => {
+                    let error = run.undefined.take().unwrap_or(error);
+                    self.fail(l, error, scheduler);
+                }
             }
         }
         (h, ends)
@@ -242,6 +245,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
             }
             if run.controller.judge(h, error) {
                 run.sweep.add_error(error, &run.controller);
+                run.undefined = None;
                 match run.arrive(h, next, l, scheduler) {
                     Ok(()) => accepted[l] = true,
                     Err(error) => self.fail(l, error, scheduler),

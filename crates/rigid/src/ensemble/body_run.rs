@@ -35,6 +35,8 @@ pub(super) struct BodyRun<'a> {
     pub controller: StepController,
     /// The next stop.
     pub stop: f64,
+    /// Why the last step was refused, if a law has no value within it.
+    pub undefined: Option<SimulateError>,
     /// Parts of the run counted as done.
     so_far: u64,
 }
@@ -45,11 +47,13 @@ impl<'a> BodyRun<'a> {
         let bounds = scheduler.bounds(&member, torques);
         let first_rate = fastest_rate(&member.gyrostat, torques, &member.start);
         let accuracy = Accuracy::new(METHOD.order(), scheduler.options.rtol);
+        let [first, last] = span(scheduler.times, member.start.time);
         let scales = Scales {
             body: member.gyrostat,
+            duration: last - first,
             rounding: ROUNDING_OF_RUNGE_KUTTA,
             in_space: true,
-            is_smooth: bounds.is_smooth(),
+            is_smooth: bounds.is_smooth() && !torques.iter().any(Torque::has_kinks),
         };
         let rule = accuracy.first_steps();
         BodyRun {
@@ -64,6 +68,7 @@ impl<'a> BodyRun<'a> {
             begin: start,
             known_rate: 0.0,
             stop: start.phase.time,
+            undefined: None,
             so_far: 0,
         }
     }
@@ -146,11 +151,18 @@ impl<'a> BodyRun<'a> {
         self.bounds.limit.check(self.sweep.steps, h, turn, || self.fraction(time, scheduler))
     }
 
-    /// The error of a law that cannot be evaluated, from a single-body step; none if the step is just too long.
+    /// The error of a law that cannot be evaluated at the start of a step, from a single-body step; none if the step is just
+    /// too long.
     #[cold]
-    pub fn diagnose(&self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
+    pub fn diagnose(&mut self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
         let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None);
-        alone.step(at, h, self.rate(at)).map(|_| ())
+        match alone.step(at, h, self.rate(at)) {
+            Err(error @ SimulateError::Undefined { time, .. }) if time != at.phase.time => {
+                self.undefined = Some(error);
+                Ok(())
+            }
+            step => step.map(|_| ()),
+        }
     }
 
     /// Updates the progress.

@@ -145,7 +145,7 @@ impl Quantity {
             Quantity::Function(function) => function.value(at)?,
         };
         if value.is_nan() {
-            return Err(TorqueError("its value is NaN".into()));
+            return Err(TorqueError::new("its value is NaN"));
         }
         Ok(value)
     }

@@ -73,6 +73,15 @@ impl Force {
         matches!(self, Force::Constant(_) | Force::Drag(_) | Force::Spring(..))
     }
 
+    /// Whether the force is known to have kinks, such as `|v| v` at rest.
+    pub(crate) fn has_kinks(&self) -> bool {
+        match self {
+            Force::QuadraticDrag(_) => true,
+            Force::Formula(law) => law.has_kinks(),
+            _ => false,
+        }
+    }
+
     /// Whether the force does not depend on time explicitly, as far as is known.
     pub fn is_autonomous(&self) -> bool {
         match self {
@@ -108,8 +117,8 @@ impl Force {
             Force::Central(mu) => {
                 let distance = center.position.norm();
                 if distance == 0.0 {
-                    return Err(TorqueError(
-                        "the body is at the centre of attraction, where the force is infinite".into(),
+                    return Err(TorqueError::undefined(
+                        "the body is at the centre of attraction, where the force is infinite",
                     ));
                 }
                 center.position * (-mu * mass / distance / distance / distance)
@@ -119,7 +128,7 @@ impl Force {
                 let force = law.value(at)?;
                 if !force.0.iter().all(|x| x.is_finite()) {
                     let Vector(force) = force;
-                    return Err(TorqueError(format!(
+                    return Err(TorqueError::undefined(format!(
                         "the force that the function returned is {force:?}; it must be finite"
                     )));
                 }

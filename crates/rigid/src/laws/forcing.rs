@@ -4,7 +4,6 @@ use super::driven_wheels::driven;
 use super::force::Translation;
 use super::torque::{Torque, total_torque};
 use crate::error::SimulateError;
-use crate::error::TorqueError;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::simd::lanes::{Lanes, One};
@@ -56,6 +55,12 @@ pub(crate) trait Forcing<const W: usize, const F: bool> {
     fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
         [Lanes::ZERO; 3]
     }
+
+    /// Distance and speed of a centre of mass below which errors are not relative to smaller ones; zero by default.
+    #[inline(always)]
+    fn least_center(&self) -> [Lanes<W, F>; 2] {
+        [Lanes::ZERO; 2]
+    }
 }
 
 /// Forcing of a single body. The first failure is stored; after it, no law is evaluated.
@@ -65,6 +70,7 @@ pub(crate) struct BodyForcing<'a> {
     translation: Option<&'a Translation>,
     /// Wheels with motors, whose momentum the steps carry.
     wheels: &'a [Torque],
+    least_center: [f64; 2],
     /// Of the step.
     middle: f64,
     failure: Option<SimulateError>,
@@ -77,12 +83,18 @@ impl<'a> BodyForcing<'a> {
         torques: &'a [Torque],
         translation: Option<&'a Translation>,
     ) -> BodyForcing<'a> {
-        BodyForcing { body, torques, translation, wheels: &[], middle: f64::NAN, failure: None }
+        let least_center = [0.0; 2];
+        BodyForcing { body, torques, translation, wheels: &[], least_center, middle: f64::NAN, failure: None }
     }
 
     /// The same with wheels, whose momentum the steps carry, instead of their torque on the body.
     pub fn with_wheels(self, wheels: &'a [Torque]) -> BodyForcing<'a> {
         BodyForcing { wheels, ..self }
+    }
+
+    /// The same with lower bounds of the scales of distance and speed.
+    pub fn with_least_center(self, least_center: [f64; 2]) -> BodyForcing<'a> {
+        BodyForcing { least_center, ..self }
     }
 
     /// The first failure, if there was one.
@@ -127,6 +139,10 @@ impl Forcing<1, false> for BodyForcing<'_> {
         }
     }
 
+    fn least_center(&self) -> [One; 2] {
+        One::each(self.least_center)
+    }
+
     fn acceleration(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {
         let Some(translation) = self.translation.filter(|_| self.failure.is_none()) else {
             return [One::ZERO; 3];
@@ -134,7 +150,6 @@ impl Forcing<1, false> for BodyForcing<'_> {
         let (phase, [x, y, z, u, v, w]) = (self.phase(at), One::alone(*center));
         let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
         let acceleration = translation.acceleration(self.body, &phase, &center);
-        let failed = |error: TorqueError| SimulateError::Torque { time: phase.time, message: error.0 };
-        self.noted(acceleration.map(|a| a.0).map_err(failed))
+        self.noted(acceleration.map(|a| a.0).map_err(|error| error.at(phase.time)))
     }
 }

@@ -23,6 +23,25 @@ const FIRST_TURN: f64 = 2.0;
 /// Parts of a way to a stop below this, relative to the times, are not divided: stops may be adjacent floats.
 const LEAST_PART: f64 = 1e-14;
 
+/// Shorter steps, relative to the time, are rounded away.
+const LEAST_STEP: f64 = 1e-14;
+
+/// A step of the least length with at most this error is accepted: a law jumps there.
+const NEGLIGIBLE: f64 = 1e-12;
+
+/// The error of a step that shortens falls at least with this power of its length where laws are smooth, once it is less than
+/// [`RESOLVED`].
+const SMOOTH: i32 = 4;
+const RESOLVED: f64 = 0.1;
+
+/// Steps that are hardly shorter show no power.
+const MUCH_SHORTER: f64 = 0.7;
+
+/// What counts of the error per length of a longer step that was refused, and how much less than by that the error is where a
+/// step ends before the jump.
+const FORGOTTEN: f64 = 0.1;
+const BEFORE_JUMP: f64 = 1e-4;
+
 /// The number of equal steps of at most this length in a span, both in s: k steps up to rounding are k.
 pub(crate) fn step_count(span: f64, step: f64) -> f64 {
     (span.abs() / step * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0)
@@ -45,10 +64,23 @@ pub(crate) struct StepController {
     is_first: bool,
     /// The longest step to the next stop, in s.
     most: f64,
-    /// Whether the previous step was rejected.
+    /// Whether the last step was rejected, its length and its error estimate.
     refused: bool,
+    refused_length: f64,
+    estimate: f64,
+    /// Whether a law seems to jump ahead, before the end of the last rejected step, in s; and the largest error estimate of
+    /// such steps per length.
+    is_jump_ahead: bool,
+    refused_end: f64,
+    per_length: f64,
+    /// The end of the current step, in s.
+    to: f64,
+    /// Whether the step is as short as steps can be.
+    is_least: bool,
     /// Whether a stop or the longest length cut the last accepted step short.
     is_cut: bool,
+    /// A bound of its error if a law jumps in it, else 0.
+    error_of_jump: f64,
 }
 
 impl StepController {
@@ -65,13 +97,27 @@ impl StepController {
             is_first: true,
             most: f64::INFINITY,
             refused: false,
+            refused_length: 0.0,
+            estimate: 0.0,
+            is_jump_ahead: false,
+            refused_end: 0.0,
+            per_length: 0.0,
+            to: 0.0,
+            is_least: false,
             is_cut: false,
+            error_of_jump: 0.0,
         }
     }
 
     /// Whether a stop or the longest length cut the last accepted step short: its length was not chosen by the tolerance.
     pub fn is_cut(&self) -> bool {
         self.is_cut
+    }
+
+    /// A bound of the error of the last accepted step if a law jumps in it, else 0. There the estimate of a step may be small
+    /// by chance; but errors fall with the length only, and those of longer steps are known.
+    pub fn error_of_jump(&self) -> f64 {
+        self.error_of_jump
     }
 
     /// Heads for the next stop.
@@ -90,26 +136,55 @@ impl StepController {
         let rest = (time - from).abs();
         let next = self.next.min(self.most).min(self.longest);
         // Two steps of half the way avoid a tiny last one.
-        let cut = if next >= rest { rest } else { next.min(0.5 * rest.max(next)) };
+        let mut cut = if next >= rest { rest } else { next.min(0.5 * rest.max(next)) };
+        let least = LEAST_STEP * from.abs();
+        self.is_least = self.refused && cut < least;
+        if self.is_least {
+            if self.estimate.is_nan() || self.estimate > NEGLIGIBLE {
+                return Err(SimulateError::StepTooSmall { time: from, step: cut });
+            }
+            cut = least.min(rest);
+        }
         let to = if cut >= rest { time } else { from + (time - from).signum() * cut };
-        if to == from || self.refused && cut < 1e-14 * from.abs() {
+        if to == from {
             return Err(SimulateError::StepTooSmall { time: from, step: cut });
         }
-        self.cut = cut;
+        (self.cut, self.to) = (cut, to);
         Ok(to)
+    }
+
+    /// Whether the error of a step that follows a longer, rejected one has fallen less than where laws are smooth.
+    fn is_sharp(&self, h: f64, estimate: f64) -> bool {
+        let shorter = h / self.refused_length;
+        self.refused
+            && shorter < MUCH_SHORTER
+            && self.estimate < RESOLVED
+            && estimate > self.estimate * shorter.powi(SMOOTH)
     }
 
     /// Whether a step of length h is accepted, by the estimate of its error. The next one is the longest whose error should
     /// be 0.9⁸ of the tolerance.
     pub fn judge(&mut self, h: f64, estimate: f64) -> bool {
-        let (h, error) = (h.abs(), estimate / self.tolerance);
-        // NaN too.
-        if error.is_nan() || error > 1.0 {
+        let (h, direction, error) = (h.abs(), h.signum(), estimate / self.tolerance);
+        let is_negligible = self.is_least && estimate <= NEGLIGIBLE;
+        self.is_jump_ahead |= self.is_sharp(h, estimate);
+        if error.is_nan() || error > 1.0 && !is_negligible {
             self.next = h * if error.is_finite() { (0.9 * error.powf(-ROOT)).max(0.2) } else { 0.2 };
-            self.refused = true;
+            (self.refused, self.estimate, self.refused_length) = (true, estimate, h);
+            self.refused_end = self.to;
+            let per_length = if estimate.is_finite() { estimate / h } else { 0.0 };
+            self.per_length = (FORGOTTEN * self.per_length).max(per_length);
             return false;
         }
         let growth = (0.9 * error.powf(-ROOT)).clamp(0.3, if self.refused { 1.0 } else { 6.0 });
+        // A step that ends before the jump has a much smaller error.
+        let bound = self.per_length * h;
+        let is_at_jump = self.is_jump_ahead && estimate > BEFORE_JUMP * bound;
+        self.error_of_jump = if is_at_jump { estimate.max(bound) } else { 0.0 };
+        // The jump is before the end of the last refused step.
+        if (self.to - self.refused_end) * direction >= 0.0 {
+            (self.is_jump_ahead, self.per_length) = (false, 0.0);
+        }
         self.is_cut = self.cut < self.next;
         // A step that is cut short says little about the possible length.
         self.next = if self.is_cut { self.next.max(h * growth) } else { h * growth };

@@ -51,6 +51,14 @@ impl Engine {
         })
     }
 
+    /// The same with lower bounds of the scales of distance and speed, for estimates of errors.
+    pub fn with_least_center(self, least_center: [f64; 2]) -> Engine {
+        match self {
+            Engine::RungeKutta(method) => Engine::RungeKutta(method.with_least_center(least_center)),
+            other => other,
+        }
+    }
+
     /// One step of length `h`, and an estimate of its error where the method has one, relative to the angular velocity
     /// `fastest` in rad/s, else 0.
     pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {

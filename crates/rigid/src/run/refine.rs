@@ -53,8 +53,12 @@ const FEW_STEPS: u64 = 16;
 /// difference does not show their errors.
 const COUNTED_OF_CUT_STEPS: f64 = 0.5;
 
-/// The order of any method where a law has kinks.
+/// The orders of any method where a law has kinks, and where it jumps.
 const ORDER_AT_KINKS: f64 = 2.0;
+const ORDER_AT_JUMPS: f64 = 1.0;
+
+/// Safety factor of the errors caused by jumps: they change the times of later jumps.
+const MARGIN_AT_JUMPS: f64 = 2.0;
 
 /// Maximum number of sweeps with different steps.
 const MOST_SWEEPS: u32 = 30;
@@ -107,7 +111,9 @@ pub(crate) struct Scales {
     pub rounding: f64,
     /// Whether steps carry the momentum in space.
     pub in_space: bool,
-    /// Whether the laws change slowly at the scale of steps. Otherwise a difference need not scale with the order and is
+    /// The time from the first output or the start to the last, in s.
+    pub duration: f64,
+    /// Whether the laws change slowly at the scale of steps and are not known to have kinks. Otherwise a difference need not scale with the order and is
     /// taken as the error itself.
     pub is_smooth: bool,
 }
@@ -122,12 +128,14 @@ pub(crate) struct SweepPlan {
     /// body at rest until it is pushed would need a tolerance relative to nearly zero.
     pub known_rate: f64,
     pub noise: Option<Noise>,
+    /// Whether the errors of equal steps in which a law jumps are added up.
+    pub watches_jumps: bool,
 }
 
 impl SweepPlan {
     /// The plan of a single sweep.
     pub fn only(rule: StepRule) -> SweepPlan {
-        SweepPlan { rule, number: 1, known_rate: 0.0, noise: None }
+        SweepPlan { rule, number: 1, known_rate: 0.0, noise: None, watches_jumps: false }
     }
 }
 
@@ -216,13 +224,19 @@ impl Convergence {
 
     /// The sweep to run next.
     pub fn next(&self) -> SweepPlan {
-        let number = self.sweeps + 1;
+        let plan = SweepPlan {
+            rule: self.rule,
+            number: self.sweeps + 1,
+            known_rate: self.known_rate,
+            noise: None,
+            watches_jumps: true,
+        };
         match &self.pair {
             Some(pair) => {
                 let noise = Noise::new(pair.size, self.scales.in_space, u64::from(pair.repeats));
-                SweepPlan { rule: pair.rule, number, known_rate: pair.known_rate, noise: Some(noise) }
+                SweepPlan { rule: pair.rule, known_rate: pair.known_rate, noise: Some(noise), ..plan }
             }
-            None => SweepPlan { rule: self.rule, number, known_rate: self.known_rate, noise: None },
+            None => plan,
         }
     }
 
@@ -281,6 +295,7 @@ impl Convergence {
     fn compare(&mut self, difference: f64, coarse: &Sweep, fine: Sweep) -> SweepResult {
         let rounding = self.magnification.map_or(0.0, |known| known.rounding_error(fine.steps));
         let (truncation, shorter) = self.truncation(difference, coarse, &fine);
+        let jumps = fine.errors_of_jumps > 0.0 && matches!(self.rule, StepRule::Step(_));
         let error = (truncation + rounding).max(f64::EPSILON * (fine.steps as f64).sqrt());
         let goal = self.accuracy.reachable(rounding);
         if error <= goal && self.magnification.is_some() {
@@ -307,7 +322,7 @@ impl Convergence {
             None => 2.0,
             Some(_) if difference >= 0.1 => 2.0,
             Some(_) => {
-                let order = f64::from(self.accuracy.order);
+                let order = if jumps { ORDER_AT_JUMPS } else { f64::from(self.accuracy.order) };
                 // Errors of a low order fall little from sweep to sweep.
                 let slow = self.by.powf(TRUSTED * order) < 2.0;
                 let likely = if slow { truncation } else { difference * self.by.powf(-0.9 * order) };
@@ -327,30 +342,33 @@ impl Convergence {
 
     /// The truncation of the finer of two sweeps, and its refinement factor if its steps are shorter.
     fn truncation(&self, difference: f64, coarse: &Sweep, fine: &Sweep) -> (f64, Option<f64>) {
-        let (mut shorter, mut least_truncation) = (self.by, 0.0);
+        let magnified = self.magnification.map_or(1.0, |known| known.of_sums());
+        let is_smooth = self.scales.is_smooth && fine.errors_of_jumps == 0.0;
+        let (mut shorter, mut least_truncation) = (self.by, self.error_by_jumps(fine));
         if let StepRule::Tolerance(steps) = self.rule {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
             // Steps cannot meet a smaller tolerance; the difference is used.
             let counts = steps.tolerance > LEAST_TOLERANCE;
-            let magnified =
-                if counts { self.magnification.map_or(1.0, |known| known.of_sums()) } else { 0.0 };
+            let magnified = if counts { magnified } else { 0.0 };
             let (sum, of_cut_steps) = (fine.errors * magnified, fine.errors_of_cut_steps * magnified);
             if shorter < COMPARABLE {
-                return (difference.max(sum), None);
+                return (difference.max(sum).max(least_truncation), None);
             }
-            let shows_order = self.scales.is_smooth && fine.steps >= FEW_STEPS;
+            let shows_order = is_smooth && fine.steps >= FEW_STEPS;
             let counted = if shows_order { COUNTED } else { COUNTED_WITHOUT_ORDER };
             let of_all = sum.min(counted * self.accuracy.goal);
-            least_truncation = of_all.max(of_cut_steps.min(COUNTED_OF_CUT_STEPS * self.accuracy.goal));
-            if !self.scales.is_smooth {
+            let of_cut_steps = of_cut_steps.min(COUNTED_OF_CUT_STEPS * self.accuracy.goal);
+            least_truncation = least_truncation.max(of_all).max(of_cut_steps);
+            if !is_smooth {
                 return (difference.max(least_truncation), Some(shorter));
             }
         }
         let order = f64::from(self.accuracy.order);
         // Sweeps with steps of s differ by less than the error if s^q < 2.
         let least = |order: f64| (shorter.powf(TRUSTED * order) - 1.0).min(1.0);
-        if !self.scales.is_smooth {
-            return (difference / least(order.min(ORDER_AT_KINKS)), Some(shorter));
+        if !is_smooth {
+            let by_difference = difference / least(order.min(ORDER_AT_KINKS));
+            return (by_difference.max(least_truncation), Some(shorter));
         }
         let last = self.last.filter(|&(before, _)| before <= RESOLVED);
         let lucky = last.map_or(0.0, |(before, _)| before * shorter.powf(-FASTEST_FALL * order));
@@ -360,6 +378,13 @@ impl Convergence {
         });
         let truncation = difference / (shorter.powf(exponent) - 1.0).max(least(order));
         (truncation.max(least_truncation), Some(shorter))
+    }
+
+    /// A bound of the error caused by steps in which laws jump. A wrong angular velocity turns the body by ever more; the
+    /// response to noise would not show this, since it changes the steps at jumps too.
+    fn error_by_jumps(&self, sweep: &Sweep) -> f64 {
+        let turned = sweep.largest[0] * self.scales.duration;
+        MARGIN_AT_JUMPS * sweep.errors_of_jumps * (1.0 + 0.5 * turned)
     }
 
     fn converged(&self, sweep: Sweep, error: f64) -> Converged {

@@ -10,6 +10,7 @@ use super::sweep::{Integrator, Progress, StepRule, Sweep, is_finite};
 use super::{Motion, NO_CLOSED_FORM, Options, Problem};
 use crate::error::SimulateError;
 use crate::laws::event::Event;
+use crate::laws::force::Force;
 use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::state::carried::Carried;
@@ -41,7 +42,8 @@ impl Problem {
                 (Engine::ClosedForm(Box::new(closed)), "exact")
             }
             None => (
-                Engine::new(method, self.body, &self.torques, translation, &self.start().phase)?,
+                Engine::new(method, self.body, &self.torques, translation, &self.start().phase)?
+                    .with_least_center(bounds.least_center),
                 method.name(),
             ),
         };
@@ -121,11 +123,15 @@ impl Problem {
             center.iter().for_each(|center| to.center = center.at(time));
             to
         };
+        let [begin, end] = span(times, self.time);
         let scales = Scales {
             body: self.body,
+            duration: end - begin,
             rounding: engine.rounding(),
             in_space: engine.is_in_space(),
-            is_smooth: bounds.is_smooth(),
+            is_smooth: bounds.is_smooth()
+                && !self.torques.iter().any(Torque::has_kinks)
+                && !self.forces().iter().any(Force::has_kinks),
         };
         let mut sweeps = Convergence::new(first, accuracy, scales);
         loop {
@@ -168,7 +174,7 @@ impl Problem {
         start: Carried,
         engine: &Engine,
         times: &[f64],
-        (SweepPlan { rule, number, known_rate, noise }, bounds): (SweepPlan, &StepBounds),
+        (SweepPlan { rule, number, known_rate, noise, watches_jumps }, bounds): (SweepPlan, &StepBounds),
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Sweep, SimulateError> {
@@ -184,6 +190,7 @@ impl Problem {
             bounds,
             events,
             center: self.center_motion(),
+            watches_jumps,
             origin: self.time,
             mass: self.mass,
             number,

@@ -47,6 +47,8 @@ pub(crate) struct Sampled {
     pub stops: Vec<f64>,
     /// Time of the largest torque, if it depends on time.
     pub peak: Option<f64>,
+    /// The integral of its size.
+    pub impulse: f64,
 }
 
 /// Values of a law at times.
@@ -117,7 +119,7 @@ pub(crate) fn sampled(law: &InTime, [from, to]: [f64; 2], adapts: bool) -> Resul
         Ok(values) => values,
         // An error of a user's function is reported; a formula may fail at this state only.
         Err((time, error)) if law.is_function => {
-            return Err(SimulateError::Torque { time, message: error.0 });
+            return Err(error.at(time));
         }
         Err(_) => return Ok(Sampled::default()),
     };
@@ -137,7 +139,8 @@ pub(crate) fn sampled(law: &InTime, [from, to]: [f64; 2], adapts: bool) -> Resul
         let mut left = (most / finest.len()).min(MOST_FINER_EACH);
         finer.bisect([time(part.start), time(part.end)], &mut left, &mut stops);
     }
-    Ok(Sampled { stops, peak: Some(time(peak)) })
+    let mean = values.iter().map(|value| value.norm()).sum::<f64>() / values.len() as f64;
+    Ok(Sampled { stops, peak: Some(time(peak)), impulse: mean * (to - from).abs() })
 }
 
 /// Bisects intervals of samples in which the coarse ones do not predict the others; collects the midpoints, and the finest of

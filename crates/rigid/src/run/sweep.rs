@@ -1,6 +1,7 @@
 //! Integrator: one sweep over the output times, by fixed or adaptive steps, with events.
 
 mod events;
+mod jumps;
 
 use super::center::CenterMotion;
 use super::certificate::DriftMonitor;
@@ -16,6 +17,7 @@ use crate::state::center::Center;
 use crate::state::phase::Gyrostat;
 
 pub(crate) use events::check_pieces;
+use jumps::Jumps;
 
 /// The fraction of the work done at a time.
 type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
@@ -133,6 +135,8 @@ pub(crate) struct Sweep {
     pub errors: f64,
     /// That of the steps that a stop has cut short.
     pub errors_of_cut_steps: f64,
+    /// The sum of bounds of the errors of steps in which a law jumps.
+    pub errors_of_jumps: f64,
     /// The longest step.
     pub longest: f64,
     pub steps: u64,
@@ -145,6 +149,7 @@ impl Sweep {
     /// Adds the error estimate of the step that this controller has just accepted.
     pub fn add_error(&mut self, error: f64, controller: &StepController) {
         self.errors += error;
+        self.errors_of_jumps += controller.error_of_jump();
         if controller.is_cut() {
             self.errors_of_cut_steps += error;
         }
@@ -173,6 +178,8 @@ pub(crate) struct Integrator<'a> {
     pub events: &'a [Event],
     /// The motion of the centre of mass, where it has a closed form.
     pub center: Option<CenterMotion>,
+    /// Whether the errors of equal steps in which a law jumps are added up.
+    pub watches_jumps: bool,
     /// The start of the motion, in s.
     pub origin: f64,
     /// In kg; NaN where unknown.
@@ -190,6 +197,8 @@ struct Cursor {
     fastest: f64,
     /// The quantities of the events at this point.
     values: Vec<f64>,
+    /// Of equal steps.
+    jumps: Jumps,
     /// Whether an event has ended the motion.
     ended: bool,
 }
@@ -241,6 +250,7 @@ impl Integrator<'_> {
             controller: self.rule.controller(self.rate, self.bounds),
             fastest,
             values,
+            jumps: Jumps::default(),
             ended: false,
         };
         let mut states = Vec::new();
@@ -254,6 +264,7 @@ impl Integrator<'_> {
                 break;
             }
         }
+        sweep.errors_of_jumps += cursor.jumps.end();
         Ok(states)
     }
 
@@ -277,6 +288,7 @@ impl Integrator<'_> {
             if to == time || cursor.ended {
                 return Ok(());
             }
+            sweep.errors_of_jumps += cursor.jumps.end();
         }
     }
 
@@ -299,6 +311,10 @@ impl Integrator<'_> {
             let to = if last { time } else { from + span * ((i + 1) as f64 / count) };
             // Differences of rounded times add up to the time.
             let (next, _) = self.step(&cursor.at, to, cursor.fastest, sweep)?;
+            if self.watches_jumps {
+                let largest = [cursor.fastest, sweep.largest[2]];
+                sweep.errors_of_jumps += cursor.jumps.take(&cursor.at, &next, &self.body, largest);
+            }
             self.arrive(cursor, next, sweep, done)?;
             if cursor.ended {
                 break;
@@ -314,11 +330,20 @@ impl Integrator<'_> {
         sweep: &mut Sweep,
         done: Done,
     ) -> Result<(), SimulateError> {
+        let mut undefined = None;
         while cursor.at.phase.time != time && !cursor.ended {
             let from = cursor.at.phase.time;
-            let to = cursor.controller.end(from, time)?;
-            let (next, error) = self.step(&cursor.at, to, cursor.fastest, sweep)?;
+            let to = cursor.controller.end(from, time).map_err(|error| undefined.take().unwrap_or(error))?;
+            let (next, error) = match self.step(&cursor.at, to, cursor.fastest, sweep) {
+                // A step that is too long may lead out of the domain of a law.
+                Err(error @ SimulateError::Undefined { time, .. }) if time != from => {
+                    undefined = Some(error);
+                    (cursor.at, f64::NAN)
+                }
+                step => step?,
+            };
             if cursor.controller.judge(to - from, error) {
+                undefined = None;
                 sweep.longest = sweep.longest.max((to - from).abs());
                 sweep.add_error(error, &cursor.controller);
                 self.arrive(cursor, next, sweep, done)?;

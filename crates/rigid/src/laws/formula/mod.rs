@@ -13,7 +13,7 @@ use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
 use polhode_ga::formula::{
-    Error, Given, Input, Meaning, Names, Program, Runner, Space, Span, Type, compile, parse,
+    Error, Given, Input, Meaning, Names, Op, Program, Runner, Space, Span, Type, compile, parse,
 };
 use polhode_ga::product::Grades;
 use polhode_ga::simd::lanes::One;
@@ -309,6 +309,11 @@ impl Formula {
         self.needs(|motion| matches!(motion, Motion::Inertia | Motion::MomentumBody | Motion::MomentumSpace))
     }
 
+    /// Whether it may have kinks: a norm has one where its operand vanishes.
+    pub(crate) fn has_kinks(&self) -> bool {
+        self.compiled.program.steps.iter().any(|step| matches!(step.op, Op::Norm(_)))
+    }
+
     pub(crate) fn needs(&self, what: impl Fn(Motion) -> bool) -> bool {
         self.sources.iter().any(|source| matches!(source, Source::Motion(motion) if what(*motion)))
     }
@@ -343,7 +348,7 @@ impl Formula {
     pub(crate) fn value(&self, at: &Point) -> Result<Graded, TorqueError> {
         let Compiled { runner, result, .. } = &*self.compiled;
         if at.mass.is_nan() && self.needs(|motion| motion == Motion::Mass) {
-            return Err(TorqueError("`m` is not known: an Inertia has no mass; simulate a Body".into()));
+            return Err(TorqueError::new("`m` is not known: an Inertia has no mass; simulate a Body"));
         }
         MEMORY.with_borrow_mut(|(inputs, values)| {
             inputs.clear();
@@ -378,7 +383,7 @@ impl Formula {
         let text = &self.compiled.text;
         let part = text.get(start..end).unwrap_or(text);
         let within = if part == text { String::new() } else { format!(" in the formula `{text}`") };
-        TorqueError(format!("`{part}`{within} has no value: {why}"))
+        TorqueError::undefined(format!("`{part}`{within} has no value: {why}"))
     }
 }
 

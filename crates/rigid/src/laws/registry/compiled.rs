@@ -36,7 +36,7 @@ fn compiled(entry: &Entry<Torque>) -> Option<Result<Compiled, TorqueError>> {
             size: scalar(size)?,
         })
     };
-    let failed = |error: Error| TorqueError(format!("a formula of {}: {}", entry.name, error.message));
+    let failed = |error: Error| TorqueError::new(format!("a formula of {}: {}", entry.name, error.message));
     Some(compile().map_err(failed))
 }
 
@@ -59,7 +59,7 @@ fn given(entry: &Entry<Torque>, numbers: &[f64], input: &Input) -> Option<Given>
 pub(super) fn law(entry: &'static Entry<Torque>, numbers: &[f64]) -> Result<FormulaLaw, TorqueError> {
     let compiled = TORQUES.iter().zip(&*COMPILED).find(|(other, _)| other.name == entry.name);
     let (Kernel::Formula { axis, .. }, Some((_, Some(compiled)))) = (&entry.kernel, compiled) else {
-        return Err(TorqueError(format!("{} is not computed by a formula", entry.name)));
+        return Err(TorqueError::new(format!("{} is not computed by a formula", entry.name)));
     };
     let Compiled { torque, potential, size } = compiled.as_ref().map_err(Clone::clone)?;
     let value = |input: &Input| given(entry, numbers, input);

@@ -173,10 +173,10 @@ impl<T> Entry<T> {
     pub fn check(&self, numbers: &[f64]) -> Result<(), TorqueError> {
         for (argument, own) in self.split(numbers) {
             if let Some((x, why)) = own.iter().find_map(|x| Some((x, argument.limit.refuses(*x)?))) {
-                return Err(TorqueError(format!("{} is {x:?}; it {why}", argument.name)));
+                return Err(TorqueError::new(format!("{} is {x:?}; it {why}", argument.name)));
             }
             if argument.limit == Limit::NotZero && own.iter().all(|x| *x == 0.0) {
-                return Err(TorqueError(format!("{} is {own:?}; it must not be zero", argument.name)));
+                return Err(TorqueError::new(format!("{} is {own:?}; it must not be zero", argument.name)));
             }
         }
         Ok(())
@@ -198,7 +198,7 @@ impl Entry<Torque> {
         match self.kernel {
             Kernel::Native { build, .. } => build(numbers),
             Kernel::Formula { .. } => compiled::law(self, numbers).map(|law| Torque::Registered(law.into())),
-            Kernel::Table => Err(TorqueError(format!("{} is given by its rows", self.name))),
+            Kernel::Table => Err(TorqueError::new(format!("{} is given by its rows", self.name))),
         }
     }
 
@@ -219,7 +219,7 @@ impl Entry<Push> {
     pub fn build(&self, numbers: &[f64]) -> Result<Push, TorqueError> {
         match self.kernel {
             Kernel::Native { build, .. } => build(numbers),
-            _ => Err(TorqueError(format!("{} has no code of its own", self.name))),
+            _ => Err(TorqueError::new(format!("{} has no code of its own", self.name))),
         }
     }
 

@@ -14,7 +14,7 @@ const fn attitude(name: &'static str) -> Argument {
 
 fn rotor(numbers: &[f64]) -> Result<Rotor, TorqueError> {
     let components = numbers.try_into().unwrap_or_default();
-    Rotor::from_components(components).map_err(|error| TorqueError(error.to_string()))
+    Rotor::from_components(components).map_err(|error| TorqueError::new(error.to_string()))
 }
 
 /// Every torque law, in the order in which messages name them.

@@ -186,6 +186,15 @@ impl Torque {
         self.formula().is_some_and(|formula| formula.needs(what))
     }
 
+    /// Whether the torque is known to have kinks, such as `|Ω| Ω` at rest.
+    pub(crate) fn has_kinks(&self) -> bool {
+        match self {
+            Torque::QuadraticDamping(_) => true,
+            Torque::Formula(_) | Torque::Registered(_) => self.formula().is_some_and(Formula::has_kinks),
+            _ => false,
+        }
+    }
+
     /// Whether the torque does not depend on time explicitly.
     pub fn is_autonomous(&self) -> bool {
         match self {
@@ -270,7 +279,7 @@ impl Torque {
                 let torque = law.value(&at)?;
                 if !torque.0.iter().all(|x| x.is_finite()) {
                     let Bivector(torque) = torque;
-                    return Err(TorqueError(format!(
+                    return Err(TorqueError::undefined(format!(
                         "the torque that the function returned is {torque:?}; it must be finite"
                     )));
                 }
@@ -384,8 +393,7 @@ pub(crate) fn total_torque(
 ) -> Result<Bivector, SimulateError> {
     let mut total = Bivector::default();
     for law in torques {
-        let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
-        total += law.value_within(body, state, middle).map_err(failed)?;
+        total += law.value_within(body, state, middle).map_err(|error| error.at(state.time))?;
     }
     Ok(total)
 }

@@ -25,12 +25,14 @@ impl Orbit {
     /// An ellipse with the mean motion n in rad/s and, at time 0, this mean anomaly in rad.
     pub fn new(rate: f64, eccentricity: f64, anomaly: f64) -> Result<Orbit, TorqueError> {
         if !(0.0..1.0).contains(&eccentricity) {
-            return Err(TorqueError(format!(
+            return Err(TorqueError::new(format!(
                 "eccentricity is {eccentricity}; that of a closed orbit must be at least 0 and below 1"
             )));
         }
         if let Some(value) = [rate, anomaly].into_iter().find(|x| !x.is_finite()) {
-            return Err(TorqueError(format!("mean motion or mean anomaly is {value}; both must be finite")));
+            return Err(TorqueError::new(format!(
+                "mean motion or mean anomaly is {value}; both must be finite"
+            )));
         }
         Ok(Orbit::of(rate, eccentricity, anomaly))
     }
@@ -94,7 +96,7 @@ impl KeplerOrbit {
     pub fn new(axis: f64, eccentricity: f64, anomaly: f64, mu: f64) -> Result<KeplerOrbit, TorqueError> {
         for (name, value) in [("semi_major_axis", axis), ("mu", mu)] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(TorqueError(format!("{name} is {value}; it must be positive and finite")));
+                return Err(TorqueError::new(format!("{name} is {value}; it must be positive and finite")));
             }
         }
         let orbit = Orbit::new((mu / axis).sqrt() / axis, eccentricity, anomaly)?;

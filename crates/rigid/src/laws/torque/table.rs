@@ -55,7 +55,7 @@ impl Table {
         axes: Axes,
         kind: Kind,
     ) -> Result<Table, TorqueError> {
-        let wrong = |message: String| Err(TorqueError(message));
+        let wrong = |message: String| Err(TorqueError::new(message));
         if times.len() != torques.len() {
             return wrong(format!("{} times for {} torques; give one for each", times.len(), torques.len()));
         }
@@ -95,7 +95,7 @@ impl Table {
         let rounding = 4.0 * f64::EPSILON * first.abs().max(last.abs());
         let time = if self.kind == Kind::Previous { middle } else { time };
         if !(first - rounding..=last + rounding).contains(&time) {
-            return Err(TorqueError(format!(
+            return Err(TorqueError::new(format!(
                 "the table of torques spans {first} s to {last} s; add rows for all times of the simulation"
             )));
         }

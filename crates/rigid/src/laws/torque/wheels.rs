@@ -66,7 +66,7 @@ impl Wheels {
         times: &[f64],
         torques: &[Vec<f64>],
     ) -> Result<Wheels, TorqueError> {
-        let wrong = |message: String| Err(TorqueError(message));
+        let wrong = |message: String| Err(TorqueError::new(message));
         if let Some(i) = (1..times.len()).find(|&i| times[i] <= times[i - 1]) {
             let (before, time) = (times[i - 1], times[i]);
             return wrong(format!(

@@ -35,9 +35,7 @@ def test_a_force_without_a_value_is_still_an_error():
     body = ph.Body.sphere(0.1, mass=1)
     start = ph.State(ph.Rotor.identity(), [0, 0, 0], position=[0, 0, 0], velocity=[1, 0, 0])
     ends = ph.force.function(lambda t, x, v, R: [0, 0, np.nan if t > 2 else -1])
-    with pytest.raises(
-        ValueError, match=r"the force that the function returned is \[.*NaN\]; it must be finite"
-    ):
+    with pytest.raises(ValueError, match=r"the force that the function returned is .*NaN.*must be finite"):
         ph.simulate(body, start, [3], force=ends)
 
 

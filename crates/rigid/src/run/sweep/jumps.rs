@@ -97,9 +97,9 @@ impl Jumps {
         self.departures.rotate_left(1);
         self.departures[2 * REACH] = departure;
         let [before, middle, after] = [0, REACH, 2 * REACH].map(|k| self.departures[k]);
-        let Some(Departure { bend, error }) = middle else { return 0.0 };
-        let mut beside = [before, after].into_iter().flatten().peekable();
-        let is_jump = beside.peek().is_some() && beside.all(|other| bend > SPIKE * other.bend);
+        // The first steps may be those of a fast decay.
+        let (Some(Departure { bend, error }), Some(_)) = (middle, before) else { return 0.0 };
+        let is_jump = [before, after].iter().flatten().all(|other| bend > SPIKE * other.bend);
         if is_jump && error > LEAST_ERROR { error } else { 0.0 }
     }
 }

@@ -25,6 +25,7 @@ _FLOAT, _UINT = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 # glTF has +Y up: space is turned so that its e3 is up.
 _UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
+_MATERIAL = {"pbrMetallicRoughness": {"baseColorFactor": [0.55, 0.6, 0.7, 1.0], "metallicFactor": 0.1}}
 # Corners of a cube of side 2, and its faces, counter-clockwise seen from outside.
 _CORNERS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 _FACES = [
@@ -97,37 +98,12 @@ def write_gltf(
 
 def _tree(history: AttitudeHistory, vertices: Array, triangles: Any) -> tuple[dict[str, Any], bytes]:
     """Return the JSON of a file, and its buffer."""
-    times = (history.time - history.time[0]).astype("<f4")
-    if (np.diff(times) <= 0).any():
-        raise ValueError("output times are too close for the 32-bit floats of glTF; give fewer of them")
+    times = _times(history)
     _warn_of_fast_turns(history)
-    still = np.zeros((len(history), 3))
-    positions = still if history.position is None else history.position.components
-    views: list[dict[str, Any]] = []
-    accessors: list[dict[str, Any]] = []
-    parts: list[bytes] = []
-
-    def add(numbers: Any, kind: str, target: int | None = None, bounds: bool = False) -> int:
-        """Add an accessor; all numbers have 4 bytes, so every view is aligned."""
-        rows = numbers.reshape(len(numbers), -1)
-        view = {"buffer": 0, "byteOffset": sum(map(len, parts)), "byteLength": numbers.nbytes}
-        views.append(view if target is None else {**view, "target": target})
-        parts.append(numbers.tobytes())
-        component = _UINT if numbers.dtype.kind == "u" else _FLOAT
-        facts = {"bufferView": len(views) - 1, "componentType": component, "count": len(rows), "type": kind}
-        if bounds:
-            facts |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
-        accessors.append(facts)
-        return len(accessors) - 1
-
-    corners = add(vertices.astype("<f4"), "VEC3", _VERTICES, bounds=True)
-    indices = add(np.ascontiguousarray(triangles, "<u4").ravel(), "SCALAR", _INDICES)
-    when = add(times, "SCALAR", bounds=True)
-    quaternions = np.asarray(history.rotor.normalized().to_quaternion(order="xyzw"))
-    tracks = {"rotation": add(quaternions.astype("<f4"), "VEC4")}
-    tracks["translation"] = add(np.asarray(positions).astype("<f4"), "VEC3")
-    first = {"rotation": quaternions[0].tolist(), "translation": np.asarray(positions)[0].tolist()}
-    material = {"pbrMetallicRoughness": {"baseColorFactor": [0.55, 0.6, 0.7, 1.0], "metallicFactor": 0.1}}
+    buffer = _Buffer()
+    mesh = _mesh(buffer, vertices, triangles)
+    tracks = _tracks(history)
+    animation = _animation(buffer, times, tracks)
     title = history.attributes.get("title")
     tree: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": f"Polhode {_native.__version__}"},
@@ -135,28 +111,75 @@ def _tree(history: AttitudeHistory, vertices: Array, triangles: Any) -> tuple[di
         "scenes": [{"nodes": [0], **({"name": str(title)} if title else {})}],
         "nodes": [
             {"name": "space", "rotation": _UP, "children": [1]},
-            {"name": "body", "mesh": 0, **first},
+            {"name": "body", "mesh": 0, **{path: rows[0].tolist() for path, rows in tracks.items()}},
         ],
-        "meshes": [
-            {"primitives": [{"attributes": {"POSITION": corners}, "indices": indices, "material": 0}]}
-        ],
-        "materials": [material],
-        "animations": [
-            {
-                "name": "motion",
-                "samplers": [
-                    {"input": when, "output": k, "interpolation": "LINEAR"} for k in tracks.values()
-                ],
-                "channels": [
-                    {"sampler": k, "target": {"node": 1, "path": name}} for k, name in enumerate(tracks)
-                ],
-            }
-        ],
-        "accessors": accessors,
-        "bufferViews": views,
-        "buffers": [{"byteLength": sum(map(len, parts))}],
+        "meshes": [mesh],
+        "materials": [_MATERIAL],
+        "animations": [animation],
+        "accessors": buffer.accessors,
+        "bufferViews": buffer.views,
+        "buffers": [{"byteLength": len(buffer.content)}],
     }
-    return tree, b"".join(parts)
+    return tree, bytes(buffer.content)
+
+
+class _Buffer:
+    """The binary content of a file, with the views and accessors that describe it."""
+
+    def __init__(self) -> None:
+        self.content = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+
+    def add(self, numbers: Any, kind: str, target: int | None = None, bounds: bool = False) -> int:
+        """Add numbers, and return their accessor; all have 4 bytes, so every view is aligned."""
+        rows = numbers.reshape(len(numbers), -1)
+        view = {"buffer": 0, "byteOffset": len(self.content), "byteLength": numbers.nbytes}
+        self.views.append(view if target is None else {**view, "target": target})
+        self.content += numbers.tobytes()
+        component = _UINT if numbers.dtype.kind == "u" else _FLOAT
+        facts = {
+            "bufferView": len(self.views) - 1,
+            "componentType": component,
+            "count": len(rows),
+            "type": kind,
+        }
+        if bounds:
+            facts |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
+        self.accessors.append(facts)
+        return len(self.accessors) - 1
+
+
+def _times(history: AttitudeHistory) -> Any:
+    """Return the output times from the first one on, as float32."""
+    times = (history.time - history.time[0]).astype("<f4")
+    if (np.diff(times) <= 0).any():
+        raise ValueError("output times are too close for the 32-bit floats of glTF; give fewer of them")
+    return times
+
+
+def _tracks(history: AttitudeHistory) -> dict[str, Array]:
+    """Return what moves the node of the body: its rotations, as xyzw, and its translations."""
+    still = np.zeros((len(history), 3))
+    positions = still if history.position is None else history.position.components
+    quaternions = np.asarray(history.rotor.normalized().to_quaternion(order="xyzw"))
+    return {"rotation": quaternions, "translation": np.asarray(positions)}
+
+
+def _mesh(buffer: _Buffer, vertices: Array, triangles: Any) -> dict[str, Any]:
+    corners = buffer.add(vertices.astype("<f4"), "VEC3", _VERTICES, bounds=True)
+    indices = buffer.add(np.ascontiguousarray(triangles, "<u4").ravel(), "SCALAR", _INDICES)
+    return {"primitives": [{"attributes": {"POSITION": corners}, "indices": indices, "material": 0}]}
+
+
+def _animation(buffer: _Buffer, times: Any, tracks: dict[str, Array]) -> dict[str, Any]:
+    when = buffer.add(times, "SCALAR", bounds=True)
+    outputs = [buffer.add(rows.astype("<f4"), f"VEC{rows.shape[-1]}") for rows in tracks.values()]
+    return {
+        "name": "motion",
+        "samplers": [{"input": when, "output": k, "interpolation": "LINEAR"} for k in outputs],
+        "channels": [{"sampler": k, "target": {"node": 1, "path": path}} for k, path in enumerate(tracks)],
+    }
 
 
 def _warn_of_fast_turns(history: AttitudeHistory) -> None:

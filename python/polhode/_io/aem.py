@@ -18,7 +18,7 @@ import numpy as np
 from polhode._algebra.constructors import bivector
 from polhode._algebra.rotor import Rotor
 from polhode._io.epochs import TIME_SYSTEMS, Epoch, elapsed, parse_epoch
-from polhode._io.history import AttitudeHistory, FileError, continuous
+from polhode._io.history import AttitudeHistory, FileError, continuous, require_file
 from polhode._mechanics.robots.document import Source
 from polhode._support.arrays import Array
 from polhode._support.calls import explains_calls
@@ -126,10 +126,7 @@ def read_aem(
     array([1., 1., 1.])
     """
     name = os.fsdecode(path)
-    if not os.path.lexists(path):
-        raise FileNotFoundError(f"{name}: no such file")
-    if not os.path.isfile(path):
-        raise FileError(f"{name}: error: not a regular file; give the path of a file")
+    require_file(path)
     try:
         text = contents(path, copies=4).decode("utf-8-sig")
     except UnicodeDecodeError as error:

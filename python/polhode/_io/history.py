@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -41,6 +42,15 @@ class RowError(ValueError):
     def __init__(self, words: str, row: int, column: str) -> None:
         super().__init__(f"{words} at row {row}")
         self.words, self.row, self.column = words, row, column
+
+
+def require_file(path: str | os.PathLike[str]) -> None:
+    """Raise a FileNotFoundError for a path without a file, and a FileError for one of another kind."""
+    name = os.fsdecode(path)
+    if not os.path.lexists(path):
+        raise FileNotFoundError(f"{name}: no such file")
+    if not os.path.isfile(path):
+        raise FileError(f"{name}: error: not a regular file; give the path of a file")
 
 
 # The optional quantities, and their grades.

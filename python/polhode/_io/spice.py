@@ -21,7 +21,7 @@ from polhode import _native
 from polhode._algebra.constructors import bivector
 from polhode._algebra.rotor import Rotor
 from polhode._io.epochs import parse_epoch
-from polhode._io.history import AttitudeHistory, FileError, continuous
+from polhode._io.history import AttitudeHistory, FileError, continuous, require_file
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array
 from polhode._support.calls import explains_calls
@@ -221,10 +221,7 @@ def read_ck(
     array([0.1, 0.1, 0.1])
     """
     name = os.fsdecode(path)
-    if not os.path.lexists(path):
-        raise FileNotFoundError(f"{name}: no such file")
-    if not os.path.isfile(path):
-        raise FileError(f"{name}: error: not a regular file; give the path of a file")
+    require_file(path)
     content = Path(path).read_bytes()
     if not content.startswith(b"DAF/CK "):
         raise FileError(f"{name}: error: not a binary SPICE CK, which begins with DAF/CK")

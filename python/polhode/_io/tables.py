@@ -15,7 +15,7 @@ import numpy as np
 
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.rotor import Rotor
-from polhode._io.history import AttitudeHistory, FileError, RowError
+from polhode._io.history import AttitudeHistory, FileError, RowError, require_file
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.robots.document import Source
 from polhode._mechanics.trajectory import Trajectory
@@ -117,7 +117,7 @@ def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> At
     """
     name = os.fsdecode(path)
     table.require_parquet()
-    content = _content(path, name)
+    content = _content(path)
     library = optional("pyarrow.parquet", "parquet", "a Parquet file")
     try:
         found = library.read_table(io.BytesIO(content))
@@ -159,16 +159,13 @@ def _require_units(columns: dict[str, Array], stated: Any) -> None:
             raise ValueError(f"column {name!r} has the unit {unit!r}; convert its values to {expected!r}")
 
 
-def _content(path: str | os.PathLike[str], name: str) -> bytes:
-    if not os.path.lexists(path):
-        raise FileNotFoundError(f"{name}: no such file")
-    if not os.path.isfile(path):
-        raise FileError(f"{name}: error: not a regular file; give the path of a file")
+def _content(path: str | os.PathLike[str]) -> bytes:
+    require_file(path)
     return contents(path, copies=4)
 
 
 def _text(path: str | os.PathLike[str], name: str) -> str:
-    content = _content(path, name)
+    content = _content(path)
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -228,7 +228,7 @@ class PGA(Algebra):
 
     def _unit(self, X: Multivector) -> Multivector:
         """Return planes and lines of norm 1."""
-        X = _scaled(X)
+        X = _near_unit(X)
         square = X.norm_squared()
         require(square != 0, X, "the value has the norm 0: it is at infinity")
         if X._mask == 0b100:
@@ -238,7 +238,7 @@ class PGA(Algebra):
 
     def _unit_motor(self, M: Multivector) -> Multivector:
         """Return ``M (M ~M)^(−1/2)``, where ``M ~M = a + b I`` and ``I² = 0``."""
-        M = _scaled(M)
+        M = _near_unit(M)
         product = M * ~M
         square = product.grade(0)._data[..., 0]
         require(square != 0, M, "the motor has the norm 0")
@@ -343,8 +343,11 @@ class PGA(Algebra):
         return Multivector._of(kind_of(rows).stack([weight[..., 0], *parts]), 1 << 1, self)
 
 
-def _scaled(X: Multivector) -> Multivector:
-    """Return floats divided by a power of two near the norm, whose square might over- or underflow."""
+def _near_unit(X: Multivector) -> Multivector:
+    """Return floats divided by a power of two near the norm, whose square might over- or underflow.
+
+    Not by the largest component: those with e0 may be far larger than the norm, to which they do not count.
+    """
     if not is_float(X._data):
         return X
     return X._like(X._data / power_of_two(np.asarray(X.norm(), X._data.dtype)[..., None], -1))

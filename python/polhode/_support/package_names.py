@@ -42,7 +42,10 @@ SEE = {
     "Twist3": "Screw",
     **dict.fromkeys(("animate", "film"), "view and Trajectory.film"),
     **dict.fromkeys(("plot", "show"), "Trajectory.plot and view"),
+    "herpolhode": "FreeMotion.herpolhode",
     "interpolate": "RotorSpline and slerp",
+    "polhode": "FreeMotion.polhode",
+    **dict.fromkeys(("ReactionWheel", "ReactionWheels"), "torque.reaction_wheels"),
     **dict.fromkeys(("odeint", "propagate", "solve_ivp"), "simulate"),
     **dict.fromkeys(("load", "read"), "io.read, Trajectory.read and Scene.read"),
     **{
@@ -121,6 +124,8 @@ _OF_ROTATIONS = {
     ),
     "rotation_matrix_align_vecs": "ph.align(a, b).rotor.to_matrix()",
     "rigid_vectors_registration": "ph.align(a, b).rotor",
+    "align_vectors": "ph.align(a, b), which takes the target last",
+    **dict.fromkeys(("davenport", "kabsch", "quest", "wahba"), "ph.align(a, b)"),
     "average_quaternions": "ph.mean([R, S])",
     "inertia": "ph.Inertia.from_matrix(M)",
 }

@@ -47,8 +47,8 @@ def add(commands: Any) -> None:
         "convert",
         _convert,
         help="convert files of motions and bodies",
-        description="Convert the motion of one body from file A to file B: netCDF (.nc), CSV, Parquet and "
-        "CCSDS AEM (.aem) and SPICE CK (.bc) by their suffixes; A may also be the Zarr store of an ensemble "
+        description="Convert the motion of one body from file A to file B: netCDF (.nc), CSV, Parquet, "
+        "CCSDS AEM (.aem) or SPICE CK (.bc), by their suffixes; A may also be the Zarr store of an ensemble "
         "(.zarr), B a glTF animation (.glb, .gltf). Quaternion order, direction and frames that a file does "
         "not state must be given; they are never guessed. Or convert bodies: A is a scene (.toml), a mesh "
         "(.stl, .obj, .ply) or a robot file (.urdf, .sdf, MJCF as .xml), B a robot file (.urdf, .xml) with "

@@ -56,10 +56,10 @@ pub(crate) trait Forcing<const W: usize, const F: bool> {
         [Lanes::ZERO; 3]
     }
 
-    /// Distance and speed of a centre of mass below which errors are not relative to smaller ones; zero by default.
+    /// The speed of a centre of mass below which errors are not relative to smaller ones; zero by default.
     #[inline(always)]
-    fn least_center(&self) -> [Lanes<W, F>; 2] {
-        [Lanes::ZERO; 2]
+    fn least_speed(&self) -> Lanes<W, F> {
+        Lanes::ZERO
     }
 }
 
@@ -70,7 +70,7 @@ pub(crate) struct BodyForcing<'a> {
     translation: Option<&'a Translation>,
     /// Wheels with motors, whose momentum the steps carry.
     wheels: &'a [Torque],
-    least_center: [f64; 2],
+    least_speed: f64,
     /// Of the step.
     middle: f64,
     failure: Option<SimulateError>,
@@ -83,8 +83,8 @@ impl<'a> BodyForcing<'a> {
         torques: &'a [Torque],
         translation: Option<&'a Translation>,
     ) -> BodyForcing<'a> {
-        let least_center = [0.0; 2];
-        BodyForcing { body, torques, translation, wheels: &[], least_center, middle: f64::NAN, failure: None }
+        let least_speed = 0.0;
+        BodyForcing { body, torques, translation, wheels: &[], least_speed, middle: f64::NAN, failure: None }
     }
 
     /// The same with wheels, whose momentum the steps carry, instead of their torque on the body.
@@ -92,9 +92,9 @@ impl<'a> BodyForcing<'a> {
         BodyForcing { wheels, ..self }
     }
 
-    /// The same with lower bounds of the scales of distance and speed.
-    pub fn with_least_center(self, least_center: [f64; 2]) -> BodyForcing<'a> {
-        BodyForcing { least_center, ..self }
+    /// The same with a lower bound of the scale of speeds.
+    pub fn with_least_speed(self, least_speed: f64) -> BodyForcing<'a> {
+        BodyForcing { least_speed, ..self }
     }
 
     /// The first failure, if there was one.
@@ -139,8 +139,8 @@ impl Forcing<1, false> for BodyForcing<'_> {
         }
     }
 
-    fn least_center(&self) -> [One; 2] {
-        One::each(self.least_center)
+    fn least_speed(&self) -> One {
+        Lanes::all(self.least_speed)
     }
 
     fn acceleration(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {

@@ -51,10 +51,10 @@ impl Engine {
         })
     }
 
-    /// The same with lower bounds of the scales of distance and speed, for estimates of errors.
-    pub fn with_least_center(self, least_center: [f64; 2]) -> Engine {
+    /// The same with a lower bound of the scale of speeds, for estimates of errors.
+    pub fn with_least_speed(self, least_speed: f64) -> Engine {
         match self {
-            Engine::RungeKutta(method) => Engine::RungeKutta(method.with_least_center(least_center)),
+            Engine::RungeKutta(method) => Engine::RungeKutta(method.with_least_speed(least_speed)),
             other => other,
         }
     }

@@ -20,16 +20,16 @@ pub(crate) struct StepBounds {
     /// The rate in rad/s of the swing of the largest moment under the torques, a lower bound of the scale of angular
     /// velocities: an error of the attitude causes an error of the rate that is larger by this factor.
     pub least_rate: f64,
-    /// Distance in m and speed in m/s to which forces that depend on time move a body at rest, roughly: a lower bound of the
-    /// scales of errors, without which a step in which the body begins to move would have an error of its own size.
-    pub least_center: [f64; 2],
+    /// A small part of the speed in m/s that forces that depend on time give to a body at rest: a lower bound of the scale of
+    /// errors, without which a step in which the body begins to move would have an error of its own size.
+    pub least_speed: f64,
     /// The longest piece of a step in which events are sought at its ends and its middle, in s: half of the shortest
     /// oscillation of their quantities with time.
     pub piece: f64,
 }
 
-/// The part of a rough scale below which errors are not relative to smaller values.
-const PART_OF_SCALE: f64 = 0.1;
+/// The part of a speed known roughly below which errors are not relative to smaller speeds.
+const PART_OF_SPEED: f64 = 0.01;
 
 /// The earliest and the latest of times and of the start.
 pub(crate) fn span(times: &[f64], start: f64) -> [f64; 2] {
@@ -44,7 +44,7 @@ impl Default for StepBounds {
             longest: f64::INFINITY,
             limit,
             least_rate: 0.0,
-            least_center: [0.0; 2],
+            least_speed: 0.0,
             piece: f64::INFINITY,
         }
     }
@@ -88,14 +88,10 @@ impl StepBounds {
         self.limit.steps.max(MAX_STEPS)
     }
 
-    /// The same with the scales of a centre of mass under forces, given the mass in kg and the time span in s.
-    pub fn with_forces(mut self, samples: &[[Sampled; 2]], mass: f64, span: f64) -> StepBounds {
+    /// The same with the scale of a centre of mass under forces, given their samples and the mass in kg.
+    pub fn with_forces(self, samples: &[[Sampled; 2]], mass: f64) -> StepBounds {
         let impulse: f64 = samples.iter().flatten().map(|sampled| sampled.impulse).sum();
-        if impulse > 0.0 {
-            let speed = PART_OF_SCALE * impulse / mass;
-            self.least_center = [speed * span, speed];
-        }
-        self
+        StepBounds { least_speed: if impulse > 0.0 { PART_OF_SPEED * impulse / mass } else { 0.0 }, ..self }
     }
 
     /// For laws in principal axes, with their samples.
@@ -126,7 +122,7 @@ impl StepBounds {
             longest: options.max_step.unwrap_or(f64::INFINITY),
             limit: Limit { steps: options.most_steps(), reports_stiffness: options.may_change_method() },
             least_rate: (torque / largest).sqrt().max(1e-4 * wheels / smallest),
-            least_center: [0.0; 2],
+            least_speed: 0.0,
             piece: f64::INFINITY,
         }
     }

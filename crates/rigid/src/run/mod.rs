@@ -184,18 +184,15 @@ impl Problem {
         let adapts = options.method.unwrap_or_else(|| self.best()).adapts();
         let point = Point { body: &self.body, mass: self.mass, phase: &start, center: &begin.center };
         let samples = samples(&self.torques, self.forces(), &point, times, &options, adapts)?;
-        let [first, last] = span(times, self.time);
         let of_forces = samples.get(self.torques.len()..).unwrap_or_default();
-        let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options).with_forces(
-            of_forces,
-            self.mass,
-            last - first,
-        );
+        let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options)
+            .with_forces(of_forces, self.mass);
         let center = self.center_motion();
         bounds.limit.reports_stiffness &= center.is_some();
         if let Some(center) = &center {
             check_horizons(self.time, times, [center.law.horizon(); 2])?;
             if options.events.iter().any(|event| event.quantity.reads_center()) {
+                let [first, last] = span(times, self.time);
                 check_pieces(&center.law, (self.time - first).max(last - self.time), &bounds)?;
             }
         }

@@ -43,7 +43,7 @@ impl Problem {
             }
             None => (
                 Engine::new(method, self.body, &self.torques, translation, &self.start().phase)?
-                    .with_least_center(bounds.least_center),
+                    .with_least_speed(bounds.least_speed),
                 method.name(),
             ),
         };

@@ -47,7 +47,7 @@ pub(crate) struct Sampled {
     pub stops: Vec<f64>,
     /// Time of the largest torque, if it depends on time.
     pub peak: Option<f64>,
-    /// The integral of its size.
+    /// The largest size of its integral since the start, roughly.
     pub impulse: f64,
 }
 
@@ -139,8 +139,18 @@ pub(crate) fn sampled(law: &InTime, [from, to]: [f64; 2], adapts: bool) -> Resul
         let mut left = (most / finest.len()).min(MOST_FINER_EACH);
         finer.bisect([time(part.start), time(part.end)], &mut left, &mut stops);
     }
-    let mean = values.iter().map(|value| value.norm()).sum::<f64>() / values.len() as f64;
-    Ok(Sampled { stops, peak: Some(time(peak)), impulse: mean * (to - from).abs() })
+    let impulse = largest_sum(&values) * (to - from).abs() / SAMPLES as f64;
+    Ok(Sampled { stops, peak: Some(time(peak)), impulse })
+}
+
+/// The largest size of the sums of the first values, by the trapezoidal rule.
+fn largest_sum(values: &[Bivector]) -> f64 {
+    let (mut sum, mut largest) = (Bivector::default(), 0.0_f64);
+    for pair in values.windows(2) {
+        sum += (pair[0] + pair[1]) * 0.5;
+        largest = largest.max(sum.norm());
+    }
+    largest
 }
 
 /// Bisects intervals of samples in which the coarse ones do not predict the others; collects the midpoints, and the finest of

@@ -80,7 +80,7 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     widest = square.max(widest);
     to.rotor = composed(&exponential(&turned, square).0, &from.rotor);
     renormalize(&mut to.rotor);
-    let least = [fastest, forcing.least_center()[0], forcing.least_center()[1]];
+    let least = [fastest, forcing.least_speed()];
     let fifth = Change::combined(FIFTH, &slopes, h).size(bodies, [from, &to], h, least);
     let third = Change::combined(THIRD, &slopes, h).size(bodies, [from, &to], h, least);
     // Weighted as in Hairer's code: of order 8 where both are small.
@@ -193,14 +193,14 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
 
     /// The size: of attitude, of angular velocity relative to `fastest`, of velocity relative to the speed, of position
     /// relative to the distance or the path of the step. Speed and distance are the larger of both ends: a body may start
-    /// at rest. Each has a lower bound.
+    /// at rest. The speed has a lower bound, too.
     #[inline(always)]
     fn size(
         &self,
         bodies: &Bodies<W, F>,
         [at, to]: [&Points<W, F>; 2],
         h: Lanes<W, F>,
-        [fastest, nearest, slowest]: [Lanes<W, F>; 3],
+        [fastest, least_speed]: [Lanes<W, F>; 2],
     ) -> Lanes<W, F> {
         let mut omega = mapped_back(&matrix(&at.rotor), &self.part(3));
         for k in 0..3 {
@@ -212,7 +212,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         }
         let sizes = |[x, y, z, u, v, w]: [Lanes<W, F>; 6]| [norm(&[u, v, w]), norm(&[x, y, z])];
         let ([slow, near], [fast, far]) = (sizes(at.center), sizes(to.center));
-        let (speed, distance) = (larger(larger(slow, fast), slowest), larger(larger(near, far), nearest));
+        let (speed, distance) = (larger(larger(slow, fast), least_speed), larger(near, far));
         let way = distance.max(speed * h.abs());
         let place = relative(norm(&self.part(6)), way);
         let velocity = relative(norm(&self.part(9)), speed.max(way / h.abs()));
@@ -255,8 +255,8 @@ pub struct RungeKutta {
     torques: Vec<Torque>,
     wheels: Vec<Torque>,
     translation: Option<Translation>,
-    /// Lower bounds of the scales of distance and speed.
-    least_center: [f64; 2],
+    /// Lower bound of the scale of speeds.
+    least_speed: f64,
     alone: Bodies<1, false>,
 }
 
@@ -265,12 +265,12 @@ impl RungeKutta {
     pub fn new(body: Gyrostat, torques: Vec<Torque>, translation: Option<Translation>) -> RungeKutta {
         let alone = Bodies::new([(body, damping_rate(&torques))]);
         let (wheels, torques) = torques.into_iter().partition(|law| matches!(law, Torque::Wheels(_)));
-        RungeKutta { body, torques, wheels, translation, least_center: [0.0; 2], alone }
+        RungeKutta { body, torques, wheels, translation, least_speed: 0.0, alone }
     }
 
-    /// The same with lower bounds of the scales of distance and speed, for estimates of errors.
-    pub fn with_least_center(self, least_center: [f64; 2]) -> RungeKutta {
-        RungeKutta { least_center, ..self }
+    /// The same with a lower bound of the scale of speeds, for estimates of errors.
+    pub fn with_least_speed(self, least_speed: f64) -> RungeKutta {
+        RungeKutta { least_speed, ..self }
     }
 
     /// One step of length `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
@@ -281,7 +281,7 @@ impl RungeKutta {
         at.set(0, from);
         let mut acting = BodyForcing::new(&self.body, &self.torques, self.translation.as_ref())
             .with_wheels(&self.wheels)
-            .with_least_center(self.least_center);
+            .with_least_speed(self.least_speed);
         let (alone, h) = (&self.alone, One::each([h])[0]);
         let (to, error) = match self.translation {
             None => step::<6, 1, false, _>(alone, &mut acting, &at, h, fastest),

@@ -407,7 +407,7 @@ def test_an_interrupted_run_leaves_no_file(number, code, tmp_path):
         assert process.poll() is None
         process.send_signal(number)
         output, errors = process.communicate()
-    assert process.returncode == code
+    assert process.returncode == code, errors
     assert "interrupted" in errors
     assert "Traceback" not in errors
     assert output == ""

@@ -113,8 +113,8 @@ pub(crate) struct Scales {
     pub in_space: bool,
     /// The time from the first output or the start to the last, in s.
     pub duration: f64,
-    /// Whether the laws change slowly at the scale of steps and are not known to have kinks. Otherwise a difference need not scale with the order and is
-    /// taken as the error itself.
+    /// Whether the laws change slowly at the scale of steps and are not known to have kinks. Otherwise a difference need not
+    /// scale with the order and is taken as the error itself.
     pub is_smooth: bool,
 }
 

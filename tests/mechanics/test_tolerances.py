@@ -125,3 +125,15 @@ def test_tolerances_are_met_and_estimates_are_honest(name, method):
         # Below 1e-11 the same rounding dominates both runs, which their difference does not show.
         floor = 0 if decade < 11 else 1e-11
         assert error <= 10 * motion.certificate.error_estimate + floor, (rtol, error)
+
+
+@pytest.mark.parametrize("times", [[3.0], [0.7, 3.0], np.linspace(0, 3, 7)], ids=len)
+@pytest.mark.parametrize("omega", [[0.0, 0, 0], [0, 0, 1]])
+def test_steps_that_amplify_noise_are_refined(omega, times):
+    """The first steps of rk4 are so long here that they are unstable; shorter ones are not."""
+    law = ph.torque.formula("3 exp(-k t) e1∧e3", frame="space", k=0.25)
+    start = ph.State(ph.Rotor.identity(), omega)
+    motion = ph.simulate(ph.Body.sphere(1.0, mass=2.0), start, times, law, method="rk4", rtol=1e-6)
+    exact = np.array([0, 12 * np.expm1(-0.25 * 3) / 0.8, 0])  # of L in space, over the moment
+    error = np.linalg.norm(motion.omega_space[-1].components - omega - exact) / np.linalg.norm(exact)
+    assert error <= motion.certificate.error_estimate <= 1e-6

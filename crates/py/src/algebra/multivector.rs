@@ -441,7 +441,9 @@ fn zipped<'py>(
 fn no_constructor(cls: &Bound<'_, PyType>) -> PyErr {
     let name = cls.name().map_or_else(|_| "Multivector".into(), |name| name.to_string());
     let constructors = match &*name {
-        "Rotor" => "Rotor.from_components, Rotor.from_plane_angle, or another of its from_… constructors",
+        "Rotor" => {
+            "Rotor.from_quaternion, from_matrix, from_rotation_vector, from_plane_angle or another of its from_… constructors"
+        }
         _ => "ph.scalar, ph.vector, ph.bivector, ph.trivector or ph.multivector",
     };
     PyTypeError::new_err(format!("{name} has no public constructor; use {constructors}"))

@@ -43,6 +43,7 @@ impl Scene {
         };
         let (body, laws) = self.with_laws(body)?;
         self.check_points((&body, &laws))?;
+        self.check_times().map_err(|error| vec![error])?;
         Ok((body, laws))
     }
 
@@ -81,6 +82,36 @@ impl Scene {
                     "({a}, {b}, {c}) N m is not m g times the centre of mass, which is ({x}, {y}, {z}) m from the fixed point; use [gravity] with a pivot, or give the moments about the fixed point without a centre of mass"
                 );
                 return Err(vec![self.diagnose("torque.heavy", message)]);
+            }
+        }
+        Ok(())
+    }
+
+    /// The output times must increase, and tables of torques cover them.
+    fn check_times(&self) -> Result<(), Diagnostic> {
+        let times = self.times();
+        let (Some(&start), Some(&end)) = (times.first(), times.last()) else { return Ok(()) };
+        if times.is_sorted_by(|a, b| a < b) {
+            return self.check_tables([start, end]);
+        }
+        let message = format!(
+            "its output times in {} s are equal after rounding beside the start at {start:e} s; start earlier",
+            self.run.duration
+        );
+        Err(self.diagnose("initial.time", message))
+    }
+
+    fn check_tables(&self, [start, end]: [f64; 2]) -> Result<(), Diagnostic> {
+        for law in &self.torques {
+            if let Torque::Tabulated(table) = &law.torque
+                && ![start, end].iter().all(|&time| table.covers(time))
+            {
+                let (first, last) = table.span();
+                let message = format!(
+                    "has rows from {first} s to {last} s, but the run is from {start} s to {end} s; add rows or \
+                     change the duration"
+                );
+                return Err(self.diagnose("torque.tabulated", message));
             }
         }
         Ok(())

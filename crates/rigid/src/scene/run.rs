@@ -113,7 +113,11 @@ fn choice(reader: &mut Reader, run: &Table, method: Option<&Table>) -> Option<Ch
     let max_step = reader.optional(own, "max_step", |reader, value| reader.positive(value, Quantity::Time));
     let max_steps = reader.optional(own, "max_steps", |reader, value| {
         let count = reader.number(value)?;
-        reader.check_positive(value, count)
+        if count >= 1.0 {
+            return Some(count);
+        }
+        reader.report(value.span(), format!("must be at least 1, found {count}"));
+        None
     });
     let mut part = |table: &Table, name| reader.optional(table, name, fraction);
     let (rtol, older_rtol, atol) = (part(own, "rtol"), part(run, "rtol"), part(own, "atol"));
@@ -162,6 +166,11 @@ fn first(reader: &mut Reader, value: &Value, duration: Option<f64>, samples: Opt
     let (duration, samples) = (duration?, samples?);
     if first >= duration {
         reader.report(value.span(), format!("must be before the end of the run after {duration} s"));
+        return None;
+    }
+    if !(duration / first).is_finite() {
+        let message = format!("is lost to rounding beside the duration of {duration} s, make it longer");
+        reader.report(value.span(), message);
         return None;
     }
     if samples < 3 {

@@ -78,8 +78,11 @@ impl TriangleMesh {
             "obj" => MeshFormat::Obj,
             "ply" => MeshFormat::Ply,
             _ => {
-                let expected = "expected stl, obj or ply; convert the mesh";
-                return Err(fail(format!("unknown extension '{extension}', {expected}")));
+                let found = match &*extension {
+                    "" => "no extension".to_owned(),
+                    other => format!("unknown extension '{other}'"),
+                };
+                return Err(fail(format!("{found}, expected stl, obj or ply; convert the mesh")));
             }
         };
         let bytes = contents().map_err(|reason| fail(format!("cannot be read: {reason}; check the path")))?;

@@ -40,7 +40,7 @@ fn vertex_index(x: f64, vertices: u64, place: Place) -> Result<u32, String> {
     let i = x as u32;
     let exists = f64::from(i) == x && u64::from(i) < vertices;
     exists.then_some(i).ok_or_else(|| {
-        place.corrupt(format!("vertex {x:?} does not exist: there are {vertices} vertices, numbered from 0"))
+        place.corrupt(format!("vertex {x} does not exist: there are {vertices} vertices, numbered from 0"))
     })
 }
 

@@ -82,6 +82,18 @@ impl Table {
         Ok(Table { axes, kind, times, torques, slopes })
     }
 
+    /// The first and the last time.
+    pub(crate) fn span(&self) -> (f64, f64) {
+        (self.times[0], self.times[self.times.len() - 1])
+    }
+
+    /// Whether a time is between them. A step to the last time may end a rounding after it.
+    pub(crate) fn covers(&self, time: f64) -> bool {
+        let (first, last) = self.span();
+        let rounding = 4.0 * f64::EPSILON * first.abs().max(last.abs());
+        (first - rounding..=last + rounding).contains(&time)
+    }
+
     /// The torque at a time between the first and the last; at a jump, that after it.
     pub fn at(&self, time: f64) -> Result<Bivector, TorqueError> {
         self.within(time, time)
@@ -90,11 +102,9 @@ impl Table {
     /// The torque at a time of a step whose middle is given. A step ends at a jump at the latest, and a held torque is
     /// that of its middle for all stages, which may lie beyond its ends.
     pub(crate) fn within(&self, time: f64, middle: f64) -> Result<Bivector, TorqueError> {
-        let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
-        // A step to the last time may end a rounding after it.
-        let rounding = 4.0 * f64::EPSILON * first.abs().max(last.abs());
         let time = if self.kind == Kind::Previous { middle } else { time };
-        if !(first - rounding..=last + rounding).contains(&time) {
+        if !self.covers(time) {
+            let (first, last) = self.span();
             return Err(TorqueError::new(format!(
                 "the table of torques spans {first} s to {last} s; add rows for all times of the simulation"
             )));

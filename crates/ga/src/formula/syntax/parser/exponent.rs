@@ -20,8 +20,10 @@ impl Parser<'_> {
             return Ok(None);
         };
         let whole = number.ratio.filter(|&(_, d)| d == 1).map(|(n, _)| if minus { -n } else { n });
-        let message =
-            "a power must be a whole number of 32 bits; write other powers of a rotor as `exp(½ log(R))`";
+        let message = match whole {
+            Some(_) => "a power must be less than 2³¹ in size",
+            None => "a power must be a whole number; write other powers of a rotor as `exp(½ log(R))`",
+        };
         let n = whole.and_then(|n| i32::try_from(n).ok()).ok_or_else(|| Error::new(span, message))?;
         Ok(Some(n))
     }

@@ -18,8 +18,6 @@ import numpy as np
 
 from polhode._algebra.constructors import as_bivectors
 from polhode._algebra.multivector import Multivector
-from polhode._algebra.rotor import Rotor
-from polhode._formula.errors import FormulaError
 from polhode._mechanics.body_arrays import bodies_of, has
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.laws import function_of, law_of_formula, one_of
@@ -68,10 +66,6 @@ _FOREIGN = {
     **dict.fromkeys(("from_table", "interpolated", "table"), "torque.tabulated(times, torques)"),
     **dict.fromkeys(("thrust", "thruster"), "force.thrust(F, at=x)"),
 }
-
-# Names that the formulas of forces have, but not those of torques.
-_OF_PLACE = {"x": "position", "v": "velocity"}
-
 
 def __dir__() -> list[str]:
     return __all__
@@ -595,7 +589,9 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     - ``L`` and ``L_B``, the angular momentum in space and in body axes, bivectors in kg m²/s, that of a
       `gyrostat` included,
     - ``I(…)``, the inertia map of the body on bivectors in body axes. Elsewhere ``I`` is the pseudoscalar;
-      write ``(…) I`` for the bivector of a vector in brackets.
+      write ``(…) I`` for the bivector of a vector in brackets,
+    - ``x`` and ``v``, the position and the velocity of the centre of mass, vectors in space in m and m/s,
+      and ``m``, the mass in kg, unless `values` has values of these names.
 
     For a body held at a point, give `simulate` its inertia about that point, ``body.inertia_about(0)``.
 
@@ -631,26 +627,24 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     def law(given: tuple[tuple[str, Any], ...]) -> Torque:
         return native_torque("formula", text, axes, named_together(given))
 
-    try:
-        return law_of_formula(law, text, values, batches=True)
-    except FormulaError as error:
-        word = error.text[slice(*error.span)]
-        if word not in _OF_PLACE or "has no value" not in error.message:
-            raise
-        message = (
-            f"{error.message}; laws of torques do not know the {_OF_PLACE[word]} of the centre of mass: "
-            "hold a torque that depends on it over short steps with ph.Stepper"
-        )
-        raise FormulaError(message, error.text, error.span) from None
+    return law_of_formula(law, text, values, batches=True)
 
 
 @explains_calls
-def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
+def function(f: Callable[..., Any], *, center: bool = False) -> Torque:
     """Return the torque of a Python function ``f(t, rotor, omega_body)``.
 
     Its arguments are the time in s, the rotor from body axes to space, and the angular velocity in body
     axes, a bivector; it returns the torque in body axes in N m, a bivector or (3,). Its exceptions pass
     through `simulate`. It is about ten times slower than a `formula`; the law can be pickled if f can.
+
+    Parameters
+    ----------
+    f
+        The function.
+    center
+        Whether to call ``f(t, rotor, omega_body, position, velocity)``, with the position and the velocity of
+        the centre of mass, vectors in space in m and m/s.
 
     Examples
     --------
@@ -661,4 +655,7 @@ def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
     >>> motion.omega_body["e12"].round(4)  # exp(-0.5 t)
     array([1.    , 0.6065, 0.3679])
     """
-    return native_torque("function", function_of(f, "t", "rotor", "omega_body"))
+    if not isinstance(center, bool):
+        raise TypeError(f"center must be True or False, got {center!r}")
+    place = ("position", "velocity") if center else ()
+    return native_torque("function", function_of(f, "t", "rotor", "omega_body", *place), center)

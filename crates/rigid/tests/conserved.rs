@@ -10,6 +10,7 @@ use polhode_rigid::laws::torque::{Orbit, Torque, total, turn_from, wheel};
 use polhode_rigid::methods::Method;
 use polhode_rigid::run::{Options, Problem};
 use polhode_rigid::state::phase::{Gyrostat, Phase};
+use polhode_rigid::state::point::Point;
 
 const STEP: f64 = 1e-3;
 
@@ -20,7 +21,8 @@ fn rate(body: &Gyrostat, torques: &[Torque], y: [f64; 7], time: f64) -> [f64; 7]
     let [s, x, z, w] = (state.rotor * Rotor::from_unit_components([0.0, omega.0[0], omega.0[1], omega.0[2]]))
         .components()
         .map(|c| -0.5 * c);
-    let Bivector(m) = omega.commutator(body.carried(omega)) + total(body, torques, &state).unwrap();
+    let Bivector(m) =
+        omega.commutator(body.carried(omega)) + total(torques, &Point::at_rest(body, &state)).unwrap();
     [s, x, z, w, m[0], m[1], m[2]]
 }
 

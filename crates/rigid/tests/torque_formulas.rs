@@ -6,6 +6,7 @@ use polhode_ga::{Bivector, Graded, Rotor, Vector};
 use polhode_rigid::laws::formula::{Formula, Purpose};
 use polhode_rigid::laws::torque::{Axes, Dependence, Torque};
 use polhode_rigid::state::phase::{Gyrostat, Phase};
+use polhode_rigid::state::point::Point;
 
 /// A law with a vector c, a number k, and the function `pull(a, b) = a∧b`.
 fn law(text: &str, axes: Axes) -> Result<Torque, Error> {
@@ -30,12 +31,15 @@ fn state() -> (Gyrostat, Phase) {
 #[test]
 fn formulas_match_the_built_in_laws() {
     let (body, state) = state();
-    let heavy = Torque::Heavy(Vector([0.5, 0.25, 1.0])).value(&body, &state).unwrap();
+    let heavy = Torque::Heavy(Vector([0.5, 0.25, 1.0])).value(&Point::at_rest(&body, &state)).unwrap();
     for text in ["(~R e3 R) ∧ c", "pull(~R e3 R, c)"] {
-        assert_eq!(law(text, Axes::Body).unwrap().value(&body, &state).unwrap(), heavy);
+        assert_eq!(law(text, Axes::Body).unwrap().value(&Point::at_rest(&body, &state)).unwrap(), heavy);
     }
-    let damping = Torque::QuadraticDamping(2.0).value(&body, &state).unwrap();
-    assert_eq!(law("-k norm(Ω) Ω", Axes::Body).unwrap().value(&body, &state).unwrap(), damping);
+    let damping = Torque::QuadraticDamping(2.0).value(&Point::at_rest(&body, &state)).unwrap();
+    assert_eq!(
+        law("-k norm(Ω) Ω", Axes::Body).unwrap().value(&Point::at_rest(&body, &state)).unwrap(),
+        damping
+    );
 }
 
 /// Seen from other axes of the body it is the same torque.
@@ -54,8 +58,8 @@ fn a_formula_is_in_the_axes_of_the_body() {
         [("t (~R e3 R) ∧ c − k Ω + Ω × L_B", Axes::Body), ("L × (R c ~R I) + k Ω", Axes::Space)]
     {
         let law = law(text, axes).unwrap();
-        let expected = law.value(&sphere, &in_body_axes).unwrap();
-        let found = frame.apply_bivector(law.in_axes(frame).value(&sphere, &state).unwrap());
+        let expected = law.value(&Point::at_rest(&sphere, &in_body_axes)).unwrap();
+        let found = frame.apply_bivector(law.in_axes(frame).value(&Point::at_rest(&sphere, &state)).unwrap());
         assert!((found - expected).norm() <= 32.0 * f64::EPSILON * expected.norm(), "{text}");
     }
 }
@@ -87,6 +91,7 @@ fn invalid_torques_are_errors_with_a_place() {
     }
     let (body, mut state) = state();
     state.time = 1.0;
-    let error = law("k Ω + Ω/(t − 1)", Axes::Body).unwrap().value(&body, &state).unwrap_err();
+    let error =
+        law("k Ω + Ω/(t − 1)", Axes::Body).unwrap().value(&Point::at_rest(&body, &state)).unwrap_err();
     assert!(error.message.contains("`Ω/(t − 1)` in the formula"), "{error}");
 }

@@ -227,7 +227,7 @@ pub extern "C" fn states(handle: usize) -> i32 {
     })
 }
 
-/// Takes the first eight numbers of a row of states; replies with what acts on the body in that state, as JSON.
+/// Takes a row of states; replies with what acts on the body in that state, as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn acting(handle: usize) -> i32 {
     reply_with(|state, rooms| {

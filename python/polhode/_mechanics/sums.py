@@ -152,7 +152,8 @@ def multiple(law: L, factor: float, linear: tuple[int, ...], done: str) -> L:
         sign = "-" if factor == -1 else f"{factor!r} "
         return type(law)("formula", f"{sign}({text})", *rest)
     if law.name == "function":
-        return type(law)("function", Multiple.of(law.arguments[0], factor))
+        f, *rest = law.arguments
+        return type(law)("function", Multiple.of(f, factor), *rest)
     if not linear:
         raise TypeError(
             f"{law.name} cannot be {done}: it is not proportional to any of its parameters; change them, or "

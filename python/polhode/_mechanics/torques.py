@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from polhode import _native
 from polhode._algebra.constructors import bivector
@@ -69,8 +72,8 @@ class Torque(Sum):
         This is the right side of handout eq. (4.21) in body axes, in N m; for a `gyrostat` it is the
         reaction of the wheel to being turned, for `reaction_wheels` their torque on a body whose inertia is
         without their moments about their axes. The inertia is about the centre of mass, or about the fixed
-        point if a law holds the body; from a `Body` the right one is taken. The time t is in s, by default
-        that of the state.
+        point if a law holds the body; from a `Body` the right one is taken, and the mass. The time t is in s, by
+        default that of the state.
 
         Examples
         --------
@@ -89,7 +92,10 @@ class Torque(Sum):
         body = inertia_of(bodies[()], self.holds)
         rotor, omega = state.rotor._data, state.omega_body._data
         time = finite(as_float(state.time if t is None else t, "t"), "t")
-        return bivector(_native.torque_at(list(torque.laws), body._core, rotor, omega, time))
+        center = np.concatenate([state.position.components, state.velocity.components])
+        mass = inertia.mass if isinstance(inertia, Body) else math.nan
+        laws = list(torque.laws)
+        return bivector(_native.torque_at(laws, body._core, rotor, omega, center, mass, time))
 
     def _about_pivot(self, bodies: Any) -> tuple[Any, Torque]:
         """Return the bodies in axes whose origin is the fixed point, if there is one, and the laws there."""
@@ -139,4 +145,7 @@ def _text(law: _native.Law) -> str:
         text, frame, values = law.arguments
         named = {"frame": frame} if frame != "body" else {}
         return shown("formula", [text], {**named, **dict(values)})
+    if law.name == "function":
+        f, center = law.arguments
+        return shown("function", [f], {"center": True} if center else {})
     return shown(law.name, law.arguments, {})

@@ -117,7 +117,7 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
 
 
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
-    """Return the torque of a formula, with the names of `polhode.torque.formula`.
+    """Return the torque of a formula, with the names of `polhode.torque.formula` but ``x``, ``v`` and ``m``.
 
     Values are multivectors, rotors and numbers, which may be traced; linear maps are not supported.
     """

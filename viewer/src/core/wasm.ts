@@ -234,7 +234,7 @@ export class Motion {
 
   /** What acts on the body in the state of a row; a Problem for a recorded motion. */
   acting(row: Float64Array): Acting {
-    this.core.call(() => this.core.exports.acting(this.handle), row.slice(0, State.omegaSpace));
+    this.core.call(() => this.core.exports.acting(this.handle), row.slice());
     return this.core.json();
   }
 

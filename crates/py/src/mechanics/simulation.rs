@@ -237,6 +237,7 @@ pub(crate) fn simulate<'py>(
         omega: Bivector(one(&omega)?),
         time: start,
         torques,
+        mass,
         has_forces: !forces.is_empty(),
     };
     let problem = Problem::of(&setup).with_center(center, mass, &forces);

@@ -3,7 +3,7 @@
 use super::bodies::{Inertia, rotor};
 use super::columns::{Arguments, Laws};
 use super::law_value::{
-    Callback, LawValue, Raised, Values, bivector, bivector_of, failed, rotor_of, sole, vector, vector_of,
+    Callback, LawValue, Raised, Values, bivector, bivector_of, failed, rotor_of, vector, vector_of,
 };
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::support::facts::dict;
@@ -15,8 +15,9 @@ use polhode_rigid::laws::registry::{Entry, Kernel, torque};
 use polhode_rigid::laws::torque::{
     Axes, KeplerOrbit, Kind, Orbit, Table, Torque, Wheel, Wheels, dipole_field, on_orbit, total, wheel,
 };
+use polhode_rigid::state::center::Center;
 use polhode_rigid::state::phase::{Gyrostat, Phase};
-use polhode_rigid::state::point::Function;
+use polhode_rigid::state::point::{Function, Point, Seen};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::convert::Infallible;
@@ -104,6 +105,8 @@ pub(crate) fn torque_at<'py>(
     inertia: &Inertia,
     rotor_row: Rows<'py>,
     omega: Rows<'py>,
+    center: Rows<'py>,
+    mass: f64,
     time: f64,
 ) -> PyResult<Array<'py>> {
     let frame = inertia.0.principal_frame();
@@ -118,7 +121,9 @@ pub(crate) fn torque_at<'py>(
     }
     let omega = frame.reverse().apply_bivector(Bivector(one(&omega)?));
     let state = Phase { rotor: rotor(&rotor_row)? * frame, momentum: body.momentum(omega), time };
-    let torque = total(&body, &torques, &state)
+    let [x, y, z, u, v, w] = one(&center)?;
+    let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
+    let torque = total(&torques, &Point { body: &body, mass, phase: &state, center: &center })
         .map_err(|error| failed(laws.iter().map(Bound::as_super), format!("at t = {time} s: {error}")))?;
     Ok(line(py, frame.apply_bivector(torque).0.to_vec()))
 }
@@ -145,7 +150,10 @@ fn laws(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult
         ("magnetic_on_orbit", _) => vec![magnetic_on_orbit(arguments, raised)?],
         ("reaction_wheels", _) => vec![reaction_wheels(arguments)?],
         ("formula", _) => formulas(&given, values)?,
-        ("function", _) => vec![function(sole(arguments)?, raised)],
+        ("function", _) => {
+            let (call, center) = arguments.extract()?;
+            vec![function(call, center, raised)]
+        }
         (_, Some(Entry { kernel: Kernel::Table, .. })) => vec![tabulated(arguments)?],
         (_, Some(entry)) => given.registered(entry, |numbers| entry.build(numbers))?,
         _ => return Err(bad(format!("{name} is not a torque law"))),
@@ -230,15 +238,21 @@ pub(crate) fn dipole_fields<'py>(
     table(py, numbers(&places)?.as_chunks::<3>().0.iter().map(|place| dipole_field(moment, Vector(*place)).0))
 }
 
-fn function(call: Py<PyAny>, raised: &Raised) -> Torque {
+fn function(call: Py<PyAny>, center: bool, raised: &Raised) -> Torque {
     let callback = Callback { call, raised: raised.clone(), what: "torque" };
-    Torque::Function(Function::new(move |seen| {
-        callback.at(
-            seen.time,
-            |py| (seen.time, rotor_of(py, seen.rotor)?, bivector_of(py, seen.omega)?).into_pyobject(py),
-            bivector,
-        )
-    }))
+    let law =
+        Function::new(move |seen| callback.at(seen.time, |py| arguments_at(py, seen, center), bivector));
+    Torque::Function(law.reading_center(center))
+}
+
+/// The arguments of a function at a point, with those of the centre of mass or without.
+fn arguments_at<'py>(py: Python<'py>, seen: &Seen, center: bool) -> PyResult<Bound<'py, PyTuple>> {
+    let (rotor, omega) = (rotor_of(py, seen.rotor)?, bivector_of(py, seen.omega)?);
+    if !center {
+        return (seen.time, rotor, omega).into_pyobject(py);
+    }
+    let (position, velocity) = (vector_of(py, seen.position)?, vector_of(py, seen.velocity)?);
+    (seen.time, rotor, omega, position, velocity).into_pyobject(py)
 }
 
 fn formulas<'py>(given: &Arguments<'_, 'py>, values: Values<'py>) -> PyResult<Vec<Torque>> {

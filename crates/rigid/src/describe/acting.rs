@@ -3,10 +3,12 @@
 use crate::error::TorqueError;
 use crate::facts;
 use crate::facts::Facts;
-use crate::laws::torque::{Torque, wheel};
+use crate::laws::torque::{Torque, external, wheel};
 use crate::run::Setup;
+use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::{Bivector, Rotor, Vector};
+use crate::state::point::{Point, Seen};
+use polhode_ga::{Bivector, Vector};
 
 /// A vector on which a law depends, for display.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,17 +33,16 @@ impl Source {
 impl Setup {
     /// The torque on the body at a state in body axes: the rate of change of L, in space, N m. That of wheels inside the
     /// body, whose momentum is in L, is not part of it.
-    pub fn torque_in_space(&self, time: f64, rotor: Rotor, omega: Bivector) -> Result<Bivector, TorqueError> {
+    pub fn torque_in_space(&self, state: &Seen) -> Result<Bivector, TorqueError> {
+        let Seen { time, rotor, omega, position, velocity } = *state;
         let frame = self.inertia.principal_frame();
         let torques: Vec<Torque> = self.torques.iter().map(|torque| torque.clone().in_axes(frame)).collect();
         let body = Gyrostat { moments: self.inertia.principal_moments(), wheel: wheel(&torques) };
         let omega = frame.reverse().apply_bivector(omega);
-        let state = Phase { rotor: rotor * frame, momentum: body.momentum(omega), time };
-        let mut sum = Bivector::default();
-        for torque in &torques {
-            sum = sum + torque.value(&body, &state)? - body.carried(omega) * torque.damping_rate();
-        }
-        Ok(state.rotor.apply_bivector(sum))
+        let phase = Phase { rotor: rotor * frame, momentum: body.momentum(omega), time };
+        let at =
+            Point { body: &body, mass: self.mass, phase: &phase, center: &Center { position, velocity } };
+        Ok(phase.rotor.apply_bivector(external(&torques, &at)?))
     }
 
     /// The vectors that the laws depend on, at a time: the direction to the planet and to the sun, fields, dipoles, wheels.

@@ -14,6 +14,7 @@ use crate::run::refine::{Accuracy, Converged, Convergence, Scales, SweepPlan};
 use crate::run::sweep::{StepRule, Sweep};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
+use crate::state::point::Point;
 use std::mem;
 
 /// A body in a lane, with the state of its sweeps.
@@ -45,7 +46,7 @@ impl<'a> BodyRun<'a> {
     pub fn new(member: Member<'a>, torques: &[Torque], scheduler: &Scheduler<'a>) -> BodyRun<'a> {
         let start = Carried::new(member.start, Center::default());
         let bounds = scheduler.bounds(&member, torques);
-        let first_rate = fastest_rate(&member.gyrostat, torques, &member.start);
+        let first_rate = fastest_rate(torques, &Point::at_rest(&member.gyrostat, &member.start));
         let accuracy = Accuracy::new(METHOD.order(), scheduler.options.rtol);
         let [first, last] = span(scheduler.times, member.start.time);
         let scales = Scales {

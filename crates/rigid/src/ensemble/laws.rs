@@ -13,6 +13,7 @@ use crate::laws::torque::lanes::{Three, add, in_lanes, quadratic, seen, turn_fro
 use crate::laws::torque::{Axes, Gains, Torque};
 use crate::state::phase::vertical;
 use crate::state::phase::{Gyrostat, Phase};
+use crate::state::point::Point;
 use gain::Gain;
 use orbits::Orbits;
 use polhode_ga::simd::lanes::{Lanes, Work, cross, fastest};
@@ -29,7 +30,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for NoForcing {
     const IN_REGISTERS: bool = true;
 
     #[inline(always)]
-    fn torque(&mut self, _: &Place<W, F>) -> [Lanes<W, F>; 3] {
+    fn torque(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
         [Lanes::ZERO; 3]
     }
 }
@@ -44,7 +45,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
 
     /// γ∧c: its axial vector is γ x c.
     #[inline(always)]
-    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
+    fn torque(&mut self, at: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
         cross(&vertical(&at.rotor), &self.0)
     }
 }
@@ -64,7 +65,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
     }
 
     #[inline(always)]
-    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
+    fn torque(&mut self, at: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
         self.orbits.torque(&self.moments, at)
     }
 }
@@ -82,7 +83,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Controller<W, F> {
     const IN_REGISTERS: bool = true;
 
     #[inline(always)]
-    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
+    fn torque(&mut self, at: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
         let mut torque = self.stiffness.against(&turn_from(&self.target, &at.rotor));
         add(&mut torque, &self.damping.against(&at.omega));
         torque
@@ -101,7 +102,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for OneFormula<'_, W, F> {
     }
 
     #[inline(always)]
-    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
+    fn torque(&mut self, at: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
         self.0.torque(at)
     }
 }
@@ -318,7 +319,9 @@ fn lane_by_lane<const W: usize, const F: bool>(
         }
         let momentum = body.momentum(Bivector(at.omega.map(|lanes| lanes.0[l])));
         let phase = Phase { rotor: Rotor::from_unit_components(rotor), momentum, time: at.time.0[l] };
-        each[l].value_within(body, &phase, middle.0[l]).map_or([f64::NAN; 3], |torque| torque.0)
+        each[l]
+            .value_within(&Point::at_rest(body, &phase), middle.0[l])
+            .map_or([f64::NAN; 3], |torque| torque.0)
     })
 }
 
@@ -389,7 +392,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
     }
 
     #[inline(always)]
-    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
+    fn torque(&mut self, at: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
         let Laws { gyrostats, moments, wheel, laws, middle } = self;
         let mut sum = [Lanes::ZERO; 3];
         for law in laws {

@@ -173,7 +173,7 @@ impl Ensemble {
     }
 
     /// Whether these bodies can be integrated in lanes, by equal or adaptive steps: their centres of mass must move in closed
-    /// form.
+    /// form, and torques must not depend on them or on the masses.
     fn in_lanes(&self, equal: bool) -> bool {
         // Laws are of the same kinds for all bodies, so one stands for all; checking all of them for each body would take
         // quadratic time. A table of its own gives each body its own steps.
@@ -183,7 +183,8 @@ impl Ensemble {
         let moved = self.forces.iter().any(|force| !force.of(0).is_linear());
         // Only steps of single bodies carry the momentum of wheels with motors.
         let driven = |law: &Rows<Torque>| matches!(law.of(0), Torque::Wheels(_));
-        !moved && !self.laws.iter().any(|law| apart(law) || called(law) || driven(law))
+        let follows = |law: &Rows<Torque>| law.of(0).reads_center() || law.of(0).reads_mass();
+        !moved && !self.laws.iter().any(|law| apart(law) || called(law) || driven(law) || follows(law))
     }
 }
 

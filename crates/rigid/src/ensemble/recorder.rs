@@ -16,6 +16,7 @@ use crate::run::sweep::is_finite;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Phase;
+use crate::state::point::Point;
 use std::ops::Range;
 
 /// The bodies in lanes, with what is recorded of their motions.
@@ -131,7 +132,8 @@ impl<'r, 'a, const W: usize> Recorder<'r, 'a, W> {
         let columns = &self.scheduler.columns;
         // Laws are of the same kinds for all bodies: the first body stands for all.
         let first = &self.members[0];
-        let is_aliased = |law: &&Torque| is_aliased(law, &first.gyrostat, &first.start, span, step);
+        let start = Point::at_rest(&first.gyrostat, &first.start);
+        let is_aliased = |law: &&Torque| is_aliased(law, &start, span, step);
         let aliased = torques[0].iter().filter(is_aliased);
         columns.warn(first.body, aliased.map(|law| aliasing_warning(law, step)));
         let turns_too_far = |l: &usize| {

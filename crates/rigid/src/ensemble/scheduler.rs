@@ -15,7 +15,6 @@ use crate::run::closed_form::ExactBody;
 use crate::run::limits::{Samples, StepBounds, samples};
 use crate::run::output::BodyOutput;
 use crate::run::{Options, Progress, check_body};
-use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
 use polhode_ga::rows::curve::TOGETHER;
@@ -212,8 +211,8 @@ impl<'a> Scheduler<'a> {
     /// Bounds of the steps of a body under its torques. Laws in lanes are not user functions, so sampling does not fail.
     pub fn bounds(&self, member: &Member, torques: &[Torque]) -> StepBounds {
         let Member { gyrostat, start, .. } = member;
-        // Forces that are not linear are not in lanes.
-        let at = Point { body: gyrostat, mass: f64::NAN, phase: start, center: &Center::default() };
+        // Bodies in lanes have linear forces only, and laws that do not depend on the centre of mass.
+        let at = Point::at_rest(gyrostat, start);
         let sample = || samples(torques, &[], &at, self.times, self.options, true).unwrap_or_default();
         let own;
         // They depend on the law alone, which the bodies may share.
@@ -224,7 +223,7 @@ impl<'a> Scheduler<'a> {
                 &own
             }
         };
-        StepBounds::new(torques, samples, gyrostat, start, self.options)
+        StepBounds::new(torques, samples, &at, self.options)
     }
 
     /// Solves a body alone.

@@ -88,9 +88,7 @@ impl Quantity {
         match self {
             Quantity::Axis { .. } | Quantity::Spin { .. } => false,
             Quantity::Position { .. } | Quantity::Function(_) => true,
-            Quantity::Formula(formula) => {
-                formula.needs(|motion| matches!(motion, Motion::Position | Motion::Velocity))
-            }
+            Quantity::Formula(formula) => formula.reads_center(),
         }
     }
 

@@ -165,7 +165,8 @@ impl Translation {
         for law in &self.forces {
             force += law.value(&at)?;
         }
-        Ok(force / self.mass)
+        // The mass may be unknown where no force acts.
+        Ok(if self.forces.is_empty() { force } else { force / self.mass })
     }
 
     /// The fastest rate of all forces, in 1/s.

@@ -6,6 +6,7 @@ use super::torque::{Torque, total_torque};
 use crate::error::SimulateError;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
+use crate::state::point::Point;
 use polhode_ga::simd::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor, Vector};
 
@@ -41,8 +42,9 @@ pub(crate) trait Forcing<const W: usize, const F: bool> {
     #[inline(always)]
     fn ahead(&mut self, _: impl Iterator<Item = f64> + Clone) {}
 
-    /// The torque in principal axes, without damping `−g I(Ω)` and the reaction of a wheel.
-    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
+    /// The torque in principal axes, without damping `−g I(Ω)` and the reaction of a wheel, at position and velocity of
+    /// the centre of mass; zeros where steps do not follow it.
+    fn torque(&mut self, at: &Place<W, F>, center: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3];
 
     /// The momentum of all wheels in principal axes, from that of those without motors.
     #[inline(always)]
@@ -124,11 +126,13 @@ impl Forcing<1, false> for BodyForcing<'_> {
         self.middle = middle.0[0];
     }
 
-    fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
+    fn torque(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {
         if self.torques.is_empty() || self.failure.is_some() {
             return [One::ZERO; 3];
         }
-        let torque = total_torque(self.torques, self.body, &self.phase(at), self.middle);
+        let (phase, center) = (&self.phase(at), &center_of(center));
+        let at = Point { center, ..Point::at_rest(self.body, phase) };
+        let torque = total_torque(self.torques, &at, self.middle);
         self.noted(torque.map(|torque| torque.0))
     }
 
@@ -147,9 +151,13 @@ impl Forcing<1, false> for BodyForcing<'_> {
         let Some(translation) = self.translation.filter(|_| self.failure.is_none()) else {
             return [One::ZERO; 3];
         };
-        let (phase, [x, y, z, u, v, w]) = (self.phase(at), One::alone(*center));
-        let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
-        let acceleration = translation.acceleration(self.body, &phase, &center);
+        let phase = self.phase(at);
+        let acceleration = translation.acceleration(self.body, &phase, &center_of(center));
         self.noted(acceleration.map(|a| a.0).map_err(|error| error.at(phase.time)))
     }
+}
+
+fn center_of(numbers: &[One; 6]) -> Center {
+    let [x, y, z, u, v, w] = One::alone(*numbers);
+    Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) }
 }

@@ -171,7 +171,7 @@ pub(crate) fn step_in_parts<const W: usize, const F: bool, E: Forcing<W, F>>(
     let (mut at, mut sum) = (place(y, begin), [Lanes::<W, F>::ZERO; 7]);
     for (number, (time, part_of_sum, to_next)) in stages.into_iter().enumerate() {
         at.time = time;
-        let torque = forcing.torque(&at);
+        let torque = forcing.torque(&at, &[Lanes::ZERO; 6]);
         for first in (0..W).step_by(PART) {
             let bodies = bodies.part(first);
             let ([s, a, b, c], [p, q, r]) = (part(&at.rotor, first), part(&at.omega, first));
@@ -243,12 +243,15 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
 ) -> State<N, W, F> {
     let mut slope = free_slope(bodies, y);
     let at = place(y, time);
+    let mut center = [Lanes::ZERO; 6];
+    if N == 13 {
+        center.copy_from_slice(&y[7..]);
+    }
     if E::ACTS {
-        let torque = forcing.torque(&at);
+        let torque = forcing.torque(&at, &center);
         drive(bodies, E::WHEELS, y, torque, &mut slope);
     }
     if N == 13 {
-        let center = [y[7], y[8], y[9], y[10], y[11], y[12]];
         let acceleration = forcing.acceleration(&at, &center);
         slope[7..10].copy_from_slice(&y[10..]);
         slope[10..].copy_from_slice(&acceleration);

@@ -22,6 +22,7 @@ use super::momentum::{fixed_momentum, restore_momentum};
 use crate::error::SimulateError;
 use crate::laws::torque::{Dependence, Torque, damping_rate, total_torque};
 use crate::state::phase::{Gyrostat, Phase};
+use crate::state::point::Point;
 use polhode_ga::{Bivector, Rotor, Vector};
 
 /// Newton's method converges in four or five iterations, with an inexact Jacobian in a few times as many.
@@ -111,7 +112,8 @@ impl Midpoint {
             let root = Rotor::from_unit_components([(1.0 + secant) / size, x, y, z]);
             let middle = Phase { rotor: state.rotor * root, momentum: mean, time: state.time + 0.5 * h };
             let damping = self.body.carried(omega) * -self.damping;
-            let torque = total_torque(&self.torques, &self.body, &middle, middle.time)? + damping;
+            let torque =
+                total_torque(&self.torques, &Point::at_rest(&self.body, &middle), middle.time)? + damping;
             // N_∥ + sec N_⊥ with (1 − sec)/x² = −1/(1 + sec).
             let along = half * (half.dual().dot(torque.dual()) / (1.0 + secant));
             residual = residual - (torque * secant - along) * (0.5 * h);

@@ -11,6 +11,7 @@ pub(crate) mod step_control;
 use crate::body::inertia::equal;
 use crate::laws::torque::{Dependence, Torque, damping_rate};
 use crate::state::phase::{Gyrostat, Phase};
+use crate::state::point::Point;
 use splitting::turns::Kind;
 use splitting::{COMPOSITIONS, RKN6, Sequence};
 
@@ -149,8 +150,9 @@ fn symmetric(body: &Gyrostat) -> bool {
 pub(crate) const ROUNDING_OF_RUNGE_KUTTA: f64 = 0.4 * f64::EPSILON;
 
 /// The rate of the fastest turn, in rad/s, a scale for steps: bounded by momentum, energy and torque.
-pub(crate) fn fastest_rate(body: &Gyrostat, torques: &[Torque], start: &Phase) -> f64 {
-    let torque: f64 = torques.iter().map(|t| t.size_at(body, start)).sum();
+pub(crate) fn fastest_rate(torques: &[Torque], start: &Point) -> f64 {
+    let torque: f64 = torques.iter().map(|t| t.size_at(start)).sum();
+    let Point { body, phase: start, .. } = *start;
     let smallest = body.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
     let omega = body.omega(start.momentum).norm().max(body.wheel.norm() / smallest);
     omega.hypot((2.0 * torque / smallest).sqrt()) + damping_rate(torques).abs()

@@ -34,10 +34,14 @@ impl Engine {
         translation: Option<Translation>,
         start: &Phase,
     ) -> Result<Engine, SimulateError> {
-        let moving = "supports no other forces than constant ones, drag and springs; use auto, dop853 or rk4";
+        let moving = if torques.iter().any(Torque::reads_center) {
+            "does not support torques that depend on position or velocity; use auto, dop853 or rk4"
+        } else {
+            "supports no other forces than constant ones, drag and springs; use auto, dop853 or rk4"
+        };
         let moving = (translation.is_some() && !matches!(method, Method::Classical | Method::RungeKutta))
             .then_some(moving);
-        if let Some(reason) = method.unfit(&body, torques).or(moving) {
+        if let Some(reason) = moving.or(method.unfit(&body, torques)) {
             return Err(SimulateError::Unfit { method: method.name(), reason });
         }
         Ok(match method {

@@ -6,7 +6,7 @@ use crate::error::SimulateError;
 use crate::laws::force::Force;
 use crate::laws::torque::Torque;
 use crate::methods::step_control::Limit;
-use crate::state::phase::{Gyrostat, Phase};
+use crate::state::phase::Phase;
 use crate::state::point::Point;
 
 /// Bounds of the steps of a run.
@@ -68,7 +68,7 @@ pub(crate) fn samples(
     }
     let time = start.phase.time;
     let [first, last] = span(times, time);
-    let torques = torques.iter().map(|law| InTime::of_torque(law, start.body, start.phase));
+    let torques = torques.iter().map(|law| InTime::of_torque(law, start));
     let laws = torques.chain(forces.iter().map(|force| InTime::of_force(force, start)));
     let both = |law: Option<InTime>| -> Result<[Sampled; 2], SimulateError> {
         let Some(law) = law else { return Ok(Default::default()) };
@@ -95,28 +95,25 @@ impl StepBounds {
     }
 
     /// For laws in principal axes, with their samples.
-    pub fn new(
-        torques: &[Torque],
-        samples: &Samples,
-        body: &Gyrostat,
-        start: &Phase,
-        options: &Options,
-    ) -> StepBounds {
+    pub fn new(torques: &[Torque], samples: &Samples, start: &Point, options: &Options) -> StepBounds {
         let mut breaks: Vec<f64> = torques.iter().flat_map(|law| law.breaks()).copied().collect();
         breaks.extend(&options.breaks);
         breaks.extend(samples.iter().flatten().flat_map(|sampled| &sampled.stops));
         breaks.sort_by(f64::total_cmp);
         let size = |(k, law): (usize, &Torque)| {
             let peaks = samples.get(k).into_iter().flatten().filter_map(|sampled| sampled.peak);
-            let at = |time: f64| law.size_at(body, &Phase { time, ..*start });
-            peaks.map(at).fold(law.size_at(body, start), f64::max)
+            let at = |time: f64| {
+                let phase = &Phase { time, ..*start.phase };
+                law.size_at(&Point { phase, ..*start })
+            };
+            peaks.map(at).fold(law.size_at(start), f64::max)
         };
         let torque: f64 = torques.iter().enumerate().map(size).sum();
         // Rounding of the momentum of wheels is 1e-12 of this rate, as for a gyrostat.
         let motors = |law: &Torque| if let Torque::Wheels(wheels) = law { wheels.sizes()[1] } else { 0.0 };
         let wheels: f64 = torques.iter().map(motors).sum();
-        let smallest = body.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
-        let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
+        let smallest = start.body.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
+        let largest = start.body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
         StepBounds {
             breaks,
             longest: options.max_step.unwrap_or(f64::INFINITY),

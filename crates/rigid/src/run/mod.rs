@@ -52,6 +52,8 @@ pub struct Setup {
     pub time: f64,
     /// The torques, those of off-centre thrusts included.
     pub torques: Vec<Torque>,
+    /// In kg; NaN if unknown.
+    pub mass: f64,
     /// Whether forces move the centre of mass.
     pub has_forces: bool,
 }
@@ -164,7 +166,9 @@ impl Problem {
         let forces: Vec<Force> = forces.iter().map(|f| f.clone().in_axes(self.frame)).collect();
         self.center = center;
         self.mass = mass;
-        self.translation = (!forces.is_empty()).then_some(Translation { mass, forces });
+        self.torques = self.torques.into_iter().map(|law| law.with_mass(mass)).collect();
+        let follows = !forces.is_empty() || self.reads_center();
+        self.translation = follows.then_some(Translation { mass, forces });
         self
     }
 
@@ -185,8 +189,8 @@ impl Problem {
         let point = Point { body: &self.body, mass: self.mass, phase: &start, center: &begin.center };
         let samples = samples(&self.torques, self.forces(), &point, times, &options, adapts)?;
         let of_forces = samples.get(self.torques.len()..).unwrap_or_default();
-        let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options)
-            .with_forces(of_forces, self.mass);
+        let mut bounds =
+            StepBounds::new(&self.torques, &samples, &point, &options).with_forces(of_forces, self.mass);
         let center = self.center_motion();
         bounds.limit.reports_stiffness &= center.is_some();
         if let Some(center) = &center {
@@ -232,15 +236,24 @@ impl Problem {
     fn rate(&self) -> f64 {
         let stepped = self.translation.as_ref().filter(|_| self.center_motion().is_none());
         let translation = stepped.map_or(0.0, |t| t.rate(&self.center));
-        fastest_rate(&self.body, &self.torques, &self.start().phase).max(translation)
+        let start = self.start();
+        let at = Point { body: &self.body, mass: self.mass, phase: &start.phase, center: &start.center };
+        fastest_rate(&self.torques, &at).max(translation)
     }
 
     fn forces(&self) -> &[Force] {
         self.translation.as_ref().map_or(&[], |translation| &translation.forces)
     }
 
-    /// The motion of the centre of mass, if it has a closed form.
+    fn reads_center(&self) -> bool {
+        self.torques.iter().any(Torque::reads_center)
+    }
+
+    /// The motion of the centre of mass, if it has a closed form and no torque depends on it: then steps follow both.
     fn center_motion(&self) -> Option<CenterMotion> {
+        if self.reads_center() {
+            return None;
+        }
         let law = center_law(self.translation.iter().flat_map(|translation| &translation.forces), self.mass)?;
         Some(CenterMotion { time: self.time, start: self.center, law })
     }

@@ -146,9 +146,9 @@ impl Problem {
     fn warnings(&self, times: &[f64], step: f64, (method, sweep): (Method, &Sweep)) -> Vec<String> {
         let start = self.start();
         let span = span(times, start.phase.time);
-        let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start.phase, span, step);
-        let aliased = self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step));
         let at = Point { body: &self.body, mass: self.mass, phase: &start.phase, center: &start.center };
+        let is_aliased = |law: &&Torque| is_aliased(law, &at, span, step);
+        let aliased = self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step));
         let forces = self.forces().iter().filter(|force| is_aliased_force(force, &at, span, step));
         let aliased = aliased.chain(forces.map(|force| force_aliasing_warning(force, step)));
         let states = [&start].into_iter().chain(&sweep.states);

@@ -65,14 +65,21 @@ pub(crate) struct InTime<'a> {
 
 impl<'a> InTime<'a> {
     /// None for a law that does not depend on time, or is not smooth at known times.
-    pub fn of_torque(law: &'a Torque, body: &Gyrostat, start: &Phase) -> Option<InTime<'a>> {
+    pub fn of_torque(law: &'a Torque, &Point { body, mass, phase, center }: &Point) -> Option<InTime<'a>> {
         let circular = matches!(law, Torque::GravityGradient(orbit) if orbit.is_circular());
         if circular || !is_to_be_sampled(law) {
             return None;
         }
         let is_function = matches!(law, Torque::Function(_));
-        let (body, phase) = if is_function { (*body, *start) } else { (GENERAL, general(start.time)) };
-        Some(InTime { values: Box::new(move |times| law.values(&body, &phase, times)), is_function })
+        let (body, phase, center) = if is_function {
+            (*body, *phase, *center)
+        } else {
+            (GENERAL, general(phase.time), aside(center))
+        };
+        let values = move |times: &[f64]| {
+            law.values(&Point { body: &body, mass, phase: &phase, center: &center }, times)
+        };
+        Some(InTime { values: Box::new(values), is_function })
     }
 
     /// None for a force that does not depend on time.
@@ -81,14 +88,8 @@ impl<'a> InTime<'a> {
             return None;
         }
         let is_function = matches!(force, Force::Function(_));
-        let (body, phase, center) = if is_function {
-            (*body, *phase, *center)
-        } else {
-            let aside =
-                |x: Vector| x + Vector([0.37, -0.21, 0.29]) * if x.norm() > 0.0 { x.norm() } else { 1.0 };
-            let center = Center { position: aside(center.position), velocity: aside(center.velocity) };
-            (*body, general(phase.time), center)
-        };
+        let (body, phase, center) =
+            if is_function { (*body, *phase, *center) } else { (*body, general(phase.time), aside(center)) };
         let values = move |times: &[f64]| {
             let at = Point { body: &body, mass, phase: &phase, center: &center };
             Ok(force.values(&at, times)?.into_iter().map(|force| Bivector(force.0)).collect())
@@ -99,6 +100,12 @@ impl<'a> InTime<'a> {
 
 /// A body and a state without symmetry.
 const GENERAL: Gyrostat = Gyrostat { moments: [1.0, 1.25, 1.75], wheel: Bivector([0.0; 3]) };
+
+fn aside(Center { position, velocity }: &Center) -> Center {
+    let [position, velocity] = [*position, *velocity]
+        .map(|x| x + Vector([0.37, -0.21, 0.29]) * if x.norm() > 0.0 { x.norm() } else { 1.0 });
+    Center { position, velocity }
+}
 
 fn general(time: f64) -> Phase {
     let rotor = Rotor::from_unit_components([0.76, 0.48, -0.24, 0.36]).renormalized();
@@ -266,13 +273,7 @@ pub(crate) fn turn_warning(step: f64) -> String {
 }
 
 /// Whether fixed steps miss more than a tenth of the impulse of a law that depends on time.
-pub(crate) fn is_aliased(
-    law: &Torque,
-    body: &Gyrostat,
-    start: &Phase,
-    [from, to]: [f64; 2],
-    step: f64,
-) -> bool {
+pub(crate) fn is_aliased(law: &Torque, start: &Point, [from, to]: [f64; 2], step: f64) -> bool {
     // Along an orbit a gradient has harmonics of the true anomaly up to the fifth, and Simpson's rule misses
     // `h⁴/2880` of the fourth derivative: of steps this short, less than a thousandth.
     if let Torque::GravityGradient(orbit) = law
@@ -280,7 +281,7 @@ pub(crate) fn is_aliased(
     {
         return false;
     }
-    is_to_be_sampled(law) && misses_impulse(&|times| law.values(body, start, times), [from, to], step)
+    is_to_be_sampled(law) && misses_impulse(&|times| law.values(start, times), [from, to], step)
 }
 
 /// The same for a force, at a point.

@@ -30,6 +30,7 @@ impl Scene {
             omega: self.omega_body(),
             time: self.time,
             torques: laws.chain(self.thrust_torques(body)).collect(),
+            mass: body.mass,
             has_forces: !self.forces.is_empty(),
         }
     }

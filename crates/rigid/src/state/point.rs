@@ -35,7 +35,13 @@ pub struct Seen {
     pub velocity: Vector,
 }
 
-impl Point<'_> {
+impl<'a> Point<'a> {
+    /// A body of unknown mass, with the centre of mass at rest at the origin of space.
+    pub fn at_rest(body: &'a Gyrostat, phase: &'a Phase) -> Point<'a> {
+        const ORIGIN: Center = Center { position: Vector([0.0; 3]), velocity: Vector([0.0; 3]) };
+        Point { body, mass: f64::NAN, phase, center: &ORIGIN }
+    }
+
     /// The point in the user's axes, to which `frame` leads from the principal axes.
     pub fn seen(&self, frame: Rotor) -> Seen {
         Seen {
@@ -50,22 +56,32 @@ impl Point<'_> {
 
 type Call<T> = dyn Fn(&Seen) -> Result<T, TorqueError> + Send + Sync;
 
-/// A quantity given by a user's function: a force in space, or a number.
+/// A quantity given by a user's function: a torque, a force in space, or a number.
 #[derive(Clone)]
 pub struct Function<T> {
     call: Arc<Call<T>>,
     /// From the axes of the motion to those of the function.
     frame: Rotor,
+    reads_center: bool,
 }
 
 impl<T> Function<T> {
     /// From a function of the point in body axes and in space.
     pub fn new(call: impl Fn(&Seen) -> Result<T, TorqueError> + Send + Sync + 'static) -> Function<T> {
-        Function { call: Arc::new(call), frame: Rotor::IDENTITY }
+        Function { call: Arc::new(call), frame: Rotor::IDENTITY, reads_center: true }
+    }
+
+    /// The same, if it depends on position and velocity or does not.
+    pub fn reading_center(self, reads_center: bool) -> Function<T> {
+        Function { reads_center, ..self }
     }
 
     pub(crate) fn in_axes(self, frame: Rotor) -> Function<T> {
-        Function { call: self.call, frame: self.frame * frame }
+        Function { frame: self.frame * frame, ..self }
+    }
+
+    pub(crate) fn reads_center(&self) -> bool {
+        self.reads_center
     }
 
     pub(crate) fn frame(&self) -> Rotor {

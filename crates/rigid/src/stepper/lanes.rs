@@ -121,10 +121,10 @@ impl<E: Forcing<W, F>, const F: bool> Forcing<W, F> for Holding<'_, E, F> {
     }
 
     #[inline(always)]
-    fn torque(&mut self, at: &Place<W, F>) -> Three<W, F> {
+    fn torque(&mut self, at: &Place<W, F>, center: &[Lanes<W, F>; 6]) -> Three<W, F> {
         let mut sum = if self.in_space { seen(&at.rotor, &self.held) } else { self.held };
         if E::ACTS {
-            let torque = self.laws.torque(at);
+            let torque = self.laws.torque(at, center);
             for k in 0..3 {
                 sum[k] += torque[k];
             }

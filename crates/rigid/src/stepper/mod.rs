@@ -341,9 +341,13 @@ impl Member {
         let laws: Vec<Torque> = ensemble.laws.iter().map(|law| law.of(body).clone()).collect();
         let (inertia, laws) = carrier(ensemble.inertias.of(body), &laws);
         let frame = inertia.principal_frame();
-        let torques: Vec<Torque> = laws.into_iter().map(|law| law.in_axes(frame)).collect();
         let mass = *ensemble.masses.of(body);
-        let law = center_law(ensemble.forces_on(body), mass);
+        let torques: Vec<Torque> = laws.into_iter().map(|law| law.in_axes(frame).with_mass(mass)).collect();
+        let law = if torques.iter().any(Torque::reads_center) {
+            None
+        } else {
+            center_law(ensemble.forces_on(body), mass)
+        };
         let other = || Translation {
             mass,
             forces: ensemble.forces_on(body).map(|force| force.clone().in_axes(frame)).collect(),

@@ -3,6 +3,7 @@
 use super::*;
 use crate::laws::torque::Orbit;
 use crate::{Inertia, Scene};
+use polhode_ga::Rotor;
 use std::path::Path;
 
 fn setup(laws: Vec<Torque>) -> Setup {
@@ -10,7 +11,7 @@ fn setup(laws: Vec<Torque>) -> Setup {
     let frame = Rotor::exp(Bivector([0.2, -0.4, 0.1]));
     let inertia = Inertia::from_principal_moments([1.0, 2.0, 2.5]).unwrap().rotated(frame);
     let (rotor, omega) = (Rotor::exp(Bivector([0.3, 0.1, -0.2])), Bivector([0.5, 1.0, -0.7]));
-    Setup { inertia, rotor, omega, time: 0.0, torques: laws, has_forces: false }
+    Setup { inertia, rotor, omega, time: 0.0, torques: laws, mass: f64::NAN, has_forces: false }
 }
 
 /// `dL/dt` by a symmetric difference over ±h of a motion solved to rounding: off by about `L''' h²/6`.
@@ -32,7 +33,9 @@ fn torque_is_the_rate_of_change_of_momentum() {
             crate::run::Problem::of(&setup).simulate(&[0.0, h, 2.0 * h], Default::default(), &mut |_| true);
         let states = motion.unwrap().states();
         let change = (states.momenta_space[2] - states.momenta_space[0]) * (0.5 / h);
-        let torque = setup.torque_in_space(h, states.rotors[1], states.omegas[1]).unwrap();
+        let (rotor, omega) = (states.rotors[1], states.omegas[1]);
+        let [position, velocity] = [Vector::default(); 2];
+        let torque = setup.torque_in_space(&Seen { time: h, rotor, omega, position, velocity }).unwrap();
         assert!((change - torque).norm() < 1e-6, "{chosen:?}: {change:?} {torque:?}");
     }
 }

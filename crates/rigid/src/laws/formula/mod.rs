@@ -9,7 +9,6 @@ pub(crate) use side_by_side::Formulas;
 
 use crate::error::TorqueError;
 use crate::laws::torque::lanes::seen;
-use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
 use polhode_ga::formula::{
@@ -97,14 +96,18 @@ struct Compiled {
     result: usize,
 }
 
-/// The names that the motion defines in the formula of a torque.
+/// The names that the motion defines in the formula of a torque with units. After a number, `m` is the metre.
 pub(crate) fn given_names() -> impl Iterator<Item = &'static str> {
-    given(Purpose::Torque(Axes::Body)).into_iter().map(|(name, _)| name)
+    let names = given(Purpose::Torque(Axes::Body)).into_iter();
+    names.filter(|(_, motion)| *motion != Motion::Mass).map(|(name, _)| name)
 }
 
 /// The names that the motion defines. `Ω` is the angular velocity in the axes of the torque.
 fn given(purpose: Purpose) -> Vec<(&'static str, Motion)> {
     let mut names = vec![
+        ("x", Motion::Position),
+        ("v", Motion::Velocity),
+        ("m", Motion::Mass),
         ("R", Motion::Rotor),
         ("t", Motion::Time),
         ("Ω_B", Motion::OmegaBody),
@@ -120,9 +123,7 @@ fn given(purpose: Purpose) -> Vec<(&'static str, Motion)> {
         Purpose::Torque(Axes::Space) => {
             names.extend([("Ω", Motion::OmegaSpace), ("Omega", Motion::OmegaSpace)]);
         }
-        Purpose::Force | Purpose::Event => {
-            names.extend([("x", Motion::Position), ("v", Motion::Velocity), ("m", Motion::Mass)]);
-        }
+        Purpose::Force | Purpose::Event => {}
     }
     names
 }
@@ -180,9 +181,15 @@ impl Motion {
         }
     }
 
-    /// Whether it depends on the angular velocity.
+    /// Whether it changes faster than the attitude: the angular velocity, the momentum and the velocity of the centre of
+    /// mass, or its position, which steps for attitudes do not know.
     pub fn is_rate(self) -> bool {
-        !matches!(self, Motion::Rotor | Motion::Time | Motion::Inertia)
+        !matches!(self, Motion::Rotor | Motion::Time | Motion::Inertia | Motion::Mass)
+    }
+
+    /// Whether it is that of the centre of mass.
+    pub fn is_of_center(self) -> bool {
+        matches!(self, Motion::Position | Motion::Velocity)
     }
 
     /// Its value at a point of the motion, with `frame` from principal axes to those of the body.
@@ -227,8 +234,9 @@ impl Formula {
     /// The motion defines `R` (body axes to space), `t` in s, `Ω_B` and `Ω_S` (the angular velocity, a
     /// bivector in body axes and in space, or `Omega_B` and `Omega_S`; for a torque `Ω` is that in its axes),
     /// `L` and `L_B` (the momentum, that of a wheel included, in space and in body axes), the inertia
-    /// map `I(…)` of the body, and for forces and events `x` and `v` (position and velocity of the centre of mass, vectors
-    /// in space) and `m` (the mass in kg). All other names are in `names`; `value` returns the values of inputs.
+    /// map `I(…)` of the body, `x` and `v` (position and velocity of the centre of mass, vectors in space) and `m` (the
+    /// mass in kg). In a torque, `x`, `v` and `m` in `names` hide those of the motion. All other names are in `names`;
+    /// `value` returns the values of inputs.
     pub fn new(
         text: &str,
         purpose: Purpose,
@@ -237,7 +245,13 @@ impl Formula {
     ) -> Result<Formula, Error> {
         let whole = Span { start: 0, end: text.len() };
         let wrong = |span: Span, message: String| Error { message, span };
-        for (name, motion) in given(purpose) {
+        let mut motions = given(purpose);
+        if let Purpose::Torque(_) = purpose {
+            motions.retain(|(name, motion)| {
+                names.get(name).is_none() || !(motion.is_of_center() || *motion == Motion::Mass)
+            });
+        }
+        for &(name, motion) in &motions {
             if names.bind(name.to_owned(), motion.meaning()).is_some() {
                 let message = format!("`{name}` is given by the motion; rename your value");
                 return Err(wrong(whole, message));
@@ -254,7 +268,6 @@ impl Formula {
         if step.ty.grades != purpose.grades() {
             return Err(wrong(step.span, purpose.refusal(step.ty.grades)));
         }
-        let motions = given(purpose);
         let mut sources = Vec::with_capacity(program.inputs.len());
         for input in &program.inputs {
             let motion = motions.iter().find(|(name, _)| *name == input.name);
@@ -300,6 +313,18 @@ impl Formula {
         if self.purpose() == Purpose::Torque(Axes::Space) { Axes::Space } else { Axes::Body }
     }
 
+    /// The same of a body with this mass in kg; NaN leaves it unknown.
+    pub(crate) fn with_mass(self, mass: f64) -> Formula {
+        if mass.is_nan() || !self.needs(|motion| motion == Motion::Mass) {
+            return self;
+        }
+        let known = |source: &Source| match source {
+            Source::Motion(Motion::Mass) => Source::Known(Given::Value(Graded::default().map(|_| mass))),
+            other => *other,
+        };
+        Formula { sources: self.sources.iter().map(known).collect(), ..self }
+    }
+
     pub(crate) fn in_axes(self, frame: Rotor) -> Formula {
         Formula { frame: self.frame * frame, ..self }
     }
@@ -314,6 +339,11 @@ impl Formula {
         self.compiled.program.steps.iter().any(|step| matches!(step.op, Op::Norm(_)))
     }
 
+    /// Whether it depends on position or velocity of the centre of mass.
+    pub(crate) fn reads_center(&self) -> bool {
+        self.needs(Motion::is_of_center)
+    }
+
     pub(crate) fn needs(&self, what: impl Fn(Motion) -> bool) -> bool {
         self.sources.iter().any(|source| matches!(source, Source::Motion(motion) if what(*motion)))
     }
@@ -322,8 +352,7 @@ impl Formula {
     pub(crate) fn constant(&self) -> Result<f64, TorqueError> {
         let body = Gyrostat { moments: [1.0; 3], wheel: Bivector::default() };
         let phase = Phase { rotor: Rotor::IDENTITY, momentum: Bivector::default(), time: 0.0 };
-        let at = Point { body: &body, mass: f64::NAN, phase: &phase, center: &Center::default() };
-        Ok(self.value(&at)?.components().first().copied().unwrap_or(f64::NAN))
+        Ok(self.value(&Point::at_rest(&body, &phase))?.components().first().copied().unwrap_or(f64::NAN))
     }
 
     /// The numbers of its values at other times of a point, finite; `None` if some have no value.

@@ -9,7 +9,6 @@ mod wheels;
 pub use super::formula::Axes;
 use super::formula::{Formula, Motion};
 use crate::error::{SimulateError, TorqueError};
-use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::{Function, Point};
 pub use gains::Gains;
@@ -186,6 +185,27 @@ impl Torque {
         self.formula().is_some_and(|formula| formula.needs(what))
     }
 
+    /// The same on a body with this mass in kg; NaN leaves it unknown.
+    pub(crate) fn with_mass(self, mass: f64) -> Torque {
+        match self {
+            Torque::Formula(law) => Torque::Formula(law.with_mass(mass)),
+            other => other,
+        }
+    }
+
+    /// Whether the torque depends on the mass by itself.
+    pub(crate) fn reads_mass(&self) -> bool {
+        self.needs(|motion| motion == Motion::Mass)
+    }
+
+    /// Whether the torque depends on position or velocity of the centre of mass.
+    pub(crate) fn reads_center(&self) -> bool {
+        match self {
+            Torque::Function(law) => law.reads_center(),
+            _ => self.formula().is_some_and(Formula::reads_center),
+        }
+    }
+
     /// Whether the torque is known to have kinks, such as `|Ω| Ω` at rest.
     pub(crate) fn has_kinks(&self) -> bool {
         match self {
@@ -207,39 +227,31 @@ impl Torque {
 
     /// The torque in principal axes, without the part `−g I(Ω)` ([`Torque::damping_rate`]) and that of a
     /// wheel. At a jump in time, that after it.
-    pub fn value(&self, body: &Gyrostat, state: &Phase) -> Result<Bivector, TorqueError> {
-        self.value_within(body, state, state.time)
+    pub fn value(&self, at: &Point) -> Result<Bivector, TorqueError> {
+        self.value_within(at, at.phase.time)
     }
 
-    /// The values at other times of a state, each with the bits of [`Torque::value`]; fails with the first time that has
+    /// The values at other times of a point, each with the bits of [`Torque::value`]; fails with the first time that has
     /// none.
-    pub(crate) fn values(
-        &self,
-        body: &Gyrostat,
-        state: &Phase,
-        times: &[f64],
-    ) -> Result<Vec<Bivector>, (f64, TorqueError)> {
-        let at = Point { body, mass: f64::NAN, phase: state, center: &Center::default() };
+    pub(crate) fn values(&self, at: &Point, times: &[f64]) -> Result<Vec<Bivector>, (f64, TorqueError)> {
         if let Some(formula) = self.formula()
-            && let Some(numbers) = formula.numbers_at(&at, times)
+            && let Some(numbers) = formula.numbers_at(at, times)
         {
-            return Ok(numbers.chunks_exact(3).map(|row| formula.torque(state.rotor, row)).collect());
+            return Ok(numbers.chunks_exact(3).map(|row| formula.torque(at.phase.rotor, row)).collect());
         }
-        let value = |&time: &f64| self.value(body, &Phase { time, ..*state }).map_err(|error| (time, error));
+        let value = |&time: &f64| {
+            let phase = &Phase { time, ..*at.phase };
+            self.value(&Point { phase, ..*at }).map_err(|error| (time, error))
+        };
         times.iter().map(value).collect()
     }
 
     /// The torque at a stage of a step whose middle is given, in s: at a jump, that on the side of the middle.
-    pub(crate) fn value_within(
-        &self,
-        body: &Gyrostat,
-        state: &Phase,
-        middle: f64,
-    ) -> Result<Bivector, TorqueError> {
+    pub(crate) fn value_within(&self, at: &Point, middle: f64) -> Result<Bivector, TorqueError> {
+        let Point { body, phase: state, .. } = *at;
         let rotor = state.rotor;
         let r = One::each(rotor.components());
         let from_space = |b: Bivector| Bivector(One::alone(seen(&r, &One::each(b.0))));
-        let at = Point { body, mass: f64::NAN, phase: state, center: &Center::default() };
         Ok(match self {
             Torque::Heavy(c) => state.vertical().wedge(*c),
             Torque::GravityGradient(orbit) => {
@@ -273,10 +285,10 @@ impl Torque {
             }
             Torque::Formula(_) | Torque::Registered(_) => {
                 let Some(formula) = self.formula() else { return Ok(Bivector::default()) };
-                formula.torque(rotor, formula.value(&at)?.components())
+                formula.torque(rotor, formula.value(at)?.components())
             }
             Torque::Function(law) => {
-                let torque = law.value(&at)?;
+                let torque = law.value(at)?;
                 if !torque.0.iter().all(|x| x.is_finite()) {
                     let Bivector(torque) = torque;
                     return Err(TorqueError::undefined(format!(
@@ -318,9 +330,9 @@ impl Torque {
         }
     }
 
-    /// The larger of [`Torque::size`] and the torque at a state, in N m: a scale for steps.
-    pub fn size_at(&self, body: &Gyrostat, state: &Phase) -> f64 {
-        self.size(body).max(self.value(body, state).map_or(0.0, |torque| torque.norm()))
+    /// The larger of [`Torque::size`] and the torque at a point, in N m: a scale for steps.
+    pub fn size_at(&self, at: &Point) -> f64 {
+        self.size(at.body).max(self.value(at).map_or(0.0, |torque| torque.norm()))
     }
 
     /// The potential energy in J, of a law that has one; of wheels with motors the energy of their rotation.
@@ -334,10 +346,14 @@ impl Torque {
             }
             Torque::Wheel(_) => Some(0.0),
             Torque::Wheels(wheels) => Some(wheels.energy(state.time)),
-            Torque::Registered(law) => {
-                let at = Point { body, mass: f64::NAN, phase: state, center: &Center::default() };
-                law.potential.as_ref()?.value(&at).ok()?.components().first().copied()
-            }
+            Torque::Registered(law) => law
+                .potential
+                .as_ref()?
+                .value(&Point::at_rest(body, state))
+                .ok()?
+                .components()
+                .first()
+                .copied(),
             _ => None,
         }
     }
@@ -385,15 +401,10 @@ pub fn turn_from(rest: Rotor, rotor: Rotor) -> Bivector {
 }
 
 /// The sum of all laws at a stage of a step whose middle is given, without damping and wheels.
-pub(crate) fn total_torque(
-    torques: &[Torque],
-    body: &Gyrostat,
-    state: &Phase,
-    middle: f64,
-) -> Result<Bivector, SimulateError> {
+pub(crate) fn total_torque(torques: &[Torque], at: &Point, middle: f64) -> Result<Bivector, SimulateError> {
     let mut total = Bivector::default();
     for law in torques {
-        total += law.value_within(body, state, middle).map_err(|error| error.at(state.time))?;
+        total += law.value_within(at, middle).map_err(|error| error.at(at.phase.time))?;
     }
     Ok(total)
 }
@@ -413,11 +424,17 @@ pub fn wheel(torques: &[Torque]) -> Bivector {
 
 /// The torque T of handout eq. (4.21), `I(Ω') − Ω × I(Ω) = T`, in principal axes: the sum of all laws, damping
 /// `−g I(Ω)`, and the reaction `Ω × h` of the wheel.
-pub fn total(body: &Gyrostat, torques: &[Torque], state: &Phase) -> Result<Bivector, TorqueError> {
-    let omega = body.omega(state.momentum);
-    let mut sum = omega.commutator(body.wheel);
+pub fn total(torques: &[Torque], at: &Point) -> Result<Bivector, TorqueError> {
+    let omega = at.body.omega(at.phase.momentum);
+    Ok(omega.commutator(at.body.wheel) + external(torques, at)?)
+}
+
+/// The same without the reaction of the wheel: the rate of change of L in space, in principal axes.
+pub fn external(torques: &[Torque], at: &Point) -> Result<Bivector, TorqueError> {
+    let carried = at.body.carried(at.body.omega(at.phase.momentum));
+    let mut sum = Bivector::default();
     for torque in torques {
-        sum = sum + torque.value(body, state)? - body.carried(omega) * torque.damping_rate();
+        sum = sum + torque.value(at)? - carried * torque.damping_rate();
     }
     Ok(sum)
 }

@@ -21,9 +21,10 @@ fn values_at_many_times_are_those_at_each() {
     for axes in [Axes::Body, Axes::Space] {
         for text in ["sin(3 t) Ω + I(L_B) + (~R e3 R)∧e1", "e1∧e2 + t L"] {
             let law = formula(text, axes).in_axes(frame);
-            let each = times.iter().map(|&time| law.value(&BODY, &Phase { time, ..state() }));
+            let each =
+                times.iter().map(|&time| law.value(&Point::at_rest(&BODY, &Phase { time, ..state() })));
             let each: Vec<Bivector> = each.collect::<Result<_, _>>().expect("a torque at any time");
-            assert_eq!(law.values(&BODY, &state(), &times), Ok(each), "{text}");
+            assert_eq!(law.values(&Point::at_rest(&BODY, &state()), &times), Ok(each), "{text}");
         }
     }
 }
@@ -31,7 +32,8 @@ fn values_at_many_times_are_those_at_each() {
 #[test]
 fn the_first_time_without_a_value_is_reported() {
     let law = formula("e1∧e2/(t - 3)", Axes::Body);
-    let (time, error) = law.values(&BODY, &state(), &[1.0, 3.0, 3.0, 4.0]).expect_err("infinite at 3 s");
+    let (time, error) =
+        law.values(&Point::at_rest(&BODY, &state()), &[1.0, 3.0, 3.0, 4.0]).expect_err("infinite at 3 s");
     assert!(time == 3.0 && error.message.contains("division by zero"), "{error:?}");
 }
 
@@ -60,7 +62,7 @@ fn sizes_and_ranges_bound_torques_and_potentials() {
             let rotor = Rotor::from_unit_components(components);
             // At the periapsis.
             let at = Phase { rotor, momentum: Bivector::default(), time: 0.0 };
-            most = most.max(law.value(&body, &at).expect("a torque").norm());
+            most = most.max(law.value(&Point::at_rest(&body, &at)).expect("a torque").norm());
             let potential = law.potential(&body, &at).unwrap_or(0.0);
             (low, high) = (low.min(potential), high.max(potential));
         }

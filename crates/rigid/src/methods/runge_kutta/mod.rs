@@ -176,7 +176,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
             slope[k] = cotangent.times_plus(second[k], straight);
         }
         if E::ACTS {
-            let mut torque = forcing.torque(&place);
+            let mut torque = forcing.torque(&place, &at.center);
             for k in 0..3 {
                 let carried = momentum[k] - wheel[k];
                 torque[k] = bodies.damping.times_from(carried, torque[k]);

@@ -204,7 +204,8 @@ impl<const W: usize, const F: bool> Turns<W, F> {
     pub fn kick<E: Forcing<W, F>>(&self, forcing: &mut E, spin: &mut Spin<W, F>, time: f64, h: f64) {
         let m = &mut spin.momentum;
         let omega = self.bodies.omega(m);
-        let torque = forcing.torque(&Place { rotor: spin.rotor, omega, time: Lanes::all(time) });
+        let place = Place { rotor: spin.rotor, omega, time: Lanes::all(time) };
+        let torque = forcing.torque(&place, &[Lanes::ZERO; 6]);
         let mut impulse = Lanes::all(h);
         if self.damped {
             let lost;

@@ -3,6 +3,7 @@
 use super::*;
 use crate::laws::force::Force;
 use crate::laws::torque::{Kind, Orbit, Torque};
+use crate::state::point::Point;
 
 /// The laws of the least scene with this table `[torque]`.
 fn laws(torque: &str) -> Vec<Torque> {
@@ -85,7 +86,7 @@ fn formulas_are_torques() {
     let state = crate::state::phase::Phase { rotor: Rotor::IDENTITY, momentum, time: 0.0 };
     let torque = laws[0].torque.clone().in_axes(body.inertia.principal_frame());
     // 2 e1e2 − 3 L, of a turn about the principal axis whose moment is the third.
-    let found = torque.value(&gyrostat, &state).unwrap().norm();
+    let found = torque.value(&Point::at_rest(&gyrostat, &state)).unwrap().norm();
     let expected = (2.0 - 3.0 * gyrostat.moments[2]).abs();
     assert!((found - expected).abs() <= 8.0 * f64::EPSILON, "{found} {expected}");
 }

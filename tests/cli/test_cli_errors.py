@@ -131,6 +131,16 @@ def test_a_device_is_not_read_without_end(command):
     assert (done.returncode, done.stderr) == (3, "/dev/zero: error: not a regular file\n")
 
 
+@pytest.mark.skipif(os.name != "posix", reason="needs a shell")
+def test_standard_error_may_be_closed(scene):
+    """As in some schedulers of jobs; errors must not go to standard output."""
+    closed = ("sh", "-c", 'exec "$@" 2>&-', "sh")
+    done = polhode("run", scene, "--json", through=closed)
+    assert (done.returncode, json.loads(done.stdout)["title"]) == (0, "Small")
+    done = polhode("run", "absent.toml", through=closed)
+    assert (done.returncode, done.stdout, done.stderr) == (3, "", "")
+
+
 def test_files_that_must_not_be_read(command, tmp_path, monkeypatch):
     """The system of a superuser may read them."""
     (tmp_path / "a.nc").write_bytes(b"\x89HDF")

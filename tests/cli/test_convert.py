@@ -105,6 +105,11 @@ def test_what_is_missing_is_asked_for_by_option(convert, tmp_path):
         (("a.nc", "b.txt"), 2, "files that can be written end in"),
         (("a.toml", "b.nc"), 2, "a .toml file has no motion, got 'a.toml'; a body is written as .urdf"),
         (("a.nc", "b.csv", "--epoch", "2026-01-01T00:00:00"), 2, "--epoch does not apply from .nc to .csv"),
+        (
+            ("a.nc", "b.aem", "--epoch", "soon", "--reference-frame", "A"),
+            2,
+            "--epoch: an epoch must be YYYY-MM-DD",
+        ),
         (("none.csv", "b.nc"), 3, "none.csv: error: no such file"),
         (("none.nc", "b.csv"), 3, "none.nc: error: no such file"),
         (("none.zarr", "b.csv"), 3, "none.zarr: error: no such store"),

@@ -7,6 +7,7 @@ import random
 import signal
 import socket
 import sys
+import threading
 import time
 from types import SimpleNamespace
 
@@ -177,14 +178,39 @@ def test_the_error_of_a_worker_without_the_scene_can_be_sent(serial, folder, tmp
         ("local:0", "got 'local:0'"),
         ("local:many", "got 'local:many'"),
         ("nowhere.json", "no cluster at nowhere.json: no such file"),
+        (
+            "{folder}/a.toml.json",
+            "a.toml.json: not the file of a scheduler; `dask scheduler --scheduler-file",
+        ),
         ("tcp:/nonsense", "no cluster at tcp:/nonsense: "),
+        ("host:port", "no cluster at host:port: not an address such as tcp://10.0.0.1:8786"),
     ],
 )
 def test_addresses_of_no_cluster(cluster, message, folder, tmp_path):
+    cluster = cluster.format(folder=tmp_path)
+    (tmp_path / "a.toml.json").write_text('{"port": 8786}')
     done = polhode("run", folder / "a.toml", "-o", tmp_path / "a.zarr", "--cluster", cluster)
     assert done.returncode == 1
     assert message in done.stderr
-    assert (tmp_path / "a.zarr").exists() == cluster.startswith("tcp")
+    assert (tmp_path / "a.zarr").exists() == cluster.startswith(("tcp", "host"))
+
+
+def test_a_server_of_another_protocol_is_not_a_cluster(folder, tmp_path):
+    """Such as the port of the dashboard: the first bytes of its answer are read as the size of a message."""
+    with contextlib.ExitStack() as opened:
+        server = opened.enter_context(socket.create_server(("127.0.0.1", 0)))
+
+        def answer():
+            with contextlib.suppress(OSError):
+                while True:
+                    client = opened.enter_context(server.accept()[0])
+                    client.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+
+        threading.Thread(target=answer, daemon=True).start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        done = polhode("run", folder / "a.toml", "-o", tmp_path / "a.zarr", "--cluster", address)
+    assert done.returncode == 1
+    assert f"no cluster at {address}: a program answers there, but it is not a scheduler" in done.stderr
 
 
 @pytest.mark.slow

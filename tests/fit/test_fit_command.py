@@ -224,6 +224,19 @@ def test_quoted_names_and_other_separators(separator, rates, tmp_path, capsys):
         np.testing.assert_array_equal(table.values, plain.values)
 
 
+def test_all_fields_may_be_quoted_and_lines_end_as_on_any_system(rates, tmp_path):
+    text = Path(rates).read_text()
+    quoted = "\n".join(f'"{line}"'.replace(",", '","') for line in text.splitlines())
+    plain = read_tables(Path(rates), None)["rates"]
+    for k, other in enumerate(
+        (quoted, text.replace("\n", "\r\n"), text.replace("\n", "\r"), f"\ufeff{quoted}")
+    ):
+        (tmp_path / f"{k}.csv").write_text(other, "utf-8", newline="")
+        found = read_tables(tmp_path / f"{k}.csv", None)["rates"]
+        np.testing.assert_array_equal(found.times, plain.times)
+        np.testing.assert_array_equal(found.values, plain.values)
+
+
 LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
 
 
@@ -248,6 +261,10 @@ LINES = "t,wx,wy,wz\n0,1,2,3\n1,1,2,3\n"
         ("\n\n", ": error: the file is empty"),
         ("t,wx,wy,wz\n", ":1:1: error: the file ends after 0 rows of rates; a fit needs at least 3"),
         (LINES, ":3:1: error: the file ends after 2 rows of rates; a fit needs at least 3"),
+        (
+            f"# {LINES}",
+            ":2:1: error: the first line has numbers; it must have the names of the columns; remove the",
+        ),
         ("t,qw,qx,qy,qz\n0,1,0,0,0\n1, 0,0,0,0\n", ":3:4: error: the quaternion must have norm 1, got 0;"),
         ("t,qw,qx,qy,qz\n0,1,0,0,0\n1,0.6,0.8,0.3,0\n", ":3:3: error: the quaternion must have norm 1"),
         ("t wx wy wz\n0 1 2 3\n", ":1:1: error: the columns are separated by spaces; separate names"),
@@ -276,6 +293,8 @@ def test_missing_names_and_bytes(rates, tmp_path, capsys):
     assert "not UTF-8 text from byte 4 on" in capsys.readouterr().err
     assert main.main(["fit", str(tmp_path / "absent.csv"), *UNITS]) == 3
     assert "absent.csv: error: no such file or directory" in capsys.readouterr().err
+    assert main.main(["fit", f"{300 * 'x'}.csv", *UNITS]) == 3
+    assert "x.csv: error: file name too long" in capsys.readouterr().err
 
 
 def test_options_that_do_not_apply_are_refused(rates, tmp_path, capsys):

@@ -88,13 +88,33 @@ def test_columns_may_be_separated_by_semicolons_or_tabs(separator, tmp_path):
         ph.io.read_csv(path)
 
 
+def test_comments_and_empty_lines_are_skipped(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text(
+        f"# made by a program\n\n  \n{HEADER}\n0,1,0,0,0\n# half a turn, about e3\n1,0,0,0,1\n#\n"
+    )
+    assert ph.io.read_csv(path).rotor.to_quaternion(order="wxyz").tolist() == [[1, 0, 0, 0], [0, 0, 0, 1]]
+
+
+def test_the_number_of_a_body_is_a_whole_number(tmp_path):
+    """It was compared with the bodies of the file, which then seemed damaged or without that body."""
+    state = ph.State(ph.Rotor.identity((2,)), [0.0, 0.0, 1.0])
+    motion = ph.simulate(ph.Inertia.from_principal_moments(1, 2, 3), state, [0.0, 1.0])
+    for form in ("csv", "nc"):
+        pytest.importorskip("h5netcdf")
+        motion.save(tmp_path / f"a.{form}")
+        with pytest.raises(TypeError, match="body must be a whole number, got str"):
+            ph.io.read(tmp_path / f"a.{form}", body="0")
+        assert ph.io.read(tmp_path / f"a.{form}", body=np.int64(1)).time.tolist() == [0, 1]
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
         ("", "a.csv: error: the file is empty"),
         ("time,q0,q1,q2,q3\n", "a.csv:1:1: error: column 'q0' is not known"),
         ("time\n1\n", "the file has no column 'attitude_w'"),
-        (f"{HEADER}\n0,1,0,0\n", "a.csv:2:1: error: expected 5 numbers as in the first line, got 4"),
+        (f"{HEADER}\n0,1,0,0\n", "a.csv:2:1: error: expected 5 numbers as in line 1, got 4"),
         (f"{HEADER}\n0,1,0,x,0\n", "a.csv:2:7: error: 'x' is not a finite number"),
         (f"{HEADER}\n0,1,0,,0\n", "a.csv:2:7: error: the field is empty; correct it or remove the row"),
         (f"{HEADER}\n0,1,0,0,0\nnan,1,0,0,0\n", "a.csv:3:1: error: times must be finite, got nan\n"),
@@ -104,6 +124,13 @@ def test_columns_may_be_separated_by_semicolons_or_tabs(separator, tmp_path):
         (f"{HEADER}\n1,1,0,0,0\n0,1,0,0,0\n", "a.csv:3:1: error: times must increase, got 0.0 s after 1.0 s"),
         (f"{HEADER},omega_body_x\n0,1,0,0,0,1\n", "the columns of omega_body must be"),
         (f"{HEADER},time\n0,1,0,0,0,1\n", "column 'time' appears more than once"),
+        (f"# note\n\n{HEADER},x\n", "a.csv:3:1: error: column 'x' is not known"),
+        (
+            f"# {HEADER}\n0,1,0,0,0\n",
+            "a.csv:2:1: error: expected the names of the columns, got numbers; remove",
+        ),
+        (f",{HEADER}\n0,0,1,0,0,0\n", "a.csv:1:1: error: the first column has no name; write a data frame"),
+        ("# nothing\n", "a.csv: error: the file is empty"),
         # Lines end as in any text; other separators of lines are in a field.
         (f"{HEADER}\r0,1,0,0,0\r0,1,0,0,0\r", "a.csv:3:1: error: times must increase"),
         (

@@ -500,7 +500,7 @@ def test_documents_that_are_refused(tmp_path):
         ph.read_urdf(write(tmp_path, deep))
     with pytest.raises(ValueError, match=r"must be <robot> \(URDF\), got <mujoco>; use read_mjcf"):
         ph.read_urdf(write(tmp_path, "<mujoco/>"))
-    with pytest.raises(ValueError, match="not well-formed XML: no element found"):
+    with pytest.raises(ValueError, match="the file is empty; export it again"):
         ph.read_sdf(write(tmp_path, ""))
     with pytest.raises(ValueError, match="not well-formed XML"):
         ph.read_sdf(write(tmp_path, "<sdf version=1/>"))

@@ -1,9 +1,11 @@
 """Errors name a remedy that helps; a missing file is a FileNotFoundError of any kind of file."""
 
+import datetime
 import math
 import pydoc
 import rlcompleter
 
+import numpy as np
 import pytest
 
 import polhode as ph
@@ -205,6 +207,16 @@ def test_a_spline_with_the_rotors_first_names_the_order():
         (lambda: ph.simulate(BODY, [START, START], [1.0]), r"write State\(rotor, omega_body\), with arrays"),
         (lambda: ph.Body.sphere(1, mass=1).moved([1, 0, 0]), "a displacement is position="),
         (lambda: ph.Body(1.0, [1, 2, 3]), "see Inertia.from_principal_moments, from_matrix"),
+        (
+            lambda: ph.io.write_urdf([BODY], "a.urdf"),
+            "expected a Body, or a dict of bodies by name, got list",
+        ),
+        (
+            lambda: ph.io.write_sclk("a.tsc", clock=-9, epoch=datetime.date(2026, 1, 1)),
+            r"got date; write x\.isofo",
+        ),
+        (lambda: ph.LinearMap.from_function(None), "f must be a function of a multivector, got NoneType"),
+        (lambda: ph.Scene.read(7), "expected str, bytes or os.PathLike object, not int"),
     ],
 )
 def test_arguments_of_another_type_name_the_form(call, remedy):
@@ -326,6 +338,35 @@ def test_the_shape_of_wheel_torques_is_named_once():
         ph.Stepper(BODY, START, wheels).step(0.1, wheel_torque=[1, 2])
 
 
+@pytest.mark.parametrize(
+    ("value", "found"),
+    [
+        ("0.1 /s", "the text '0.1 /s'"),
+        (["1", 2], r"the text '1' at index \(0,\)"),
+        ([1, "b"], r"the text 'b' at index \(1,\)"),
+        (None, "None"),
+        ([[1, 2], [3, None]], r"None at index \(1, 1\)"),
+        ({}, "a dict"),
+        (np.array([1j]), "dtype complex128"),
+    ],
+)
+def test_what_is_not_a_number_is_named_with_its_index(value, found):
+    with pytest.raises(TypeError, match=rf"g must be real numbers \(int or float\), got {found}$"):
+        ph.torque.damping(value)
+    with pytest.raises(
+        TypeError, match="the force's F must be an array of real numbers; the rows have unequal"
+    ):
+        ph.force.constant([[1, 2], [3]])
+
+
+def test_text_that_cannot_be_encoded_is_an_error_of_the_formula():
+    for call in (ph.evaluate, ph.formula, ph.torque.formula, ph.event.formula):
+        with pytest.raises(ph.FormulaError, match=r"'\\udcff' is half of a character") as caught:
+            call("a\udcff")
+        assert caught.value.span == (1, 2)
+        assert str(caught.value).encode()
+
+
 def test_a_key_of_jax_and_text_for_a_number_are_named(tmp_path):
     jax = pytest.importorskip("jax")
     with pytest.raises(TypeError, match=r"got a key of JAX; pass its normal .*from_components"):
@@ -333,5 +374,9 @@ def test_a_key_of_jax_and_text_for_a_number_are_named(tmp_path):
     (tmp_path / "a.obj").write_text("")
     with pytest.raises(TypeError, match="the scale must be a number in SI units, got the text 'km'"):
         ph.Body.from_mesh(tmp_path / "a.obj", density=1, scale="km")
+    with pytest.raises(
+        ValueError, match="rng must be a NumPy generator, a whole number >= 0 or None, got -1"
+    ):
+        ph.Rotor.random(3, rng=-1)
     with pytest.raises(TypeError, match=r"got a Body; write body\.inertia"):
         ph.jax.free(ph.Body.sphere(1, mass=1), ph.Rotor.identity(), [0, 0, 1], 1.0)

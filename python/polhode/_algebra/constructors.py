@@ -236,9 +236,15 @@ def as_vectors(values: Any, what: str) -> Array:
 
 def as_points(values: Any, what: str) -> Array:
     """Return components (..., 3) from a vector, an array, or 0."""
-    if not isinstance(values, Multivector) and np.ndim(values) == 0 and np.all(values == 0):
+    if is_zero(values):
         return np.zeros(3)
     return as_vectors(values, what)
+
+
+def is_zero(value: Any) -> bool:
+    """Whether a value is the single number 0, which stands for the vector 0."""
+    others = isinstance(value, Multivector | list | tuple)
+    return not others and np.ndim(value) == 0 and bool(np.all(value == 0))
 
 
 def as_point(value: Any, what: str) -> Array:

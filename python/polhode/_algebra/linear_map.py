@@ -117,6 +117,8 @@ class LinearMap:
                [0., 0., 0.]])
         """
         own, size = _space(algebra, grade)
+        if not callable(f):
+            raise TypeError(f"f must be a function of a multivector, got {type(f).__name__}")
         images = [_components(f(own.k_vector(grade, row)), own, grade, "the image") for row in np.eye(size)]
         F = LinearMap.from_matrix(np.stack(np.broadcast_arrays(*images), axis=-1), grade, algebra=own)
         numbers = np.array([(-1.0) ** k * (0.6 + 0.85 * k) for k in range(size)])

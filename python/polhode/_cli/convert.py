@@ -233,6 +233,8 @@ def _refused(options: argparse.Namespace, error: ValueError) -> ValueError:
     message = _with_flags(str(error))
     if message != str(error):
         options.parser.error(message)
+    if options.epoch is not None and repr(options.epoch) in message:
+        options.parser.error(f"argument --epoch: {message}")
     return error
 
 

@@ -84,7 +84,7 @@ def check_usage(options: argparse.Namespace) -> None:
         options.parser.error("the following arguments are required: SCENE.toml")
     if not is_store(options.output):
         for name in ("resume", "bodies", "cluster"):
-            if getattr(options, name):
+            if getattr(options, name) not in (None, False):
                 options.parser.error(f"--{name} needs a store: -o FILE.zarr")
 
 

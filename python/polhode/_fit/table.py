@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
+import os
 import re
 import sys
 from dataclasses import dataclass
@@ -14,7 +16,7 @@ import numpy as np
 from polhode._report.table import columns_of
 from polhode._support.arrays import Array
 from polhode._support.counts import counted
-from polhode._support.file_kinds import require_csv, separator_of
+from polhode._support.file_kinds import is_comment, names_in_comment, require_csv, separator_of
 from polhode._support.files import UnreadableError, contents
 
 RATES, QUATERNION = ("t", "wx", "wy", "wz"), ("t", "qw", "qx", "qy", "qz")
@@ -51,8 +53,8 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
 
     Names of the columns are those of `RATES`, `QUATERNION` or `BOTH`, or as many others; None for these or
     those of `OF_MOTION`. The first line has the names, which may be quoted, separated as the numbers below:
-    by commas, or else by semicolons or tabs. Empty lines and lines that begin with # are skipped. In a file
-    of both kinds a row may have empty fields for one of them.
+    by commas, or else by semicolons or tabs. Numbers may be quoted. Empty lines and lines that begin with #
+    are skipped. In a file of both kinds a row may have empty fields for one of them.
 
     Raises
     ------
@@ -62,11 +64,11 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
         too few rows; with the file if it cannot be read.
     """
     path, lines = _lines(path)
-    rows = [(k, x) for k, x in enumerate(lines, 1) if x.strip() and not x.lstrip().startswith("#")]
+    rows = [(k, x) for k, x in enumerate(lines, 1) if not is_comment(x)]
     if not rows:
         raise UnreadableError(f"{path}: error: the file is empty; its first line has names of columns")
     separator = separator_of(rows[0][1])
-    header = _header(f"{path}:{rows[0][0]}:1: error:", rows[0][1], separator)
+    header = _header(f"{path}:{rows[0][0]}:1: error:", rows[0][1], separator, lines[: rows[0][0] - 1])
     names = names or _default(path, rows[0][0], header)
     places = _places(f"{path}:{rows[0][0]}:1: error:", names, header)
     kinds = KINDS[len(names)]
@@ -80,7 +82,7 @@ def read_tables(path: Path, names: tuple[str, ...] | None) -> dict[str, Table]:
                 f"but {len(header)} columns are named"
             )
         for kind, own in columns.items():
-            if len(kinds) == 1 or any(fields[place].strip() for place in own):
+            if len(kinds) == 1 or any(_unquoted(fields[place]) for place in own):
                 found[kind].append((line, _numbers(path, line, fields, [places[0], *own])))
     for kind, numbers in found.items():
         if len(numbers) < FEWEST:
@@ -101,9 +103,9 @@ def _lines(path: Path) -> tuple[Path, list[str]]:
         else:
             require_csv(path)
             content = contents(path, copies=4)
-        return path, content.decode("utf-8-sig").replace("\r\n", "\n").split("\n")
+        return path, io.StringIO(content.decode("utf-8-sig"), newline=None).read().split("\n")
     except OSError as error:
-        remedy = "; give the path of a CSV file" if path.is_dir() else ""
+        remedy = "; give the path of a CSV file" if os.path.isdir(path) else ""
         raise UnreadableError(f"{path}: error: {(error.strerror or str(error)).lower()}{remedy}") from None
     except UnicodeDecodeError as error:
         raise UnreadableError(
@@ -111,8 +113,11 @@ def _lines(path: Path) -> tuple[Path, list[str]]:
         ) from None
 
 
-def _header(prefix: str, text: str, separator: str) -> list[str]:
-    """Return the names of the columns in the first line; `prefix` begins the messages of errors."""
+def _header(prefix: str, text: str, separator: str, before: list[str]) -> list[str]:
+    """Return the names of the columns in the first line after the comments `before`.
+
+    `prefix` begins the messages of errors.
+    """
     try:
         fields = next(csv.reader([text], delimiter=separator, skipinitialspace=True))
     except csv.Error as error:
@@ -124,7 +129,10 @@ def _header(prefix: str, text: str, separator: str) -> list[str]:
             "semicolons or tabs"
         )
     if all(_is_number(x) for x in header):
-        raise UnreadableError(f"{prefix} the first line has numbers; it must have the names of the columns")
+        remedy = names_in_comment(before, text, separator)
+        raise UnreadableError(
+            f"{prefix} the first line has numbers; it must have the names of the columns{remedy}"
+        )
     return header
 
 
@@ -165,7 +173,7 @@ def _numbers(path: Path, line: int, fields: list[str], places: list[int]) -> lis
     """Return the numbers at these places of a line."""
     numbers = []
     for place in places:
-        field = fields[place].strip()
+        field = _unquoted(fields[place])
         value = _number(field)
         if not math.isfinite(value):
             problem = f"{field!r} is not a finite number" if field else "the field is empty"
@@ -183,6 +191,12 @@ def _numbers(path: Path, line: int, fields: list[str], places: list[int]) -> lis
             f"{norm:.6g}; check the columns, or remove the row"
         )
     return numbers
+
+
+def _unquoted(field: str) -> str:
+    """Return a field without spaces around it and the quotes of tables that quote all fields."""
+    field = field.strip()
+    return field[1:-1].strip() if len(field) > 1 and field[0] == field[-1] == '"' else field
 
 
 def _is_number(text: str) -> bool:

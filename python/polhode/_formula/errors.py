@@ -35,4 +35,14 @@ class FormulaError(ValueError):
         return self.message + _native.marked(self.text, self.span)
 
 
+def check_encoding(text: str) -> None:
+    """Raise a FormulaError for a surrogate, as in text decoded from bytes that are not UTF-8."""
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        words = f"{text[error.start]!a} is half of a character; decode the text as UTF-8"
+        shown = text.encode("utf-8", "replace").decode()
+        raise FormulaError(words, shown, (error.start, error.start + 1)) from None
+
+
 _native.register("FormulaError", FormulaError)

@@ -11,7 +11,7 @@ from polhode._algebra.algebra import Algebra
 from polhode._algebra.native import joins
 from polhode._formula.agreement import Agreement
 from polhode._formula.arguments import kinds_of
-from polhode._formula.errors import FormulaError
+from polhode._formula.errors import FormulaError, check_encoding
 from polhode._formula.evaluation import called
 from polhode._formula.interpreter import Step, steps_of
 
@@ -297,6 +297,7 @@ def formula(
     """
     if not isinstance(text, str):
         raise TypeError(f"a formula must be a string, got {type(text).__name__}")
+    check_encoding(text)
     if algebra is not None and not isinstance(algebra, Algebra):
         raise TypeError(f"algebra must be a ph.algebra(…), got {type(algebra).__name__}")
     if define is not None and not isinstance(define, Mapping):

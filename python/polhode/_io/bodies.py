@@ -9,6 +9,7 @@ from polhode._io import meshes, robots
 from polhode._mechanics.bodies import Body
 from polhode._mechanics.robots.read import bodies_of
 from polhode._scene.scene import Scene
+from polhode._support.files import printable_stem
 
 _MESHES = ("stl", "obj", "ply")
 _ROBOTS = ("urdf", "xml", "sdf")
@@ -51,7 +52,7 @@ def convert(
         ]
     bodies = _bodies(source, scene, density, mass, scale)
     write = robots.write_urdf if form == "urdf" else robots.write_mjcf
-    write(bodies, target, name=source.stem)
+    write(bodies, target, name=printable_stem(source))
     return [f"  {name}: {body!r}" for name, body in bodies.items()]
 
 
@@ -63,10 +64,10 @@ def _bodies(
             raise ValueError(
                 f"{source} gives no mass, which a robot file needs; add mass to its table [body]"
             )
-        return {source.stem: scene.body}
+        return {printable_stem(source): scene.body}
     form = source.suffix.lower().removeprefix(".")
     if form in _MESHES:
         if (density is None) == (mass is None):
             raise ValueError("a mesh needs density= in kg/m³ or mass= in kg, and not both")
-        return {source.stem: Body.from_mesh(source, density=density, mass=mass, scale=scale)}
+        return {printable_stem(source): Body.from_mesh(source, density=density, mass=mass, scale=scale)}
     return bodies_of(source)

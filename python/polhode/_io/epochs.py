@@ -52,6 +52,11 @@ def parse_epoch(text: str, system: str) -> Epoch:
     ValueError
         For another format, a day or time that does not exist in the time system, and UTC before 1972.
     """
+    if not isinstance(text, str):
+        raise TypeError(
+            f"an epoch must be a string such as '2026-01-01T00:00:00', got {type(text).__name__}; "
+            "write x.isoformat() for a datetime x, and str(x) for a numpy.datetime64"
+        )
     found = _PATTERN.fullmatch(text)
     if found is None:
         raise ValueError(f"an epoch must be YYYY-MM-DDThh:mm:ss or YYYY-DDDThh:mm:ss, got {text!r}")

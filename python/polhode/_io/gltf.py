@@ -209,6 +209,8 @@ def _box(inertia: Inertia | None, mass: float | None) -> tuple[Array, Any]:
 
 
 def _checked(surface: tuple[Any, Any]) -> tuple[Array, Any]:
+    if not isinstance(surface, tuple | list) or len(surface) != 2:
+        raise TypeError(f"surface must be (vertices, triangles), got {type(surface).__name__}")
     vertices, triangles = (np.asarray(x) for x in surface)
     if vertices.ndim != 2 or vertices.shape[1:] != (3,) or not np.isfinite(vertices.astype(float)).all():
         raise ValueError(f"vertices must be finite numbers of shape (n, 3), got shape {vertices.shape}")

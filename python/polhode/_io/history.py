@@ -17,7 +17,7 @@ from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.result import Certificate
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.table import columns_of
-from polhode._support.arrays import Array, as_floats
+from polhode._support.arrays import Array, as_count, as_floats
 from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 
 
@@ -42,6 +42,11 @@ class RowError(ValueError):
     def __init__(self, words: str, row: int, column: str) -> None:
         super().__init__(f"{words} at row {row}")
         self.words, self.row, self.column = words, row, column
+
+
+def checked_body(body: Any) -> int | None:
+    """Return the number of a body, or None; a TypeError for anything else."""
+    return None if body is None else as_count(body, "body")
 
 
 def require_file(path: str | os.PathLike[str]) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from polhode._io.history import AttitudeHistory, FileError
+from polhode._io.history import AttitudeHistory, FileError, checked_body
 from polhode._io.tables import of_parts
 from polhode._report import netcdf, netcdf_reading
 from polhode._report.ensemble.arrays import zarr
@@ -63,7 +63,7 @@ def read_netcdf(path: str | os.PathLike[str], *, body: int | None = None) -> Att
     >>> ph.io.read_netcdf("balls.nc", body=1).omega_body["e12"]
     array([2., 2., 2.])
     """
-    name = os.fsdecode(path)
+    name, body = os.fsdecode(path), checked_body(body)
     library = optional("h5py", "io", "a netCDF file")
     if os.path.isfile(path) and os.access(path, os.R_OK):
         try:
@@ -121,7 +121,7 @@ def read_zarr(path: str | os.PathLike[str], *, body: int | None = None) -> Attit
     >>> history.omega_body["e12"].round(9)
     array([1., 1., 1., 1., 1., 1.])
     """
-    name = os.fsdecode(path)
+    name, body = os.fsdecode(path), checked_body(body)
     if not os.path.lexists(path):
         raise FileNotFoundError(f"{name}: no such store")
     if not os.path.isdir(path):

@@ -142,7 +142,10 @@ def _moments(name: str, body: Body) -> list[float]:
 
 
 def _named(bodies: Body | Mapping[str, Body], name: str) -> dict[str, Body]:
-    links = {name: bodies} if isinstance(bodies, Body) else dict(bodies)
+    links = {name: bodies} if isinstance(bodies, Body) else bodies
+    if not isinstance(links, Mapping):
+        raise TypeError(f"expected a Body, or a dict of bodies by name, got {type(bodies).__name__}")
+    links = dict(links)
     if not links:
         raise ValueError("there is no body to write; give a Body, or a dict of bodies by name")
     for link, body in links.items():

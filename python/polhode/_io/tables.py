@@ -7,6 +7,7 @@ import io
 import json
 import math
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ import numpy as np
 
 from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.rotor import Rotor
-from polhode._io.history import AttitudeHistory, FileError, RowError, require_file
+from polhode._io.history import AttitudeHistory, FileError, RowError, checked_body, require_file
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.robots.document import Source
 from polhode._mechanics.trajectory import Trajectory
@@ -25,7 +26,7 @@ from polhode._report.table import ALONG_TIME, UNITS, columns_of
 from polhode._support.arrays import Array
 from polhode._support.calls import explains_calls
 from polhode._support.extras import optional
-from polhode._support.file_kinds import separator_of
+from polhode._support.file_kinds import is_comment, names_in_comment, separator_of
 from polhode._support.files import contents, write_atomically
 
 
@@ -35,7 +36,8 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
 
     Columns are found by name, in any order: ``time`` and ``attitude_w``, ``_x``, ``_y``, ``_z`` are needed,
     the others may be missing, and unknown ones are an error. They are separated by commas, or else by
-    semicolons or tabs, as in the first line. Every number that was saved is read to the same bits.
+    semicolons or tabs, as in the first line. Empty lines and lines that begin with # are skipped. Every
+    number that was saved is read to the same bits.
 
     Parameters
     ----------
@@ -63,20 +65,21 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
     >>> history.rotor[1](ph.e1)  # half a turn about e3
     -e1
     """
-    name = os.fsdecode(path)
+    name, body = os.fsdecode(path), checked_body(body)
     source = Source(name, io.StringIO(_text(path, name), newline=None).read().split("\n"))
-    separator = separator_of(source.lines[0])
-    rows = _rows(source, separator)
-    header = [word.strip() for word in next(rows, (1, []))[1]]
-    if not header:
+    begin = next((k for k, x in enumerate(source.lines) if not is_comment(x)), None)
+    if begin is None:
         raise FileError(f"{name}: error: the file is empty; its first line must name the columns")
+    separator = separator_of(source.lines[begin])
+    rows = _rows(source, separator)
+    first, names = next(rows)
+    header = [word.strip() for word in names]
+    _check_names(source, separator, first, header)
     numbers: list[list[float]] = []
     lines: list[int] = []
     for line, row in rows:
-        if not row:
-            continue
         if len(row) != len(header):
-            words = f"expected {len(header)} numbers as in the first line, got {len(row)}"
+            words = f"expected {len(header)} numbers as in line {first}, got {len(row)}"
             raise FileError(source.error(line, 0, words))
         numbers.append([_number(source, separator, line, row, k) for k in range(len(row))])
         lines.append(line)
@@ -84,7 +87,7 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
     columns = dict(zip(header, found.T, strict=True))
     if len(columns) < len(header):
         twice = next(x for x in header if header.count(x) > 1)
-        raise FileError(source.error(1, 0, f"column {twice!r} appears more than once"))
+        raise FileError(source.error(first, 0, f"column {twice!r} appears more than once"))
     if "body" in columns:
         lines = [line for line, number in zip(lines, columns["body"], strict=True) if number == body]
     try:
@@ -93,7 +96,7 @@ def read_csv(path: str | os.PathLike[str], *, body: int | None = None) -> Attitu
         line, place = lines[error.row], header.index(error.column)
         raise FileError(source.error(line, _start(source, separator, line, place), error.words)) from None
     except (TypeError, ValueError) as error:
-        raise FileError(source.error(1, 0, str(error))) from None
+        raise FileError(source.error(first, 0, str(error))) from None
 
 
 @explains_calls
@@ -115,7 +118,7 @@ def read_parquet(path: str | os.PathLike[str], *, body: int | None = None) -> At
     >>> ph.io.read_parquet("ball.parquet").omega_body["e12"]
     array([1., 1., 1.])
     """
-    name = os.fsdecode(path)
+    name, body = os.fsdecode(path), checked_body(body)
     table.require_parquet()
     content = _content(path)
     library = optional("pyarrow.parquet", "parquet", "a Parquet file")
@@ -146,6 +149,8 @@ def write_table(motion: Trajectory | AttitudeHistory, path: str | os.PathLike[st
 
 
 # --- reading
+
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 # Attributes of a file that describe how a trajectory was computed.
 _OWN = {*netcdf_reading.OWN, "units", "batch_shape"}
@@ -178,13 +183,26 @@ def _text(path: str | os.PathLike[str], name: str) -> str:
 
 
 def _rows(source: Source, separator: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the fields of each row, and the number of its last line."""
-    rows = csv.reader(source.lines, delimiter=separator)
+    """Yield the fields of each row, and the number of its line; comments and empty lines are skipped."""
+    lines = ("" if is_comment(line) else line for line in source.lines)
+    rows = csv.reader(lines, delimiter=separator)
     try:
         for row in rows:
-            yield rows.line_num, row
+            if row:
+                yield rows.line_num, row
     except csv.Error as error:
         raise FileError(source.error(rows.line_num, 0, f"not a row of numbers: {error}")) from None
+
+
+def _check_names(source: Source, separator: str, line: int, header: list[str]) -> None:
+    """Raise a FileError if the first row has no names, or one column of numbers has none."""
+    if all(_NUMBER.fullmatch(word) for word in header):
+        text, before = source.lines[line - 1], source.lines[: line - 1]
+        remedy = names_in_comment(before, text, separator)
+        raise FileError(source.error(line, 0, f"expected the names of the columns, got numbers{remedy}"))
+    if header.count("") == 1 and header[0] == "":
+        words = "the first column has no name; write a data frame of pandas with index=False"
+        raise FileError(source.error(line, 0, words))
 
 
 def _number(source: Source, separator: str, line: int, row: list[str], k: int) -> float:

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.constructors import as_vectors
-from polhode._algebra.multivector import Multivector
+from polhode._algebra.constructors import as_vectors, is_zero
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.closed_form import ClosedForm, given
 from polhode._mechanics.parameters import check_finite
@@ -160,7 +159,7 @@ class LarmorSphere(ClosedForm):
 
 def _vectors(value: Any, name: str) -> Array:
     """Return finite components (..., 3) from vectors or an array, or from 0."""
-    if not isinstance(value, Multivector) and np.ndim(value) == 0 and np.all(value == 0):
+    if is_zero(value):
         return np.zeros(3)
     components = as_vectors(value, name)
     check_finite(components, name)

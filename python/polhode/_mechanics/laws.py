@@ -13,7 +13,7 @@ from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._formula.arguments import narrowed
-from polhode._formula.errors import FormulaError
+from polhode._formula.errors import FormulaError, check_encoding
 from polhode._mechanics.parameters import check_finite
 from polhode._support.arrays import as_float, as_floats
 
@@ -76,6 +76,7 @@ def law_of_formula(
     """Return the law that `make` returns for checked values of the names; these may be `batches`."""
     if not isinstance(text, str):
         raise TypeError(f"a formula must be a string, got {type(text).__name__}")
+    check_encoding(text)
     given = {name: formula_value(value, name, batches) for name, value in values.items()}
     try:
         return make(tuple(given.items()))

@@ -21,10 +21,10 @@ from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.ensemble import EnsembleSpec
 from polhode._scene.table import TableReader
-from polhode._support.arrays import Array, frozen, hands_out_copies
+from polhode._support.arrays import Array, as_count, frozen, hands_out_copies
 from polhode._support.calls import created_by
 from polhode._support.file_kinds import EXAMPLES
-from polhode._support.files import is_endless
+from polhode._support.files import is_endless, printable_stem
 from polhode._support.foreign_names import ListsOwnNames, with_foreign_names
 from polhode.force import Force
 from polhode.torque import Torque
@@ -251,7 +251,7 @@ class Scene(metaclass=ListsOwnNames):
     @property
     def name(self) -> str:
         """The title, or the name of the file if there is none."""
-        return self.title or self.path.stem
+        return self.title or printable_stem(self.path)
 
     def alone(self) -> Scene:
         """Return the scene of the nominal body, without the ensemble.
@@ -430,7 +430,7 @@ class Scene(metaclass=ListsOwnNames):
         """
         if self.ensemble is None:
             raise ValueError("this scene has no table [ensemble]; use run")
-        if block is not None and block < 1:
+        if block is not None and as_count(block, "block") < 1:
             raise ValueError(f"block must be at least 1, got {block}")
         number, size = self.ensemble.number, block or self.block_of_motions
         for start in range(0, number, size):
@@ -493,6 +493,6 @@ def _found_instead(path: str) -> str:
     if os.path.isfile(named := f"{path}.toml"):
         return f"; use {named}"
     example = Path(path).name.removesuffix(".toml")
-    if (EXAMPLES / f"{example}.toml").is_file():
+    if os.path.isfile(EXAMPLES / f"{example}.toml"):
         return f"; `polhode examples {example}` copies the example of this name"
     return ""

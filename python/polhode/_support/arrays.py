@@ -50,9 +50,23 @@ def as_floats(values: Any, what: str) -> Array:
         except OverflowError as error:
             raise ValueError(f"{what} has an integer beyond the range of float64 (1.8e308)") from error
     if array.dtype.kind not in "iuf":
-        raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}")
+        raise TypeError(f"{what} must be real numbers (int or float), got {_not_numbers(values, array)}")
     require_broadcast(array, what)
     return in_aligned_memory(array.astype(np.float64, copy=False))
+
+
+def _not_numbers(values: Any, array: Array) -> str:
+    """Return the words for what is not numbers: the first of such items with its index, or their type."""
+    if isinstance(values, str | bytes):
+        return f"the text {values!r}"
+    if array.dtype.kind in "OUS":
+        items = np.array(values, object) if isinstance(values, list | tuple) else array
+        for index, item in np.ndenumerate(items):
+            if not isinstance(item, int | float | np.number):
+                found = "None" if item is None else f"a {type(item).__name__}"
+                found = f"the text {str(item)!r}" if isinstance(item, str) else found
+                return f"{found} at index {index}" if index else found
+    return f"dtype {array.dtype}"
 
 
 def require_broadcast(array: Array, what: str) -> None:
@@ -204,6 +218,8 @@ def normal_numbers(shape: Shape, rng: np.random.Generator | int | None, what: st
             "a key of JAX; pass its normal numbers (..., 4) to Rotor.from_components" if key else repr(rng)
         )
         raise TypeError(f"rng must be a NumPy generator, a whole number or None, got {found}") from None
+    except ValueError:
+        raise ValueError(f"rng must be a NumPy generator, a whole number >= 0 or None, got {rng!r}") from None
     line = numbers.reshape(-1)
     for first in range(0, line.size, _DRAWN):  # Ctrl-C stops between them
         generator.standard_normal(out=line[first : first + _DRAWN])

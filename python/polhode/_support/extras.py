@@ -26,7 +26,7 @@ def optional(module: str, extra: str, what: str) -> ModuleType:
 
 def progress_bar(done: str) -> Progress | None:
     """Return a progress bar on standard error, with text `done` after it; None without a terminal or rich."""
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         return None
     try:
         from rich.console import Console

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 from polhode._native import SceneError
@@ -55,6 +56,17 @@ _HEADS = {
 def separator_of(header: str) -> str:
     """Return the separator of a CSV file by its first line: commas, or else semicolons or tabs."""
     return next((x for x in ",;\t" if x in header), ",")
+
+
+def is_comment(line: str) -> bool:
+    """Whether a line of a CSV file is empty or begins with #; such lines are skipped."""
+    return not line.strip() or line.lstrip().startswith("#")
+
+
+def names_in_comment(before: Sequence[str], first: str, separator: str) -> str:
+    """Return what to do if the names of the columns stand in a comment above the first row; else ""."""
+    found = [k for k, line in enumerate(before, 1) if line.count(separator) == first.count(separator) > 0]
+    return f"; remove the # before the names in line {found[-1]}" if found else ""
 
 
 def suffix_of(path: str | os.PathLike[str]) -> str:

@@ -25,7 +25,7 @@ def contents(path: str | os.PathLike[str], copies: int = 1) -> bytes:
 def is_endless(path: str | os.PathLike[str]) -> bool:
     """Whether a path is a device or a named pipe, which may wait forever; a shell's ``<(command)`` is not."""
     try:
-        mode = os.stat(path).st_mode
+        mode = os.stat(os.fspath(path)).st_mode
     except (OSError, ValueError):
         return False  # reading reports it
     if stat.S_ISFIFO(mode):
@@ -55,6 +55,14 @@ def unreadable(error: Exception) -> UnreadableError:
     if ": error: " in words or not colon:
         return UnreadableError(words)
     return UnreadableError(f"{file}: error: {reason}")
+
+
+def printable_stem(path: str | os.PathLike[str]) -> str:
+    """Return the name of a file without its suffix as text that can be printed and written.
+
+    Bytes that are not UTF-8 become �.
+    """
+    return os.fsencode(Path(path).stem).decode(errors="replace")
 
 
 def words_of(error: Exception) -> str:

@@ -173,6 +173,8 @@ def parse(content: bytes, name: str) -> Node:
         parser.Parse(content, True)
     except expat.ExpatError as error:
         words = f"not well-formed XML: {expat.ErrorString(error.code)}"
+        if not content.strip():
+            words = "the file is empty; export it again"
         raise DocumentError(source.error(error.lineno, error.offset, words)) from None
     except DocumentError:
         raise

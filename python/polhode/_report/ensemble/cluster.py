@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import json
 import logging
 import os
 from collections.abc import Iterator
@@ -38,8 +39,23 @@ def check_address(address: str) -> None:
             f"scheduler.json, got {address!r}"
         )
     optional("distributed", "cluster", "a run on a cluster")
-    if address.endswith(".json") and not os.path.isfile(address):
-        raise ClusterError(f"no cluster at {address}: no such file")
+    if address.endswith(".json"):
+        _check_file(address)
+
+
+def _check_file(path: str) -> None:
+    """Raise a ClusterError unless a file is one that a scheduler of Dask writes."""
+    if not os.path.isfile(path):
+        raise ClusterError(f"no cluster at {path}: no such file")
+    try:
+        found = json.loads(Path(path).read_bytes())
+    except (OSError, ValueError):
+        found = None
+    if not isinstance(found, dict) or not isinstance(found.get("address"), str):
+        raise ClusterError(
+            f"no cluster at {path}: not the file of a scheduler; `dask scheduler --scheduler-file {path}` "
+            "writes it"
+        )
 
 
 @contextlib.contextmanager
@@ -71,8 +87,15 @@ def connected(address: str) -> Iterator[Any]:
                 client = library.Client(scheduler_file=address, timeout=_TIMEOUT)
             else:
                 client = library.Client(address, timeout=_TIMEOUT)
-        except (OSError, ValueError) as error:
+        except OSError as error:
             raise ClusterError(f"no cluster at {address}: {error}") from error
+        except ValueError as error:
+            words = f"not an address such as tcp://10.0.0.1:8786 ({error})"
+            raise ClusterError(f"no cluster at {address}: {words}") from error
+        except MemoryError as error:  # Dask takes the answer of another server for the size of a message
+            raise ClusterError(
+                f"no cluster at {address}: a program answers there, but it is not a scheduler of Dask"
+            ) from error
         opened.enter_context(client)
         yield client
 

@@ -180,5 +180,6 @@ def checked_events(events: Event | Sequence[Event]) -> list[Event]:
         if not isinstance(event, Event):
             raise TypeError(
                 f"events[{k}] must be an event of polhode.event, such as plane(e3, e3), got {event!r}"
+                f"{'; write event.function(f) for a function f of the state' if callable(event) else ''}"
             )
     return found

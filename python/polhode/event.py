@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from polhode._mechanics.laws import function_of, law_of_formula, number, shown
 from polhode._mechanics.parameters import check_finite
 from polhode._support.arrays import power_of_two
 from polhode._support.calls import explains_calls
+from polhode._support.package_names import missing_law
 
 __all__ = ["Event", "angle", "formula", "function", "plane", "position", "spin"]
 
@@ -63,8 +64,18 @@ class Event:
         return _shown(self.law.name, arguments, named)
 
 
+# Names that are not ours, and what to write instead.
+_FOREIGN = dict.fromkeys(("contact", "ground", "height"), "event.position(ph.e3, terminal=True)")
+
+
 def __dir__() -> list[str]:
     return __all__
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> None:
+        raise missing_law("event", name, _FOREIGN, "events")
 
 
 @explains_calls

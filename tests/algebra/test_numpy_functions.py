@@ -95,6 +95,13 @@ def test_errors_name_the_function():
             call()
 
 
+def test_products_along_a_batch_name_the_remedy():
+    turns = ph.Rotor.random(3, rng=1)
+    for call in (np.cumprod, np.prod, np.multiply.accumulate, np.multiply.reduce):
+        with pytest.raises(TypeError, match=r"write .*\(.*operator\.mul, R\)|operator\.mul\)\)"):
+            call(turns)
+
+
 def test_other_libraries_leave_operators_to_values():
     # They ask the value, and defer to None.
     assert e1.__array_ufunc__ is None

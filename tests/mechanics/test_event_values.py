@@ -112,6 +112,7 @@ def failing(t, *state):
         (3, TypeError, ["polhode.event", "3"]),
         ("plane", TypeError, ["events[0]", "'p'"]),
         ([E.plane(ph.e1, ph.e3), E.plane], TypeError, ["events[1]"]),
+        ([lambda *state: 1.0], TypeError, ["events[0]", "event.function(f)"]),
     ],
     ids=lambda value: "",
 )

@@ -1,5 +1,7 @@
 """Names and calls of other libraries are errors, and what these tell to write works."""
 
+import functools
+import itertools
 import math
 import operator
 import re
@@ -19,11 +21,15 @@ from polhode._support import package_names
 # --- what the tables tell to write
 
 x = sympy.Symbol("x")
+TURNS = Rotor.random(3, rng=6)
 V, PLANE, SPHERES = ph.vector(np.eye(3)), ph.pga(3), ph.cga(3)
 BASE = {
     "np": np,
     "ph": ph,
     "math": math,
+    "functools": functools,
+    "itertools": itertools,
+    "operator": operator,
     "sympy": sympy,
     "Rotor": Rotor,
     "RigidTransform": RigidTransform,
@@ -96,6 +102,7 @@ OTHERS = {
     "map(sympy.expand)": {"value": x * e1},
     "map(lambda c: sympy.integrate(c, x))": {"value": x * e1, "x": x},
     "map(lambda c: sympy.collect(c, x))": {"value": x * e1, "x": x},
+    "ph.align([ph.e3, ph.e2], [a, b], weights=[np.inf, 1]).rotor": {"a": e1, "b": e2},
     "ph.concatenate([R, S])": {"R": Rotor.random(2, rng=1), "S": Rotor.random(3, rng=2)},
     **{
         f"multivector(components){part}": {"components": np.ones(8)}
@@ -135,7 +142,10 @@ def test_the_error_of_a_name_tells_what_works(table, name, text):
 
 FUNCTIONS = [
     pytest.param(text, names, id=f"{name}-{text}")
-    for table, names in ((package_names.WRITE, {}), (ufuncs._OURS, {"A": V, "B": V, "shape": (1, 3)}))
+    for table, names in (
+        (package_names.WRITE, {}),
+        (ufuncs._OURS, {"A": V, "B": V, "R": TURNS, "shape": (1, 3), "x": 0, "y": 1}),
+    )
     for name, remedy in table.items()
     for text in expressions(remedy)
 ]
@@ -143,7 +153,7 @@ FUNCTIONS = [
 
 @pytest.mark.parametrize(("text", "names"), FUNCTIONS)
 def test_the_error_of_a_function_tells_what_works(text, names):
-    eval(text, BASE | names)
+    eval(text, BASE | names | OTHERS.get(text, {}))
 
 
 def test_expressions_for_names_of_the_package_are_shown():
@@ -163,7 +173,7 @@ def test_names_of_the_package_are_seen(name):
     assert not hasattr(ph, name)
 
 
-@pytest.mark.parametrize("module", [ph.torque, ph.force])
+@pytest.mark.parametrize("module", [ph.torque, ph.force, ph.event])
 def test_the_error_of_a_law_tells_what_works(module):
     laws = {"kp": 1, "kd": 1, "d": 1, "h": [1, 0, 0], "k": 1, "mu": 1, "F": [1, 0, 0], "m": 1}
     laws |= {"area": 1, "offset": [1, 0, 0], "sun": [0, 0, 1]}
@@ -197,6 +207,7 @@ MOVING = {
         ("TRAJECTORY", "sol"),
         ("STEPPER", "qpos"),
         ("STEPPER", "qvel"),
+        ("STEPPER", "wheel_speeds"),
         ("HISTORY", "omega"),
     ],
 )

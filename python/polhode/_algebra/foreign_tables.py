@@ -10,7 +10,10 @@ _IMMUTABLE = "which is immutable"
 # As in clifford, kingdon, galgebra, ganja.js and SymPy.
 MULTIVECTOR = {
     **dict.fromkeys(("allclose", "almost_equal", "isclose"), "is_close(B)"),
-    "angle": "Rotor.from_vectors(a, b).angle, the angle between two vectors",
+    **dict.fromkeys(
+        ("angle", "angle_between", "angle_to"),
+        "Rotor.from_vectors(a, b).angle, the angle between two vectors",
+    ),
     "as_array": "dense()",
     **dict.fromkeys(("asfullmv", "blade_coefs", "get_coefs"), "dense(), with the order of A.algebra.blades"),
     "add": "A + B",

@@ -282,7 +282,8 @@ class Multivector(_native.Multivector):
     def __array_function__(self, function: Any, *_: object) -> Any:
         # Otherwise np.array_equal is False, and the errors of other functions do not help.
         remedy = _ufuncs.remedy_of(function.__name__, "use their methods or their .components")
-        raise TypeError(f"np.{function.__name__} does not accept multivectors; {remedy}")
+        module = function.__module__.replace("numpy", "np", 1)
+        raise TypeError(f"{module}.{function.__name__} does not accept multivectors; {remedy}")
 
     def __repr__(self) -> str:
         from polhode._algebra import format as _format

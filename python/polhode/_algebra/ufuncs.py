@@ -45,9 +45,12 @@ _OPERATORS = {
 # Functions of arrays that have another name for values, and what to write.
 _OURS = {
     "allclose": "np.all(A.is_close(B))",
+    **dict.fromkeys(("arccos", "arctan2"), "ph.Rotor.from_vectors(a, b).angle for the angle between vectors"),
     "array_equal": "np.all(A == B)",
     "concatenate": "ph.concatenate([A, B])",
+    "clip": "np.clip(A.components, x, y)",
     "cross": "ph.cross(a, b)",
+    **{name: f"np.{name}(A.components)" for name in ("deg2rad", "degrees", "rad2deg", "radians")},
     "dot": "A.dot(B)",
     "inner": "A.dot(B)",
     "inv": "A.inverse()",
@@ -58,6 +61,10 @@ _OURS = {
     "matmul": "R * S for rotors, ph.vector(M @ a.components) for a matrix M",
     "mean": "A.mean()",
     "norm": "A.norm()",
+    **dict.fromkeys(
+        ("cumprod", "multiply.accumulate"), "ph.stack(list(itertools.accumulate(R, operator.mul)))"
+    ),
+    **dict.fromkeys(("multiply.reduce", "prod"), "functools.reduce(operator.mul, R)"),
     "reshape": "A.reshape(shape)",
     "round": "A.map(np.round)",
     "stack": "ph.stack([A, B])",

@@ -130,8 +130,8 @@ def _tolerance(rtol: float | None, atol: float | None) -> float | None:
     """Return the larger of the two, which measure the same scaled difference."""
     given = {name: as_float(x, name) for name, x in (("rtol", rtol), ("atol", atol)) if x is not None}
     for name, x in given.items():
-        if not (x > 0 and np.isfinite(x)):
-            raise ValueError(f"{name} must be positive and finite, got {x}")
+        if not 0 < x < 1:
+            raise ValueError(f"{name} must be between 0 and 1, such as 1e-10, got {x}")
     return max(given.values(), default=None)
 
 
@@ -180,5 +180,6 @@ def checked_events(events: Event | Sequence[Event]) -> list[Event]:
         if not isinstance(event, Event):
             raise TypeError(
                 f"events[{k}] must be an event of polhode.event, such as plane(e3, e3), got {event!r}"
+                f"{'; write event.function(f) for a function f of the state' if callable(event) else ''}"
             )
     return found

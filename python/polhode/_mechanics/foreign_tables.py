@@ -58,6 +58,7 @@ STEPPER = {
     **dict.fromkeys(("rotor", "attitude", "orientation"), "state.rotor"),
     **dict.fromkeys(("omega", "omega_body", "angular_velocity"), "state.omega_body"),
     "advance": "step(dt)",
+    "wheel_speeds": "wheel_speed",
     "qpos": 'state.rotor.to_quaternion(order="wxyz"), and state.position',
     "qvel": "state.omega_body, and state.velocity",
     "t": "time",
@@ -78,7 +79,7 @@ HISTORY = {
     **STATE,
     **dict.fromkeys(("omega", "omega_space", "angular_velocity", "rates"), "omega_body"),
     "times": "time",
-    **dict.fromkeys(("at", "interpolate"), "RotorSpline(history.time, history.rotor)(t)"),
+    **dict.fromkeys(("at", "interpolate", "resample"), "RotorSpline(history.time, history.rotor)(t)"),
     **dict.fromkeys(("save", "write", "to_csv"), "ph.io.write(history, path)"),
     **dict.fromkeys(("plot", "view", "film", "to_dataframe"), "trajectory(body), which has it"),
 }

@@ -88,7 +88,7 @@ _OF_ROTATIONS = {
     **dict.fromkeys(("chiaverini", "hughes", "itzhack", "sarabandi", "shepperd"), f"{MATRIX}{TO_WXYZ}"),
     **dict.fromkeys(("axis_angle_slerp", "rotvec_slerp"), "ph.slerp(R, S, t).to_rotation_vector()"),
     **dict.fromkeys(("matrix_slerp", "rotmat_slerp"), "ph.slerp(R, S, t).to_matrix()"),
-    **dict.fromkeys(("quaternion_slerp_batch", "unitquat_slerp"), "ph.slerp(R, S, t)"),
+    **dict.fromkeys(("lerp", "nlerp", "quaternion_slerp_batch", "unitquat_slerp"), "ph.slerp(R, S, t)"),
     "matrix_power": "(R ** t).to_matrix()",
     "qpow": "R ** t",
     "concatenate_mrp": "(R * S).to_mrp()",
@@ -115,12 +115,16 @@ _OF_ROTATIONS = {
         ("angular_distance", "qad", "qangle", "rotmat_geodesic_distance", "unitquat_geodesic_distance"),
         "R.distance(S)",
     ),
-    "rotvec_geodesic_distance": "R.distance(S)",
+    **dict.fromkeys(("geodesic_distance", "rotvec_geodesic_distance"), "R.distance(S)"),
     **dict.fromkeys(("q_random", "qrand", "random_unitquat"), "ph.Rotor.random()"),
     "random_rotmat": "ph.Rotor.random().to_matrix()",
     **dict.fromkeys(
         ("random_axis_angle", "random_compact_axis_angle", "random_rotvec"),
         "ph.Rotor.random().to_rotation_vector()",
+    ),
+    **dict.fromkeys(
+        ("look_at", "look_rotation"),
+        "ph.align([ph.e3, ph.e2], [a, b], weights=[np.inf, 1]).rotor, with e3 along a and e2 towards b",
     ),
     "rotation_matrix_align_vecs": "ph.align(a, b).rotor.to_matrix()",
     "rigid_vectors_registration": "ph.align(a, b).rotor",
@@ -174,7 +178,7 @@ WRITE = {
     **dict.fromkeys(("inner", "ip"), "A.dot(B)"),
     **dict.fromkeys(("op", "outer"), "A.wedge(B)"),
     **dict.fromkeys(("apply_rotor", "rotate", "rotor_apply", "sandwich"), "R(a)"),
-    **dict.fromkeys(("angle", "angle_between_vectors"), "ph.Rotor.from_vectors(a, b).angle"),
+    **dict.fromkeys(("angle", "angle_between", "angle_between_vectors"), "ph.Rotor.from_vectors(a, b).angle"),
     "euc_cross_prod": "ph.cross(a, b)",
     "blades": "ph.algebra(3).blades",
     "layout": "ph.algebra(3)",
@@ -311,9 +315,9 @@ WRITE = {
 }
 
 
-def missing_law(module: str, name: str, laws: Mapping[str, str]) -> AttributeError:
-    """Return the error for a name that the module of torques or that of forces does not have."""
-    remedy = f"; write ph.{laws[name]}" if name in laws else f"; the laws are listed by dir(ph.{module})"
+def missing_law(module: str, name: str, laws: Mapping[str, str], what: str = "laws") -> AttributeError:
+    """Return the error for a name that the module of torques, forces or events does not have."""
+    remedy = f"; write ph.{laws[name]}" if name in laws else f"; the {what} are listed by dir(ph.{module})"
     return AttributeError(f"module 'polhode.{module}' has no attribute {name!r}{remedy}")
 
 

@@ -113,6 +113,7 @@ impl Table {
             let row = self.times.partition_point(|t| *t <= time).max(1) - 1;
             return Ok(self.torques[row]);
         }
+        let (first, last) = self.span();
         let time = time.clamp(first, last);
         let i = self.times.partition_point(|t| *t <= time).clamp(1, self.times.len() - 1) - 1;
         let (h, x) =

@@ -180,7 +180,8 @@ def from_davenport(axes: Any, order: str, angles: Any, degrees: bool = False) ->
         theta = theta[None]
     count = unit.shape[-2]
     if theta.shape[-1] != count:
-        raise ValueError(f"{count} axes need {count} angles in the last axis, got shape {tuple(theta.shape)}")
+        needed = "1 axis needs 1 angle" if count == 1 else f"{count} axes need {count} angles"
+        raise ValueError(f"{needed} in the last axis, got shape {tuple(theta.shape)}")
     turns = [from_axis_angle(unit[..., k, :], theta[..., k]) for k in range(count)]
     # Turns about axes of the body are the same turns about fixed axes in the opposite order.
     total, *others = turns[::-1] if intrinsic else turns

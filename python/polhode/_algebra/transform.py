@@ -148,6 +148,11 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         >>> ph.RigidTransform.from_components([0, 0, 5], R).apply(ph.e1)
         0.5 e1 + 0.8660254 e2 + 5 e3
         """
+        if isinstance(translation, Rotor) or hasattr(translation, "as_quat"):
+            raise TypeError(
+                "the translation comes first: write RigidTransform.from_components(x, R), or with the rotor "
+                "first RigidTransform(R, x)"
+            )
         return RigidTransform(_as_rotor(rotation), translation)
 
     @staticmethod

@@ -37,6 +37,7 @@ _OURS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("n", "num"), ("shape",)),
     **dict.fromkeys(("seed", "random_state"), ("rng",)),
     "scalar_first": ("order",),
+    "assume_valid": ("nearest",),
     "m": ("mass",),
     "r": ("radius",),
     "rho": ("density",),

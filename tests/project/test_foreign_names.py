@@ -7,6 +7,7 @@ import rlcompleter
 
 import numpy as np
 import pytest
+import quaternion
 import sympy
 from scipy.spatial import transform as scipys
 
@@ -42,6 +43,8 @@ BASE = {
     "angles": [0.1, 0.2, 0.3],
     "q": [1, 0, 0, 0],
     "v": [1, 2, 3],
+    "w": [3, -1, 2],
+    "z": np.exp(1j * np.array([0.1, 0.2, 0.3])),
     "shape": (),
     "eps": 0.1,
     "axes": np.eye(3),
@@ -82,6 +85,7 @@ TABLES = {
     "ROTOR": (BASE["R"], {}),
     "PARTS_OF_ROTORS": (BASE["R"], {}),
     "TRANSFORM": (BASE["T"], {"S": RigidTransform(), "shape": (1,)}),
+    "SPLINE": (spline := ph.RotorSpline([0, 1], Rotor.random(2, rng=6)), {"spline": spline}),
     "ALGEBRA": (ph.algebra(3), {"A": ph.algebra(3), "components": np.ones(3), "X": e1, "Y": e2}),
     "PGA": (PLANE, OF_PLANES),
     "CGA": (SPHERES, OF_SPHERES),
@@ -144,6 +148,16 @@ FUNCTIONS = [
 @pytest.mark.parametrize(("text", "names"), FUNCTIONS)
 def test_the_error_of_a_function_tells_what_works(text, names):
     eval(text, BASE | names)
+
+
+@pytest.mark.parametrize("turned", [1, -1])
+@pytest.mark.parametrize("kind", ["rotation", "rotor"])
+@pytest.mark.parametrize("metric", ["chordal", "intrinsic"])
+def test_distances_are_those_of_numpy_quaternion(kind, metric, turned):
+    """A rotor and its opposite have a distance, but not their rotations."""
+    name, pair = f"{kind}_{metric}_distance", {"R": BASE["R"], "S": BASE["S"] if turned > 0 else -BASE["S"]}
+    theirs = getattr(quaternion, name)(*(R.to_numpy_quaternion() for R in pair.values()))
+    assert eval(package_names.WRITE[name], BASE | pair) == pytest.approx(theirs, rel=1e-12)
 
 
 def test_expressions_for_names_of_the_package_are_shown():
@@ -252,7 +266,9 @@ TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
         (lambda: Rotor.from_plane_angle(e3, 1), "a.undual()"),
         (lambda: RigidTransform(np.eye(3), [1, 2, 3]), "Rotor.from_matrix(M)"),
         (lambda: RigidTransform.from_rotation(np.eye(3)), "Rotor.from_matrix(M)"),
-        (lambda: RigidTransform.from_components(R, [1, 2, 3]), "the rotation must be a Rotor"),
+        (lambda: RigidTransform.from_components(R, [1, 2, 3]), "RigidTransform(R, x)"),
+        (lambda: RigidTransform.from_components([1, 2, 3], np.eye(3)), "Rotor.from_matrix(M)"),
+        (lambda: Rotor.from_matrix(np.eye(3), assume_valid=True), "write nearest="),
         *((lambda x=x: BOX.inertia @ x, "write F(X)") for x in (np.ones(3), [1, 2, 3], e1 ^ e2)),
         *((lambda x=x: x * BOX.inertia, "write F(X)") for x in ([1, 2, 3], e1 ^ e2)),
         (lambda: np.eye(3) @ BOX.inertia, "F.matrix @ x"),

@@ -1,5 +1,6 @@
 """Names and calls of other libraries are errors, and what these tell to write works."""
 
+import functools
 import math
 import operator
 import re
@@ -24,7 +25,9 @@ V, PLANE, SPHERES = ph.vector(np.eye(3)), ph.pga(3), ph.cga(3)
 BASE = {
     "np": np,
     "ph": ph,
+    "functools": functools,
     "math": math,
+    "operator": operator,
     "sympy": sympy,
     "Rotor": Rotor,
     "RigidTransform": RigidTransform,
@@ -54,6 +57,7 @@ BASE = {
     "x": [1, 2, 3],
     "xi": np.ones(6),
     "k": 1,
+    "c": np.array([True, False, True]),
     "phi": 0.4,
     "H": np.eye(4),
     "D": [1, 0, 0, 0, 0, 0, 0, 0],
@@ -96,6 +100,9 @@ OTHERS = {
     "continuous()": {"value": Rotor.random(3, rng=1)},
     "factor()": {"value": e1 ^ e2},
     "reshape(-1)": {"value": V},
+    "functools.reduce(operator.mul, R)": {"R": Rotor.random(3, rng=1)},
+    "functools.reduce(operator.mul, T)": {"T": RigidTransform(Rotor.random(3, rng=1), e1)},
+    "reshape(shape)": {"shape": ()},
     "k_vector(3, components)": {"components": np.ones(1)},
     "map(sympy.expand)": {"value": x * e1},
     "map(lambda c: sympy.integrate(c, x))": {"value": x * e1, "x": x},
@@ -250,6 +257,8 @@ TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
         (lambda: ph.stack([e1, e2], dim=0), "its arguments are (values, axis=0)"),
         (lambda: ph.attitude_from_rates(t=[0, 1], omega_body=V), "times="),
         (lambda: RigidTransform(rotation=R), "rotor="),
+        (lambda: R.to_quaternion("xyzw"), "takes 0 positional arguments but 1 was given; its"),
+        (lambda: np.where(True, e1, e2), "A.algebra.multivector(np.where("),
         (lambda: R.to_euler(degrees=True), "its arguments are (seq, degrees=False)"),
         (lambda: ph.omega_from_periods([1, 2, 3], 4, 5), "with mode='long' or 'short'"),
         (lambda: e1(), "V(X) moves the multivector X"),
@@ -332,6 +341,7 @@ def test_calls_and_operators_of_other_libraries_name_ours(call, ours):
         (lambda: Rotor.from_matrix(np.eye(4)), "RigidTransform.from_matrix(M)"),
         (lambda: RigidTransform.from_matrix(np.eye(3)), "RigidTransform(Rotor.from_matrix(M), x)"),
         (lambda: R.reduce(TURN), "Rotor.from_scipy(x)"),
+        (lambda: Rotor.from_axis_angle(0.3, [0, 0, 1]), "write Rotor.from_axis_angle([0, 0, 1], 0.3)"),
         (lambda: ph.mean(Rotor.random(0)), "got a batch of shape (0,)"),
         (lambda: ph.mean(np.eye(4)), "see Rotor.from_quaternion"),
         (lambda: Rotor.random(-1), "must be >= 0, got -1"),

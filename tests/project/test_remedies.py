@@ -328,8 +328,9 @@ def test_the_shape_of_wheel_torques_is_named_once():
 
 def test_a_key_of_jax_and_text_for_a_number_are_named(tmp_path):
     jax = pytest.importorskip("jax")
-    with pytest.raises(TypeError, match=r"got a key of JAX; pass its normal .*from_components"):
-        ph.Rotor.random(3, rng=jax.random.key(0))
+    for key in (jax.random.key(0), jax.random.PRNGKey(0)):
+        with pytest.raises(TypeError, match=r"got a key of JAX; pass its normal .*from_components"):
+            ph.Rotor.random(3, rng=key)
     (tmp_path / "a.obj").write_text("")
     with pytest.raises(TypeError, match="the scale must be a number in SI units, got the text 'km'"):
         ph.Body.from_mesh(tmp_path / "a.obj", density=1, scale="km")

@@ -31,6 +31,7 @@ MULTIVECTOR = {
     "even": "grade(0, 2), the even grades",
     **dict.fromkeys(("factorise", "factorize"), "factor()"),
     **dict.fromkeys(("flatten", "ravel"), "reshape(-1)"),
+    "squeeze": "reshape(shape)",
     "get_grade": "grade(2)",
     **dict.fromkeys(("g_invol", "gradeInvol", "involute", "Involute"), "grade_involution()"),
     "gp": "A * B",
@@ -181,6 +182,7 @@ ROTOR = {
     **{f"compute_{name}_radians": f'to_euler("xyz"), {_RPY}' for name in ("roll", "pitch", "yaw")},
     **dict.fromkeys(("qvmul", "rotate_point", "rotate_vector", "rotate_vectors"), "R(a)"),
     **dict.fromkeys(("pow", "power"), "R ** t"),
+    "prod": "functools.reduce(operator.mul, R)",
     **dict.fromkeys(("is_identity", "isidentity"), "angle == 0"),
     **dict.fromkeys(
         ("look_at", "look_rotation", "lookat"),
@@ -317,6 +319,7 @@ TRANSFORM = {
     **dict.fromkeys(("Rand", "random", "sample_uniform"), "RigidTransform(Rotor.random(), a)"),
     "reshape": "RigidTransform(T.rotor.reshape(shape), T.translation.reshape(shape))",
     "Rt": "as_components()",
+    "prod": "functools.reduce(operator.mul, T)",
     "size": "math.prod(T.shape)",
     "sum": "mean()",
 }

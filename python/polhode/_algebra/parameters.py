@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -65,6 +66,8 @@ def from_axis_angle(axis: Any, angle: Any, degrees: bool = False, *, errors: Err
     scale = 1.0 if degrees is False or not in_degrees(degrees) else DEGREE
     if (found := _native.rotor_from_turn(axis, 1, angle, scale)) is not None:
         return found
+    if isinstance(axis, Real) and isinstance(angle, list | tuple | np.ndarray):
+        raise ValueError(f"the axis comes first: write Rotor.from_axis_angle({angle!r:.60}, {axis!r})")
     given = (
         one_grade(axis, 1, "the axis") if isinstance(axis, Multivector) else vector(_triples(axis, "an axis"))
     )

@@ -45,10 +45,14 @@ _OPERATORS = {
 # Functions of arrays that have another name for values, and what to write.
 _OURS = {
     "allclose": "np.all(A.is_close(B))",
+    **dict.fromkeys(("append", "concatenate", "hstack", "vstack"), "ph.concatenate([A, B])"),
     "array_equal": "np.all(A == B)",
-    "concatenate": "ph.concatenate([A, B])",
+    "copy": "A, which is immutable",
     "cross": "ph.cross(a, b)",
+    "diff": "A[1:] - A[:-1]",
     "dot": "A.dot(B)",
+    "expand_dims": "A[None]",
+    "flip": "A[::-1]",
     "inner": "A.dot(B)",
     "inv": "A.inverse()",
     "isclose": "A.is_close(B)",
@@ -57,12 +61,21 @@ _OURS = {
     "isnan": "A.is_finite()",
     "matmul": "R * S for rotors, ph.vector(M @ a.components) for a matrix M",
     "mean": "A.mean()",
+    "ndim": "len(A.shape)",
     "norm": "A.norm()",
-    "reshape": "A.reshape(shape)",
+    "prod": "functools.reduce(operator.mul, A)",
+    "ravel": "A.reshape(-1)",
+    "repeat": "A[np.repeat(np.arange(len(A)), k)]",
+    **dict.fromkeys(("reshape", "squeeze"), "A.reshape(shape)"),
     "round": "A.map(np.round)",
+    "shape": "A.shape",
+    "size": "math.prod(A.shape)",
+    "square": "A * A",
     "stack": "ph.stack([A, B])",
     "sum": "A.sum()",
+    "take": "A[[0, 1]]",
     "vdot": "A.scalar_product(B)",
+    "where": "A.algebra.multivector(np.where(c[..., None], A.dense(), B.dense()))",
 }
 
 

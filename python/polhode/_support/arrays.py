@@ -199,7 +199,7 @@ def normal_numbers(shape: Shape, rng: np.random.Generator | int | None, what: st
     try:
         generator, numbers = np.random.default_rng(rng), np.empty(shape)
     except TypeError:
-        key = "key<" in str(getattr(rng, "dtype", ""))  # of JAX
+        key = type(rng).__module__.startswith("jax")
         found = (
             "a key of JAX; pass its normal numbers (..., 4) to Rotor.from_components" if key else repr(rng)
         )

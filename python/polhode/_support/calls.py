@@ -146,6 +146,7 @@ def _without_self(error: str) -> str:
         return error
     fewer = re.sub(r"\d+", lambda number: str(int(number[0]) - 1), counts[0])
     fewer = re.sub(r"(?<!to )\b1 positional arguments", "1 positional argument", fewer)
+    fewer = re.sub(r"\b0 positional argument\b", "0 positional arguments", fewer)
     return error.replace(counts[0], fewer.replace("but 1 were given", "but 1 was given"))
 
 

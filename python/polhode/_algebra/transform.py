@@ -204,6 +204,36 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         return RigidTransform.from_exp_coords(exp_coords)
 
     @staticmethod
+    def from_screw(
+        axis: Any, point: Any, angle: Any, distance: Any = 0.0, degrees: bool = False
+    ) -> RigidTransform:
+        """Turn by `angle` about the axis through `point`, and move by `distance` along it.
+
+        The inverse of `screw_parameters`: ``from_screw(*T.screw_parameters())`` is T. A ValueError for an
+        axis of zero length.
+
+        Parameters
+        ----------
+        axis, point
+            Vectors, or arrays (..., 3): the direction of the axis, whose length is ignored, and any point of
+            it; with an angle of 0 the point does not matter.
+        angle, distance
+            Numbers (...): radians, or degrees, right-handed about the axis, and units of the points. Batch
+            shapes broadcast.
+
+        Examples
+        --------
+        A quarter turn about the axis through e1 along e3, and the same with a climb of 2:
+
+        >>> T = ph.RigidTransform.from_screw(ph.e3, ph.e1, 90, degrees=True)
+        >>> T.apply([0, 0, 0]).round(6) + 0
+        array([ 1., -1.,  0.])
+        >>> ph.RigidTransform.from_screw(ph.e3, ph.e1, np.pi / 2, distance=2).apply([0, 0, 0]).round(6) + 0
+        array([ 1., -1.,  2.])
+        """
+        return RigidTransform(*_conversions.parts_of_screw(axis, point, angle, distance, degrees))
+
+    @staticmethod
     def from_dual_quat(dual_quat: Any, *, scalar_first: bool = False) -> RigidTransform:
         """From unit dual quaternions (..., 8): the real part, then the dual part, each ``(x, y, z, w)``.
 

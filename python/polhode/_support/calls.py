@@ -38,6 +38,7 @@ _OURS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("seed", "random_state"), ("rng",)),
     "scalar_first": ("order",),
     "assume_valid": ("nearest",),
+    "pitch": ("distance",),
     "m": ("mass",),
     "r": ("radius",),
     "rho": ("density",),

@@ -88,6 +88,11 @@ _OF_ROBOTS = {
     "rotation_6d_from_matrix": "M[:, :2].T.ravel(), the first two columns",
     "oa2r": f"{_LAST_TWO}{TO_MATRIX}, with the approach v and the orientation w",
     "oa2tr": f"{_ROTATED}({_LAST_TWO}){TO_MOVED}, with the approach v and the orientation w",
+    **dict.fromkeys(
+        ("dual_quaternion_from_screw_parameters", "dual_quaternions_from_screw_parameters"),
+        "ph.RigidTransform.from_screw(a, b, theta, k), with the distance k, not the pitch",
+    ),
+    "screw_axis_from_screw_parameters": "ph.RigidTransform.from_screw(a, b, theta, k).log()",
     "swing_twist_composition": "R * S",
     "norm_axis_angle": AXIS + TO_VECTOR,
     "norm_compact_axis_angle": VECTOR + TO_VECTOR,

@@ -126,7 +126,11 @@ def test_unknown_arguments_without_a_like_name_list_all(shown):
             ".* takes 0 .* 1 was.*",
             r".*with order='wxyz' or 'xyzw'",
         ),
-        (lambda: ph.Body.box(1, 2, 3, mass=1), ".* takes 1 .*", r"\(lengths, \*, mass=None, density=None\)"),
+        (
+            lambda: ph.Body.box(1, 2, 3, mass=1),
+            ".* takes 1 .*",
+            r"\(lengths, \*, mass=None, density=None\); pass numbers as one list, \[1, 2, 3\]",
+        ),
     ],
 )
 def test_calls_with_too_few_or_too_many_arguments_list_all(call, python, arguments):

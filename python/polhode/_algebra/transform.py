@@ -81,11 +81,7 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         if rotor is None:
             rotor = Rotor.identity()
         if not isinstance(rotor, Rotor):
-            raise TypeError(
-                f"rotor must be a Rotor, got {type(rotor).__name__}; write Rotor.from_matrix(M) for matrices "
-                "(..., 3, 3), RigidTransform.from_matrix(M) for (..., 4, 4), from_translation(x) without a "
-                "rotor; see from_components and from_scipy for values of SciPy"
-            )
+            raise _not_a_rotor(rotor, translation)
         moved = _as_vector(translation, "the translation")
         try:
             shape = np.broadcast_shapes(rotor.shape, moved.shape)
@@ -539,6 +535,17 @@ def _spread(value: Any, shape: Shape) -> Any:
         return value
     data = namespace(value._data).broadcast_to(value._data, (*shape, value._data.shape[-1]))
     return value._like(np.ascontiguousarray(data) if isinstance(data, np.ndarray) else data)
+
+
+def _not_a_rotor(rotor: Any, translation: Any) -> TypeError:
+    """Return the error for a transform whose first argument is not a rotor."""
+    if isinstance(translation, Rotor):
+        return TypeError("the rotor comes first: write RigidTransform(R, x)")
+    return TypeError(
+        f"rotor must be a Rotor, got {type(rotor).__name__}; write Rotor.from_matrix(M) for matrices "
+        "(..., 3, 3), RigidTransform.from_matrix(M) for (..., 4, 4), from_translation(x) without a rotor; "
+        "see from_components and from_scipy for values of SciPy"
+    )
 
 
 def _as_rotor(rotation: Any) -> Rotor:

@@ -50,7 +50,8 @@ def as_floats(values: Any, what: str) -> Array:
         except OverflowError as error:
             raise ValueError(f"{what} has an integer beyond the range of float64 (1.8e308)") from error
     if array.dtype.kind not in "iuf":
-        raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}")
+        remedy = "; for symbols pass those of sympy.symbols" if array.dtype.kind == "U" else ""
+        raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}{remedy}")
     require_broadcast(array, what)
     return in_aligned_memory(array.astype(np.float64, copy=False))
 

@@ -341,6 +341,7 @@ def test_calls_and_operators_of_other_libraries_name_ours(call, ours):
         (lambda: Rotor.from_matrix(2 * np.eye(3)), "nearest=True"),
         (lambda: RigidTransform.from_matrix(np.diag([2, 2, 2, 1])), "nearest=True"),
         (lambda: Rotor.from_euler("sxyz", [1, 2, 3]), "write 'xyz'"),
+        (lambda: Rotor.from_euler([1, 2, 3], "zyx"), "it is text, such as 'ZYX', before the angles"),
         (lambda: R.to_euler("rzyx"), "write 'ZYX'"),
         (lambda: T[0], ".rotor and .translation"),
         *((lambda f=f: f(np.ones((3, 1))), "got shape (3, 1); write np.ravel(x)") for f in TAKE_THREE),

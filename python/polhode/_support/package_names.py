@@ -47,7 +47,6 @@ SEE = {
         ),
         "RigidTransform",
     ),
-    "Slerp": "slerp",
     "Twist3": "Screw",
     **dict.fromkeys(("animate", "film"), "view and Trajectory.film"),
     **dict.fromkeys(("plot", "show"), "Trajectory.plot and view"),
@@ -100,6 +99,10 @@ _OF_ROTATIONS = {
     **dict.fromkeys(("axis_angle_slerp", "rotvec_slerp"), "ph.slerp(R, S, t).to_rotation_vector()"),
     **dict.fromkeys(("matrix_slerp", "rotmat_slerp"), "ph.slerp(R, S, t).to_matrix()"),
     **dict.fromkeys(("quaternion_slerp_batch", "unitquat_slerp"), "ph.slerp(R, S, t)"),
+    "Slerp": (
+        "ph.slerp(R, S, t) of two rotors, at a fraction of the way, or ph.RotorSpline(times, [R, S])(t) of "
+        "rotors at times"
+    ),
     "matrix_power": "(R ** t).to_matrix()",
     "qpow": "R ** t",
     "concatenate_mrp": "(R * S).to_mrp()",

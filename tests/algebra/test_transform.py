@@ -27,6 +27,41 @@ def applied(matrices, points):
 # --- points and groups
 
 
+@pytest.mark.parametrize("angle", [7.0, 1.0, 1e-3, 1e-9, 0.0])
+def test_turns_about_an_axis_through_a_point(angle):
+    """The point moves along the axis alone, and another turns about it: p + R (x − p) + d n, in 50 digits."""
+    axis, point, x, distance = [2, -1, 2], [3e3, 1.0, -2e3], [3001.0, 5.0, -2e3], 0.25
+    T = RigidTransform.from_screw(axis, point, angle, distance)
+    with mpmath.workdps(50):
+        n = mpmath.matrix(axis) / 3
+        hat = mpmath.matrix([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
+        turn = mpmath.sin(angle) * hat + 2 * mpmath.sin(mpmath.mpf(angle) / 2) ** 2 * hat * hat
+        shift = np.array([float(c) for c in -turn * mpmath.matrix(point) + distance * n])
+        moved = [
+            float(c)
+            for c in mpmath.matrix(x) + turn * (mpmath.matrix(x) - mpmath.matrix(point)) + distance * n
+        ]
+    # Products of the parts of the point, of size 4e3, with sin θ or smaller numbers.
+    np.testing.assert_allclose(
+        T.translation.components, shift, rtol=0, atol=16 * EPS * (4e3 * min(angle, 2) + distance)
+    )
+    np.testing.assert_allclose(T.apply(x), moved, rtol=0, atol=64 * EPS * 4e3)
+    degrees = RigidTransform.from_screw(axis, point, np.rad2deg(angle), distance, degrees=True)
+    assert degrees.is_close(T, atol=64 * EPS * 4e3)
+
+
+def test_screws_restore_transforms(transforms):
+    for T in (transforms, RigidTransform(), RigidTransform.from_translation([1, -2, 3])):
+        assert np.all(RigidTransform.from_screw(*T.screw_parameters()).is_close(T, atol=64 * EPS))
+    many = RigidTransform.from_screw(np.eye(3)[:, None], e1, np.arange(4.0), [0.0])
+    assert many.shape == (3, 4)
+    assert many[2, 1].is_close(RigidTransform.from_screw(e3, [1, 0, 0], 1.0), atol=8 * EPS)
+    with pytest.raises(ValueError, match=r"the axis at index \(1,\) is \[0.0, 0.0, 0.0\]"):
+        RigidTransform.from_screw([[1, 0, 0], [0, 0, 0]], e1, 1.0)
+    with pytest.raises(ValueError, match=r"the point needs 3 components"):
+        RigidTransform.from_screw(e3, [1, 0], 1.0)
+
+
 def test_the_handouts_displacement():
     """Handout eq. (4.1), y = R x ~R + x0."""
     R, x0, x = ph.Rotor.from_plane_angle(e1 ^ e2, np.pi / 2), e3, e1
@@ -262,6 +297,15 @@ def test_symbols():
     )
     assert sympy.simplify(sympy.Matrix(T.as_matrix()) - expected) == sympy.zeros(4)
     assert sympy.simplify(sympy.Matrix((T * T.inv()).as_matrix())) == sympy.eye(4)
+
+
+def test_turns_about_a_point_of_symbols():
+    sympy = pytest.importorskip("sympy")
+    p, angle = sympy.symbols("p theta", real=True)
+    T = RigidTransform.from_screw(e3, [p, 0, 0], angle)
+    x, y, _ = T.translation.components
+    assert sympy.simplify(x - p * (1 - sympy.cos(angle))) == 0
+    assert sympy.simplify(y + p * sympy.sin(angle)) == 0
 
 
 def test_screws_of_symbols():

@@ -9,6 +9,7 @@ import rlcompleter
 
 import numpy as np
 import pytest
+import quaternion
 import sympy
 from scipy.spatial import transform as scipys
 
@@ -26,6 +27,7 @@ V, PLANE, SPHERES = ph.vector(np.eye(3)), ph.pga(3), ph.cga(3)
 BASE = {
     "np": np,
     "ph": ph,
+    "functools": functools,
     "math": math,
     "functools": functools,
     "itertools": itertools,
@@ -48,6 +50,8 @@ BASE = {
     "angles": [0.1, 0.2, 0.3],
     "q": [1, 0, 0, 0],
     "v": [1, 2, 3],
+    "w": [3, -1, 2],
+    "z": np.exp(1j * np.array([0.1, 0.2, 0.3])),
     "shape": (),
     "eps": 0.1,
     "axes": np.eye(3),
@@ -57,6 +61,7 @@ BASE = {
     "x": [1, 2, 3],
     "xi": np.ones(6),
     "k": 1,
+    "c": np.array([True, False, True]),
     "phi": 0.4,
     "H": np.eye(4),
     "D": [1, 0, 0, 0, 0, 0, 0, 0],
@@ -88,6 +93,7 @@ TABLES = {
     "ROTOR": (BASE["R"], {}),
     "PARTS_OF_ROTORS": (BASE["R"], {}),
     "TRANSFORM": (BASE["T"], {"S": RigidTransform(), "shape": (1,)}),
+    "SPLINE": (spline := ph.RotorSpline([0, 1], Rotor.random(2, rng=6)), {"spline": spline}),
     "ALGEBRA": (ph.algebra(3), {"A": ph.algebra(3), "components": np.ones(3), "X": e1, "Y": e2}),
     "PGA": (PLANE, OF_PLANES),
     "CGA": (SPHERES, OF_SPHERES),
@@ -98,6 +104,9 @@ OTHERS = {
     "continuous()": {"value": Rotor.random(3, rng=1)},
     "factor()": {"value": e1 ^ e2},
     "reshape(-1)": {"value": V},
+    "functools.reduce(operator.mul, R)": {"R": Rotor.random(3, rng=1)},
+    "functools.reduce(operator.mul, T)": {"T": RigidTransform(Rotor.random(3, rng=1), e1)},
+    "reshape(shape)": {"shape": ()},
     "k_vector(3, components)": {"components": np.ones(1)},
     "map(sympy.expand)": {"value": x * e1},
     "map(lambda c: sympy.integrate(c, x))": {"value": x * e1, "x": x},
@@ -154,6 +163,16 @@ FUNCTIONS = [
 @pytest.mark.parametrize(("text", "names"), FUNCTIONS)
 def test_the_error_of_a_function_tells_what_works(text, names):
     eval(text, BASE | names | OTHERS.get(text, {}))
+
+
+@pytest.mark.parametrize("turned", [1, -1])
+@pytest.mark.parametrize("kind", ["rotation", "rotor"])
+@pytest.mark.parametrize("metric", ["chordal", "intrinsic"])
+def test_distances_are_those_of_numpy_quaternion(kind, metric, turned):
+    """A rotor and its opposite have a distance, but not their rotations."""
+    name, pair = f"{kind}_{metric}_distance", {"R": BASE["R"], "S": BASE["S"] if turned > 0 else -BASE["S"]}
+    theirs = getattr(quaternion, name)(*(R.to_numpy_quaternion() for R in pair.values()))
+    assert eval(package_names.WRITE[name], BASE | pair) == pytest.approx(theirs, rel=1e-12)
 
 
 def test_expressions_for_names_of_the_package_are_shown():
@@ -247,6 +266,16 @@ TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
         (lambda: ph.stack([e1, e2], dim=0), "its arguments are (values, axis=0)"),
         (lambda: ph.attitude_from_rates(t=[0, 1], omega_body=V), "times="),
         (lambda: RigidTransform(rotation=R), "rotor="),
+        (lambda: ph.algebra(signature=[1, 1, 1]), "write ph.algebra(p, q, r), with the numbers of"),
+        (lambda: ph.algebra([1, 1, 1]), "got [1, 1, 1]; write ph.algebra(p, q, r)"),
+        (lambda: A.vector("x"), "sympy.symbols"),
+        (lambda: Rotor.from_axis_angle(e3, theta=1), "write angle="),
+        (lambda: Rotor.from_plane_angle(e1 ^ e2, angle=1), "write theta="),
+        (lambda: Rotor.from_euler("ZYX", 0.1, 0.2, 0.3), "pass numbers as one list, [0.1, 0.2, 0.3]"),
+        (lambda: RigidTransform(R, 1, 2, 3), "pass numbers as one list, [1, 2, 3]"),
+        (lambda: RigidTransform([1, 2, 3], R), "write RigidTransform(R, x)"),
+        (lambda: R.to_quaternion("xyzw"), "takes 0 positional arguments but 1 was given; its"),
+        (lambda: np.where(True, e1, e2), "A.algebra.multivector(np.where("),
         (lambda: R.to_euler(degrees=True), "its arguments are (seq, degrees=False)"),
         (lambda: ph.omega_from_periods([1, 2, 3], 4, 5), "with mode='long' or 'short'"),
         (lambda: e1(), "V(X) moves the multivector X"),
@@ -263,7 +292,9 @@ TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
         (lambda: Rotor.from_plane_angle(e3, 1), "a.undual()"),
         (lambda: RigidTransform(np.eye(3), [1, 2, 3]), "Rotor.from_matrix(M)"),
         (lambda: RigidTransform.from_rotation(np.eye(3)), "Rotor.from_matrix(M)"),
-        (lambda: RigidTransform.from_components(R, [1, 2, 3]), "the rotation must be a Rotor"),
+        (lambda: RigidTransform.from_components(R, [1, 2, 3]), "RigidTransform(R, x)"),
+        (lambda: RigidTransform.from_components([1, 2, 3], np.eye(3)), "Rotor.from_matrix(M)"),
+        (lambda: Rotor.from_matrix(np.eye(3), assume_valid=True), "write nearest="),
         *((lambda x=x: BOX.inertia @ x, "write F(X)") for x in (np.ones(3), [1, 2, 3], e1 ^ e2)),
         *((lambda x=x: x * BOX.inertia, "write F(X)") for x in ([1, 2, 3], e1 ^ e2)),
         (lambda: np.eye(3) @ BOX.inertia, "F.matrix @ x"),
@@ -303,6 +334,7 @@ TURN, MOVE = scipys.Rotation.identity(), scipys.RigidTransform.identity()
         (lambda: RigidTransform(np.eye(4)), "RigidTransform.from_matrix"),
         (lambda: T["x"], "T.translation[name]"),
         (lambda: list(T), ".as_components()"),
+        (lambda: dict(zip(("layout", "blades"), A, strict=True)), "write A.blades for its basis"),
         (lambda: Rotor.random(rng="a"), "rng must be a NumPy generator, a whole number or None"),
     ],
 )
@@ -318,6 +350,7 @@ def test_calls_and_operators_of_other_libraries_name_ours(call, ours):
         (lambda: Rotor.from_matrix(2 * np.eye(3)), "nearest=True"),
         (lambda: RigidTransform.from_matrix(np.diag([2, 2, 2, 1])), "nearest=True"),
         (lambda: Rotor.from_euler("sxyz", [1, 2, 3]), "write 'xyz'"),
+        (lambda: Rotor.from_euler([1, 2, 3], "zyx"), "it is text, such as 'ZYX', before the angles"),
         (lambda: R.to_euler("rzyx"), "write 'ZYX'"),
         (lambda: T[0], ".rotor and .translation"),
         *((lambda f=f: f(np.ones((3, 1))), "got shape (3, 1); write np.ravel(x)") for f in TAKE_THREE),
@@ -327,6 +360,7 @@ def test_calls_and_operators_of_other_libraries_name_ours(call, ours):
         (lambda: Rotor.from_matrix(np.eye(4)), "RigidTransform.from_matrix(M)"),
         (lambda: RigidTransform.from_matrix(np.eye(3)), "RigidTransform(Rotor.from_matrix(M), x)"),
         (lambda: R.reduce(TURN), "Rotor.from_scipy(x)"),
+        (lambda: Rotor.from_axis_angle(0.3, [0, 0, 1]), "write Rotor.from_axis_angle([0, 0, 1], 0.3)"),
         (lambda: ph.mean(Rotor.random(0)), "got a batch of shape (0,)"),
         (lambda: ph.mean(np.eye(4)), "see Rotor.from_quaternion"),
         (lambda: Rotor.random(-1), "must be >= 0, got -1"),

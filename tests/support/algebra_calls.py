@@ -232,6 +232,7 @@ CALLS = {
     "RigidTransform.from_components": Call(lambda t: ph.RigidTransform.from_components(t, rotor(R)), (V,)),
     "RigidTransform.from_matrix": Call(lambda m: ph.RigidTransform.from_matrix(m), (_motor(V).as_matrix(),)),
     "RigidTransform.from_exp_coords": Call(ph.RigidTransform.from_exp_coords, (numbers(_BATCH, 6),)),
+    "RigidTransform.from_screw": Call(ph.RigidTransform.from_screw, (V, B, WEIGHTS, WEIGHTS)),
     "RigidTransform.exp": Call(ph.RigidTransform.exp, (numbers(_BATCH, 6),)),
     "RigidTransform.from_dual_quat": Call(ph.RigidTransform.from_dual_quat, (_motor(V).as_dual_quat(),)),
     "RigidTransform.from_motor": Call(

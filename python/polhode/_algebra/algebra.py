@@ -7,7 +7,7 @@ import math
 import operator
 import re
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.native import joins
 from polhode._support.arrays import Shape, batch_shape, normal_numbers, require_components
 from polhode._support.calls import explains_calls, takes_components
+
+_COUNTS = "ph.algebra(p, q, r), with the numbers of generators of square +1, -1 and 0"
 
 
 def no_constructor(kind: type, remedy: str) -> TypeError:
@@ -55,6 +57,9 @@ class Algebra(_native.Algebra):
     """
 
     __slots__ = ()
+
+    def __iter__(self) -> NoReturn:
+        raise TypeError("an algebra has no items; write A.blades for its basis, A.basis_vectors for vectors")
 
     # What other libraries call them, and what to write.
     _foreign_names: ClassVar[Mapping[str, str]] = ALGEBRA
@@ -344,6 +349,7 @@ class Algebra(_native.Algebra):
         return self.I / square
 
 
+@explains_calls(**dict.fromkeys(("signature", "sig", "metric", "g"), _COUNTS))
 def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
     """Return the algebra Cl(p, q, r) of at most 8 generators: the same object for the same signature.
 
@@ -367,7 +373,10 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
     """
     for count in (p, q, r):
         if not hasattr(count, "__index__"):
-            raise TypeError(f"the signature needs three whole numbers, as in algebra(3, 0, 1), got {count!r}")
+            raise TypeError(
+                f"the signature needs three whole numbers, as in algebra(3, 0, 1), got {count!r}; write "
+                f"{_COUNTS}"
+            )
         if isinstance(count, bool) or operator.index(count) < 0:
             raise ValueError(f"the signature needs three counts >= 0, got {p}, {q}, {r}")
     if p + q + r > 8:

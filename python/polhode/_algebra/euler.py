@@ -70,7 +70,7 @@ def _lettered(seq: object) -> str:
         return f"; write {text[1:]!r} for turns about fixed axes"
     if re.fullmatch("r[xyz]{3}", text):
         return f"; write {text[1:].upper()!r} for turns about body axes"
-    return ""
+    return "" if isinstance(seq, str) else "; it is text, such as 'ZYX', before the angles"
 
 
 def angles_of(wxyz: Any, seq: str) -> Any:

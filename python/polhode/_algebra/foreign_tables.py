@@ -34,6 +34,7 @@ MULTIVECTOR = {
     "even": "grade(0, 2), the even grades",
     **dict.fromkeys(("factorise", "factorize"), "factor()"),
     **dict.fromkeys(("flatten", "ravel"), "reshape(-1)"),
+    "squeeze": "reshape(shape)",
     "get_grade": "grade(2)",
     **dict.fromkeys(("g_invol", "gradeInvol", "involute", "Involute"), "grade_involution()"),
     "gp": "A * B",
@@ -93,6 +94,11 @@ _VECTORS = ("from_two_vectors", "between", "FromTwoVectors", "setFromTwoVectors"
 _RPY = "the angles roll, pitch, yaw"
 _AXIS = "to_rotation_vector(), or plane_angle() for the plane and the angle"
 _DERIVATIVE = "R * ph.bivector(v) / -2, with v the angular velocity in body axes"
+_TANGENT = (
+    "R * Rotor.from_rotation_vector(v), with v of the whole angle, twice the vector of a quaternion's log"
+)
+_GIBBS = "-(R.grade(2) / R['1']).components"
+_TRIAD = "ph.align([ph.e3, ph.e2], [v, w], [np.inf, 1]).rotor"
 _JOINED = "ph.concatenate([R, S]) of batches, which are immutable"
 
 # As in SciPy, numpy-quaternion and other libraries of rotations.
@@ -102,7 +108,9 @@ ROTOR = {
     "adjoint": "to_matrix()",
     "align": "ph.align(a, b), or Rotor.from_vectors(a, b) for two directions",
     "align_vectors": "ph.align(a, b), which takes the target last",
-    **dict.fromkeys(("angdist", "angularDistance"), "distance(S)"),
+    **dict.fromkeys(
+        ("angdist", "angularDistance", "angle_to", "geodesic_distance"), "distance(S), with the whole angle"
+    ),
     **dict.fromkeys(
         ("AngVec", "AngleAxis", "from_axang", "from_axisangle"), "from_axis_angle(v, theta), the axis first"
     ),
@@ -122,18 +130,27 @@ ROTOR = {
     "conjugate": "~R",
     "copy": f"R itself, {_IMMUTABLE}",
     "create_group": "group(name)",
-    "degrees": "np.degrees(R.angle)",
+    **dict.fromkeys(("degrees", "to_degrees"), "np.degrees(R.angle)"),
     **dict.fromkeys(("Empty", "Alloc"), "identity(shape)"),
     "Exp": "Rotor.from_rotation_vector(v)",
-    "euler": "to_euler(seq)",
+    **dict.fromkeys(("euler", "eulerAngles", "euler_angles"), "to_euler(seq)"),
     "EulerVec": "from_rotation_vector(v)",
     **dict.fromkeys(("derivative", "dotb", "ode"), _DERIVATIVE),
-    **dict.fromkeys(("exp_map", "increment"), "R * Rotor.from_rotation_vector(v)"),
+    "exp_map": _TANGENT,
+    "increment": "R * Rotor.from_rotation_vector(v)",
     "flattened": "reshape(-1)",
     "from_angles": f'from_euler("xyz", angles), {_RPY}',
     "from_angular_velocity": "ph.attitude_from_rates(times, omega)",
     **dict.fromkeys(("from_dcm", "from_DCM", "from_rotation_matrix", "from_rotmat"), "from_matrix(M)"),
-    **dict.fromkeys(("Eul", "from_euler_angles", "from_euler_phases"), 'from_euler("ZYZ", angles)'),
+    **dict.fromkeys(("Eul", "from_euler_angles"), 'from_euler("ZYZ", angles)'),
+    "from_euler_phases": 'from_euler("ZYZ", np.angle(z))',
+    **dict.fromkeys(
+        ("from_6d", "from_rotation_6d"),
+        "ph.align([ph.e1, ph.e2], [v, w], [np.inf, 1]).rotor, with the six numbers as v and w",
+    ),
+    **dict.fromkeys(("from_axes", "from_basis", "from_frame"), "from_matrix(M), with the axes as columns"),
+    **dict.fromkeys(("from_crp", "from_gibbs", "from_rodrigues"), 'from_quaternion([1, *v], order="wxyz")'),
+    "from_ypr": 'from_euler("ZYX", angles), with yaw, pitch, roll',
     **dict.fromkeys(("from_Matrix", "from_q"), 'from_quaternion(q, order="wxyz")'),
     "from_spherical_coordinates": 'from_euler("ZY", [phi, theta])',
     "get_batch_axes": "shape",
@@ -148,6 +165,7 @@ ROTOR = {
     **dict.fromkeys(("from_z_radians", "Rz"), "Rotor.from_axis_angle(ph.e3, theta)"),
     "inner": '(~R * S)["1"]',
     **dict.fromkeys(("interp", "interpolate", "intermediates", "slerp"), "ph.slerp(R, S, t)"),
+    **dict.fromkeys(("apply_inverse", "inverse_apply", "inv_apply"), "(~R)(a)"),
     "interp1": "R ** t",
     "jlog": "ph.right_jacobian(R.to_rotation_vector(), inverse=True)",
     "log_map": "(~R * S).log()",
@@ -161,19 +179,28 @@ ROTOR = {
     "polar_unit_vector": "plane_angle()[0].dual()",
     "remove_jumps": "continuous()",
     "rotate_by": "S * R, which turns by R first",
-    "radians": "angle",
+    **dict.fromkeys(("radians", "to_radians"), "angle"),
     "rotate": "R(a)",
-    **dict.fromkeys(("as_rpy_radians", "rpy"), f'to_euler("xyz"), {_RPY}'),
+    **dict.fromkeys(("as_rpy", "as_rpy_radians", "rpy"), f'to_euler("xyz"), {_RPY}'),
     **{f"compute_{name}_radians": f'to_euler("xyz"), {_RPY}' for name in ("roll", "pitch", "yaw")},
-    **dict.fromkeys(("qvmul", "rotate_point"), "R(a)"),
-    **dict.fromkeys(("Rand", "sample_uniform"), "Rotor.random(shape)"),
+    **dict.fromkeys(("qvmul", "rotate_point", "rotate_vector", "rotate_vectors"), "R(a)"),
+    **dict.fromkeys(("pow", "power"), "R ** t"),
+    "prod": "functools.reduce(operator.mul, R)",
+    **dict.fromkeys(("is_identity", "isidentity"), "angle == 0"),
+    **dict.fromkeys(
+        ("look_at", "look_rotation", "lookat"),
+        f"{_TRIAD}, which turns e3 to the direction v and e2 towards w",
+    ),
+    "OA": f"{_TRIAD}, which turns e3 to the approach v and e2 towards the orientation w",
+    "squad": "ph.RotorSpline(times, [R, S])(t)",
+    **dict.fromkeys(("Rand", "Random", "UniformRandom", "sample_uniform"), "Rotor.random(shape)"),
     **dict.fromkeys(("RotatedVector", "TwoVectors"), "Rotor.from_vectors(a, b)"),
     "SE3": "RigidTransform.from_rotation(R)",
-    "sym_distance": "distance(S), the whole angle",
+    "sym_distance": "distance(S), with the whole angle",
     "sym_log_map": "(R**-0.5 * S * R**-0.5).log()",
     **dict.fromkeys(("to_angles", "to_rpy"), f'to_euler("xyz"), {_RPY}'),
     "to_angular_velocity": "ph.rates_from_attitude(times, [R, S])",
-    "to_euler_phases": 'to_euler("ZYZ")',
+    "to_euler_phases": 'np.exp(1j * R.to_euler("ZYZ"))',
     "to_spherical_coordinates": 'to_euler("ZYZ")[..., 1::-1]',
     "to_transformation_matrix": "RigidTransform.from_rotation(R).as_matrix()",
     **dict.fromkeys(("as_spinor_array", "two_spinor"), "ph.to_pauli(R)"),
@@ -185,7 +212,7 @@ ROTOR = {
     **dict.fromkeys(
         (
             *("A", "R", "as_dcm", "as_matrix", "as_rotation_matrix", "dcm", "matrix", "rotation_matrix"),
-            *("to_dcm", "to_DCM", "to_rotation_matrix"),
+            *("toRotationMatrix", "to_dcm", "to_DCM", "to_rotation_matrix"),
         ),
         "to_matrix()",
     ),
@@ -203,12 +230,16 @@ ROTOR = {
         ),
         _WXYZ,
     ),
+    **dict.fromkeys(("as_6d", "to_6d", "to_rotation_6d"), "to_matrix()[..., :2], the first two columns"),
+    **dict.fromkeys(("as_crp", "as_rodrigues", "to_crp", "to_gibbs", "to_rodrigues"), _GIBBS),
     "to_list": f"{_WXYZ}.tolist()",
     **dict.fromkeys(("as_quat", "as_quaternion_xyzw", "quat", "to_quat", "vec_xyzs", "xyzw"), _XYZW),
     **dict.fromkeys(
         ("imaginary", "to_vector_part", "v", "vec", "vec3", "vector", "vector_part"), f"{_XYZW}[..., :3]"
     ),
-    "yaw_pitch_roll": 'to_euler("ZYX")',
+    # pyquaternion computes the angles of another sequence than it documents.
+    "yaw_pitch_roll": 'to_euler("ZYX"), or to_euler("XYZ")[..., ::-1] for the numbers of pyquaternion',
+    **{name: f'to_euler("ZYX")[..., {k}]' for k, name in enumerate(("yaw", "pitch", "roll"))},
 }
 
 # Of complex coefficients, which rotors do not have. Elsewhere the names are of quaternions.
@@ -221,17 +252,32 @@ PARTS_OF_ROTORS = {
 # As in SciPy, spatialmath, jaxlie and Pinocchio.
 TRANSFORM = {
     **dict.fromkeys(("act", "transform", "transform_point", "transform_points"), "apply(x)"),
-    "actInv": "apply(x, inverse=True)",
+    **dict.fromkeys(
+        ("actInv", "apply_inverse", "inverse_apply", "inverse_transform"), "apply(x, inverse=True)"
+    ),
+    **dict.fromkeys(("rotate_vector", "transform_direction", "transform_vector"), "rotor(a)"),
     **dict.fromkeys(("Ad", "Adjoint"), "adjoint()"),
-    **dict.fromkeys(("allclose", "isclose"), "is_close(S)"),
+    **dict.fromkeys(("allclose", "approx_equal", "isclose"), "is_close(S)"),
     **dict.fromkeys(("A", "homogeneous", "as_homogeneous", "matrix", "to_homogeneous"), "as_matrix()"),
     "as_euler": "rotor.to_euler(seq)",
     **dict.fromkeys(("AngVec", "AngleAxis"), "RigidTransform.from_rotation(Rotor.from_axis_angle(v, theta))"),
     "angdist": "rotor.distance(S.rotor)",
-    **dict.fromkeys(("angvec", "eulervec"), "rotor.to_rotation_vector()"),
+    **dict.fromkeys(("angvec", "as_rotvec", "eulervec"), "rotor.to_rotation_vector()"),
+    "magnitude": "rotor.angle",
+    "exp_coords": "as_exp_coords()",
+    "from_euler": "RigidTransform.from_rotation(Rotor.from_euler(seq, angles))",
+    "from_rotvec": "RigidTransform.from_rotation(Rotor.from_rotation_vector(v))",
+    "screw": "screw_parameters()",
+    "rotate": "RigidTransform.from_rotation(R) * T",
+    "translate": "RigidTransform.from_translation(x) * T",
+    **dict.fromkeys(("invert", "inverted"), "inverse()"),
     **dict.fromkeys(("append", "extend", "insert"), f"RigidTransform.concatenate([S, T]), {_IMMUTABLE}"),
     "EulerVec": "RigidTransform.from_rotation(Rotor.from_rotation_vector(v))",
-    **dict.fromkeys(("delta", "twist"), "log(), the rotation vector first"),
+    **dict.fromkeys(("twist", "vee"), "log(), the rotation vector first"),
+    "delta": "(~T * S).log(), the rotation vector first",
+    "Delta": "RigidTransform.exp(xi), the rotation vector first",
+    "OA": f"RigidTransform.from_rotation({_TRIAD})",
+    "RotatedVector": "RigidTransform.from_rotation(Rotor.from_vectors(a, b))",
     "get_batch_axes": "shape",
     "jlog": "ph.right_jacobian(T.log(), inverse=True), the rotation vector first",
     **{name: f"rotor(ph.e{axis})" for axis, name in ((1, "n"), (2, "o"), (3, "a"))},
@@ -256,20 +302,27 @@ TRANSFORM = {
     "distance": "(~S * T).as_exp_coords()",
     "dual_quaternion": "as_dual_quat()",
     "Exp": "RigidTransform.exp(xi)",
-    "from_rotation_and_translation": "RigidTransform(R, a)",
+    **dict.fromkeys(("from_pose", "from_rotation_and_translation", "from_rt"), "RigidTransform(R, a)"),
     "from_rotor": "RigidTransform.from_rotation(R)",
     "Identity": "RigidTransform.identity()",
-    **dict.fromkeys(("interp", "slerp"), "interpolate(S, t)"),
+    "interp": (
+        "interpolate(S, t), which is a screw motion, or RigidTransform(ph.slerp(T.rotor, S.rotor, t), "
+        "(1 - t) * T.translation + t * S.translation)"
+    ),
+    "slerp": "interpolate(S, t)",
     "Log": "log()",
     "motor": "to_motor()",
     "ndim": "len(T.shape)",
     **dict.fromkeys(("p", "position", "origin", "t", "trans"), "translation"),
-    "R": "rotor, or rotor.to_matrix()",
+    **dict.fromkeys(("get_translation", "pos"), "translation"),
+    **dict.fromkeys(("R", "get_rotation", "rotation_matrix"), "rotor, or rotor.to_matrix()"),
+    "UnitQuaternion": f"rotor.{_WXYZ}",
     **dict.fromkeys(("norm", "normalize"), f"T itself, {_IMMUTABLE}"),
     **dict.fromkeys(("parameters", "wxyz_xyz"), "as_components()"),
     **dict.fromkeys(("Rand", "random", "sample_uniform"), "RigidTransform(Rotor.random(), a)"),
     "reshape": "RigidTransform(T.rotor.reshape(shape), T.translation.reshape(shape))",
     "Rt": "as_components()",
+    "prod": "functools.reduce(operator.mul, T)",
     "size": "math.prod(T.shape)",
     "sum": "mean()",
 }
@@ -346,4 +399,14 @@ CGA = {
     "project": "(X | Y) / Y",
     "rotation": "rotor(R)",
     "translation": "translator(t)",
+}
+
+# Of splines, as in SciPy and numpy-quaternion.
+SPLINE = {
+    **dict.fromkeys(("alpha", "angular_acceleration", "acceleration"), "alpha_body(t)"),
+    **dict.fromkeys(("angular_rate", "angular_velocity", "derivative", "omega", "velocity"), "omega_body(t)"),
+    "omega_space": "spline(t)(spline.omega_body(t))",
+    **dict.fromkeys(("evaluate", "interpolate"), "spline(t)"),
+    "knots": "times",
+    "rotations": "rotors",
 }

@@ -10,6 +10,7 @@ import numpy as np
 from polhode import _generic, _native
 from polhode._algebra.coefficients import foreign_kind, kind_of, number_like
 from polhode._algebra.constructors import bivector
+from polhode._algebra.foreign_tables import SPLINE
 from polhode._algebra.foreign_values import remedy_for
 from polhode._algebra.grades import stack
 from polhode._algebra.multivector import Multivector
@@ -17,6 +18,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._algebra.signs import half_turn
 from polhode._support.arrays import Array, as_floats, at_index, first_index, frozen, is_float, power_of_two
 from polhode._support.calls import explains_calls, explains_calls_of
+from polhode._support.foreign_names import with_foreign_names
 
 
 @overload
@@ -87,6 +89,7 @@ def _is_negative(x: Any, bound: float) -> bool:
 
 
 @explains_calls_of
+@with_foreign_names(SPLINE)
 class RotorSpline:
     """Cubic spline through the attitudes of `rotors` (n,) at increasing `times` (n,), n >= 2.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -65,6 +66,8 @@ def from_axis_angle(axis: Any, angle: Any, degrees: bool = False, *, errors: Err
     scale = 1.0 if degrees is False or not in_degrees(degrees) else DEGREE
     if (found := _native.rotor_from_turn(axis, 1, angle, scale)) is not None:
         return found
+    if isinstance(axis, Real) and isinstance(angle, list | tuple | np.ndarray):
+        raise ValueError(f"the axis comes first: write Rotor.from_axis_angle({angle!r:.60}, {axis!r})")
     given = (
         one_grade(axis, 1, "the axis") if isinstance(axis, Multivector) else vector(_triples(axis, "an axis"))
     )
@@ -180,7 +183,8 @@ def from_davenport(axes: Any, order: str, angles: Any, degrees: bool = False) ->
         theta = theta[None]
     count = unit.shape[-2]
     if theta.shape[-1] != count:
-        raise ValueError(f"{count} axes need {count} angles in the last axis, got shape {tuple(theta.shape)}")
+        needed = "1 axis needs 1 angle" if count == 1 else f"{count} axes need {count} angles"
+        raise ValueError(f"{needed} in the last axis, got shape {tuple(theta.shape)}")
     turns = [from_axis_angle(unit[..., k, :], theta[..., k]) for k in range(count)]
     # Turns about axes of the body are the same turns about fixed axes in the opposite order.
     total, *others = turns[::-1] if intrinsic else turns

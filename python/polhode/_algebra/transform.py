@@ -81,11 +81,7 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         if rotor is None:
             rotor = Rotor.identity()
         if not isinstance(rotor, Rotor):
-            raise TypeError(
-                f"rotor must be a Rotor, got {type(rotor).__name__}; write Rotor.from_matrix(M) for matrices "
-                "(..., 3, 3), RigidTransform.from_matrix(M) for (..., 4, 4), from_translation(x) without a "
-                "rotor; see from_components and from_scipy for values of SciPy"
-            )
+            raise _not_a_rotor(rotor, translation)
         moved = _as_vector(translation, "the translation")
         try:
             shape = np.broadcast_shapes(rotor.shape, moved.shape)
@@ -148,6 +144,11 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         >>> ph.RigidTransform.from_components([0, 0, 5], R).apply(ph.e1)
         0.5 e1 + 0.8660254 e2 + 5 e3
         """
+        if isinstance(translation, Rotor) or hasattr(translation, "as_quat"):
+            raise TypeError(
+                "the translation comes first: write RigidTransform.from_components(x, R), or with the rotor "
+                "first RigidTransform(R, x)"
+            )
         return RigidTransform(_as_rotor(rotation), translation)
 
     @staticmethod
@@ -197,6 +198,36 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         True
         """
         return RigidTransform.from_exp_coords(exp_coords)
+
+    @staticmethod
+    def from_screw(
+        axis: Any, point: Any, angle: Any, distance: Any = 0.0, degrees: bool = False
+    ) -> RigidTransform:
+        """Turn by `angle` about the axis through `point`, and move by `distance` along it.
+
+        The inverse of `screw_parameters`: ``from_screw(*T.screw_parameters())`` is T. A ValueError for an
+        axis of zero length.
+
+        Parameters
+        ----------
+        axis, point
+            Vectors, or arrays (..., 3): the direction of the axis, whose length is ignored, and any point of
+            it; with an angle of 0 the point does not matter.
+        angle, distance
+            Numbers (...): radians, or degrees, right-handed about the axis, and units of the points. Batch
+            shapes broadcast.
+
+        Examples
+        --------
+        A quarter turn about the axis through e1 along e3, and the same with a climb of 2:
+
+        >>> T = ph.RigidTransform.from_screw(ph.e3, ph.e1, 90, degrees=True)
+        >>> T.apply([0, 0, 0]).round(6) + 0
+        array([ 1., -1.,  0.])
+        >>> ph.RigidTransform.from_screw(ph.e3, ph.e1, np.pi / 2, distance=2).apply([0, 0, 0]).round(6) + 0
+        array([ 1., -1.,  2.])
+        """
+        return RigidTransform(*_conversions.parts_of_screw(axis, point, angle, distance, degrees))
 
     @staticmethod
     def from_dual_quat(dual_quat: Any, *, scalar_first: bool = False) -> RigidTransform:
@@ -504,6 +535,17 @@ def _spread(value: Any, shape: Shape) -> Any:
         return value
     data = namespace(value._data).broadcast_to(value._data, (*shape, value._data.shape[-1]))
     return value._like(np.ascontiguousarray(data) if isinstance(data, np.ndarray) else data)
+
+
+def _not_a_rotor(rotor: Any, translation: Any) -> TypeError:
+    """Return the error for a transform whose first argument is not a rotor."""
+    if isinstance(translation, Rotor):
+        return TypeError("the rotor comes first: write RigidTransform(R, x)")
+    return TypeError(
+        f"rotor must be a Rotor, got {type(rotor).__name__}; write Rotor.from_matrix(M) for matrices "
+        "(..., 3, 3), RigidTransform.from_matrix(M) for (..., 4, 4), from_translation(x) without a rotor; "
+        "see from_components and from_scipy for values of SciPy"
+    )
 
 
 def _as_rotor(rotation: Any) -> Rotor:

@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._algebra.algebra import Algebra, algebra
-from polhode._algebra.coefficients import as_coefficients, common, kind_of, namespace
+from polhode._algebra.angles import to_radians
+from polhode._algebra.coefficients import as_coefficients, common, kind_of, namespace, number_like
+from polhode._algebra.constructors import cross, vector
 from polhode._algebra.motors import columns, is_motor, of_columns, places
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
+from polhode._algebra.rotor_rows import triples
 from polhode._support.arrays import is_float, power_of_two
 from polhode._support.extras import optional
 
@@ -60,6 +63,20 @@ def parts_of_exp_coords(exp_coords: Any) -> Parts:
     # −½ of the plane of rotation and ½ v∧e4.
     motor = of_columns(_MOTORS, [zero, a, b, c, x, y, z, zero]).grade(2).exp()
     return _parts(motor, "the rotation of exponential coordinates")
+
+
+def parts_of_screw(axis: Any, point: Any, angle: Any, distance: Any, degrees: bool) -> Parts:
+    """Return the parts of a turn about the axis through a point with a translation along it."""
+    rotor = Rotor.from_axis_angle(axis, angle, degrees)
+    direction = vector(triples(axis, 1, "the axis")).normalized()
+    theta = number_like(angle, "angle", direction._data)
+    theta = to_radians(theta) if degrees else theta
+    moved = number_like(distance, "distance", direction._data)
+    # The velocity of the origin, if the motion takes unit time; its integral loses no digits at small angles.
+    velocity = cross(vector(triples(point, 1, "the point")), direction) * theta + direction * moved
+    parts = common((direction * theta)._data, velocity._data)
+    xp = namespace(parts[0])
+    return rotor, parts_of_exp_coords(xp.concat(xp.broadcast_arrays(*parts), axis=-1))[1]
 
 
 def parts_of_dual_quat(dual_quat: Any, scalar_first: bool) -> Parts:

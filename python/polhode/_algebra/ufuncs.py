@@ -45,13 +45,17 @@ _OPERATORS = {
 # Functions of arrays that have another name for values, and what to write.
 _OURS = {
     "allclose": "np.all(A.is_close(B))",
+    **dict.fromkeys(("append", "concatenate", "hstack", "vstack"), "ph.concatenate([A, B])"),
     **dict.fromkeys(("arccos", "arctan2"), "ph.Rotor.from_vectors(a, b).angle for the angle between vectors"),
     "array_equal": "np.all(A == B)",
-    "concatenate": "ph.concatenate([A, B])",
     "clip": "np.clip(A.components, x, y)",
+    "copy": "A, which is immutable",
     "cross": "ph.cross(a, b)",
     **{name: f"np.{name}(A.components)" for name in ("deg2rad", "degrees", "rad2deg", "radians")},
+    "diff": "A[1:] - A[:-1]",
     "dot": "A.dot(B)",
+    "expand_dims": "A[None]",
+    "flip": "A[::-1]",
     "inner": "A.dot(B)",
     "inv": "A.inverse()",
     "isclose": "A.is_close(B)",
@@ -60,16 +64,24 @@ _OURS = {
     "isnan": "A.is_finite()",
     "matmul": "R * S for rotors, ph.vector(M @ a.components) for a matrix M",
     "mean": "A.mean()",
+    "ndim": "len(A.shape)",
     "norm": "A.norm()",
     **dict.fromkeys(
         ("cumprod", "multiply.accumulate"), "ph.stack(list(itertools.accumulate(R, operator.mul)))"
     ),
     **dict.fromkeys(("multiply.reduce", "prod"), "functools.reduce(operator.mul, R)"),
-    "reshape": "A.reshape(shape)",
+    "ravel": "A.reshape(-1)",
+    "repeat": "A[np.repeat(np.arange(len(A)), k)]",
+    **dict.fromkeys(("reshape", "squeeze"), "A.reshape(shape)"),
     "round": "A.map(np.round)",
+    "shape": "A.shape",
+    "size": "math.prod(A.shape)",
+    "square": "A * A",
     "stack": "ph.stack([A, B])",
     "sum": "A.sum()",
+    "take": "A[[0, 1]]",
     "vdot": "A.scalar_product(B)",
+    "where": "A.algebra.multivector(np.where(c[..., None], A.dense(), B.dense()))",
 }
 
 

@@ -50,7 +50,9 @@ def as_floats(values: Any, what: str) -> Array:
         except OverflowError as error:
             raise ValueError(f"{what} has an integer beyond the range of float64 (1.8e308)") from error
     if array.dtype.kind not in "iuf":
-        raise TypeError(f"{what} must be real numbers (int or float), got {_not_numbers(values, array)}")
+        remedy = "; for symbols pass those of sympy.symbols" if array.dtype.kind == "U" else ""
+        found = _not_numbers(values, array)
+        raise TypeError(f"{what} must be real numbers (int or float), got {found}{remedy}")
     require_broadcast(array, what)
     return in_aligned_memory(array.astype(np.float64, copy=False))
 
@@ -213,7 +215,7 @@ def normal_numbers(shape: Shape, rng: np.random.Generator | int | None, what: st
     try:
         generator, numbers = np.random.default_rng(rng), np.empty(shape)
     except TypeError:
-        key = "key<" in str(getattr(rng, "dtype", ""))  # of JAX
+        key = type(rng).__module__.startswith("jax")
         found = (
             "a key of JAX; pass its normal numbers (..., 4) to Rotor.from_components" if key else repr(rng)
         )

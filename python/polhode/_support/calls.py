@@ -37,6 +37,14 @@ _OURS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("n", "num"), ("shape",)),
     **dict.fromkeys(("seed", "random_state"), ("rng",)),
     "scalar_first": ("order",),
+    "assume_valid": ("nearest",),
+    "pitch": ("distance",),
+    **dict.fromkeys(("theta", "radians", "rad", "phi"), ("angle", "theta")),
+    "angle": ("theta",),
+    **dict.fromkeys(("sequence", "convention"), ("seq",)),
+    **dict.fromkeys(("matrix", "dcm"), ("m",)),
+    "quat": ("q",),
+    "rotvec": ("v",),
     "m": ("mass",),
     "r": ("radius",),
     "rho": ("density",),
@@ -74,8 +82,22 @@ def explains_calls(function: Any = None, /, **remedies: str) -> Any:
 
 def _explaining(remedies: Mapping[str, str], function: Callable[P, T]) -> Callable[P, T]:
     # The name of the result may change: methods of values are functions under another name.
-    explained = _with_message(function, lambda _, named, error: _misfit(explained, remedies, named, error))
+    def message(given: tuple[Any, ...], named: Mapping[str, Any], error: str) -> str:
+        return _misfit(explained, remedies, named, error) + _as_a_list(explained, given, error)
+
+    explained = _with_message(function, message)
     return explained
+
+
+def _as_a_list(function: Callable[..., Any], arguments: tuple[Any, ...], error: str) -> str:
+    """Return the end of the message for numbers as several arguments, such as components or angles."""
+    count = next((k for k, x in enumerate(reversed(arguments)) if not isinstance(x, Real)), len(arguments))
+    kinds = [x.kind for x in inspect.signature(function).parameters.values()]
+    most = kinds.count(inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    # The list is the last argument, or the one before it.
+    if count < 3 or not re.search(r"positional .* given", error) or most > len(arguments) - count + 2:
+        return ""
+    return f"; pass numbers as one list, [{', '.join(map(repr, arguments[-count:]))}]"
 
 
 def takes_components(function: Callable[P, T]) -> Callable[P, T]:
@@ -145,6 +167,7 @@ def _without_self(error: str) -> str:
         return error
     fewer = re.sub(r"\d+", lambda number: str(int(number[0]) - 1), counts[0])
     fewer = re.sub(r"(?<!to )\b1 positional arguments", "1 positional argument", fewer)
+    fewer = re.sub(r"\b0 positional argument\b", "0 positional arguments", fewer)
     return error.replace(counts[0], fewer.replace("but 1 were given", "but 1 was given"))
 
 

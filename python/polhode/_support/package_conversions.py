@@ -64,7 +64,17 @@ _SHORT = {
     "rpy": Form(RPY, '.to_euler("xyz")'),
 }
 
+# As in PyTorch3D, Kornia and others: ``quaternion_to_matrix``, with Euler angles about the axes of the body.
+_WORDS = {
+    **dict.fromkeys(("axis_angle", "rotation_vector"), Form(VECTOR, TO_VECTOR)),
+    **dict.fromkeys(("euler", "euler_angles"), Form("ph.Rotor.from_euler(seq, angles)", ".to_euler(seq)")),
+    **dict.fromkeys(("matrix", "rotation_matrix"), Form(MATRIX, TO_MATRIX)),
+    "quaternion": Form(WXYZ, TO_WXYZ),
+    "rpy": Form(RPY, '.to_euler("xyz")'),
+}
+
 CONVERSIONS = {
+    **{f"{a}_to_{b}": x.read + y.write for a, x in _WORDS.items() for b, y in _WORDS.items() if x != y},
     **{f"{a}2{b}": x.read + y.write for a, x in _SHORT.items() for b, y in _SHORT.items() if x != y},
     **{f"{a}_to_{b}": x.read + y.write for a, x in _ROMA.items() for b, y in _ROMA.items() if a != b},
     **{

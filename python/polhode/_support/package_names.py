@@ -16,12 +16,13 @@ from polhode._support.package_conversions import (
     VECTOR,
     WXYZ,
 )
+from polhode._support.package_functions import FUNCTIONS
 
 # Names of ours.
 SEE = {
     **dict.fromkeys(("Cl", "Ga", "Layout"), "algebra"),
     "KeplerOrbit": "torque.KeplerOrbit",
-    "MultiVector": "multivector",
+    **dict.fromkeys(("MultiVector", "Mv"), "multivector"),
     **dict.fromkeys(
         (
             "DCM",
@@ -29,6 +30,7 @@ SEE = {
             "QuaternionArray",
             "QuaternionicArray",
             "ReferenceFrame",
+            "Rot3",
             "Rotation",
             "RotationMatrix",
         ),
@@ -36,9 +38,15 @@ SEE = {
     ),
     **dict.fromkeys(("SO3", "UnitQuaternion"), "Rotor"),
     "RigidBody": "Body",
+    "SpatialInertia": "Inertia",
     "RotationSpline": "RotorSpline",
-    **dict.fromkeys(("Isometry", "RigidUnitQuat", "SE3", "UnitDualQuaternion"), "RigidTransform"),
-    "Slerp": "slerp",
+    **dict.fromkeys(
+        (
+            *("DualQuaternion", "Isometry", "Pose", "Pose3", "RigidUnitQuat", "SE3", "Transform"),
+            *("Transform3d", "UnitDualQuaternion"),
+        ),
+        "RigidTransform",
+    ),
     "Twist3": "Screw",
     **dict.fromkeys(("animate", "film"), "view and Trajectory.film"),
     **dict.fromkeys(("plot", "show"), "Trajectory.plot and view"),
@@ -52,7 +60,7 @@ SEE = {
         name: f"Multivector.{name}"
         for name in (
             *("commutator", "dot", "dual", "exp", "grade", "inverse", "log", "norm", "project", "reverse"),
-            *("sqrt", "wedge"),
+            *("sqrt", "undual", "wedge"),
         )
     },
 }
@@ -74,11 +82,13 @@ _OF_ROTATIONS = {
     },
     "quaternion_from_angle": f"ph.Rotor.from_axis_angle(ph.e3, theta){TO_WXYZ}",
     "quaternion_from_extrinsic_euler_xyz": f"{RPY}{TO_WXYZ}",
-    **dict.fromkeys(("norm_vector", "norm_vectors", "unitvec"), "a.normalized()"),
+    **dict.fromkeys(
+        ("norm_vector", "norm_vectors", "normalized_vector", "unit_vector", "unitvec"), "a.normalized()"
+    ),
     "vector_projection": "a.project(b)",
     "perpendicular_to_vectors": "ph.cross(a, b)",
     "plane_normal_from_bivector": "B.dual()",
-    **dict.fromkeys(("angdiff", "norm_angle"), "np.angle(np.exp(1j * theta))"),
+    **dict.fromkeys(("angdiff", "angle_wrap", "norm_angle", "wrap_mpi_pi"), "np.angle(np.exp(1j * theta))"),
     "angles_between_vectors": "ph.Rotor.from_vectors(a, b).angle",
     "axis_angle_from_two_directions": "ph.Rotor.from_vectors(a, b).to_rotation_vector()",
     **dict.fromkeys(
@@ -89,6 +99,10 @@ _OF_ROTATIONS = {
     **dict.fromkeys(("axis_angle_slerp", "rotvec_slerp"), "ph.slerp(R, S, t).to_rotation_vector()"),
     **dict.fromkeys(("matrix_slerp", "rotmat_slerp"), "ph.slerp(R, S, t).to_matrix()"),
     **dict.fromkeys(("lerp", "nlerp", "quaternion_slerp_batch", "unitquat_slerp"), "ph.slerp(R, S, t)"),
+    "Slerp": (
+        "ph.slerp(R, S, t) of two rotors, at a fraction of the way, or ph.RotorSpline(times, [R, S])(t) of "
+        "rotors at times"
+    ),
     "matrix_power": "(R ** t).to_matrix()",
     "qpow": "R ** t",
     "concatenate_mrp": "(R * S).to_mrp()",
@@ -104,10 +118,11 @@ _OF_ROTATIONS = {
     ),
     "allclose": "A.is_close(B, rtol, atol)",
     "squad_evaluate": "ph.RotorSpline(times, [R, S])(t)",
-    "rotation_chordal_distance": "np.linalg.norm(R.to_matrix() - S.to_matrix(), axis=(-2, -1))",
+    "rotation_chordal_distance": "np.minimum((R - S).norm(), (R + S).norm())",
     "quaternion_diff": "(R * ~S).to_rotation_vector()",
     "quaternion_gradient": "ph.rates_from_attitude(times, [R, S])",
-    **dict.fromkeys(("derivative", "qdot", "qdotb"), _DERIVATIVE),
+    **dict.fromkeys(("derivative", "qdotb"), _DERIVATIVE),
+    "qdot": "ph.bivector(v) * R / -2, with v the angular velocity in space axes",
     **dict.fromkeys(
         ("pick_closest_quaternion", "smooth_quaternion_trajectory"), "ph.stack([R, S]).continuous()"
     ),
@@ -161,6 +176,7 @@ _OF_TRANSFORMS = {
 # Expressions, as of numpy-quaternion, clifford, pytransform3d, spatialmath, Basilisk and MATLAB.
 WRITE = {
     **CONVERSIONS,
+    **FUNCTIONS,
     **_OF_ROTATIONS,
     **_OF_TRANSFORMS,
     "e12": "ph.e1 ^ ph.e2",
@@ -182,7 +198,7 @@ WRITE = {
     "euc_cross_prod": "ph.cross(a, b)",
     "blades": "ph.algebra(3).blades",
     "layout": "ph.algebra(3)",
-    "MVArray": "ph.stack([A, B])",
+    **dict.fromkeys(("MVArray", "array"), "ph.stack([A, B])"),
     "randomMV": "ph.algebra(3).random()",
     **dict.fromkeys(("bases", "basis_vectors"), "ph.algebra(3).basis_vectors"),
     "general_exp": "A.exp()",
@@ -229,6 +245,7 @@ WRITE = {
     **dict.fromkeys(
         ("integrate_angular_velocity", "quaternion_integrate"), "ph.attitude_from_rates(times, omega)"
     ),
+    "as_spinor_array": "ph.to_pauli(R)",
     "as_float_array": 'R.to_quaternion(order="wxyz")',
     "as_rotation_matrix": "R.to_matrix()",
     "as_rotation_vector": "R.to_rotation_vector()",
@@ -236,7 +253,11 @@ WRITE = {
     "from_rotation_matrix": "ph.Rotor.from_matrix(M)",
     "from_rotation_vector": "ph.Rotor.from_rotation_vector(v)",
     **dict.fromkeys(("rotate_vector", "rotate_vectors"), f"R{_TURN}"),
-    **dict.fromkeys(("cross_product_matrices", "cross_product_matrix", "hat", "skew"), _HAT),
+    **dict.fromkeys(
+        ("cross_product_matrices", "cross_product_matrix", "hat", "rot_log_from_compact_axis_angle", "skew"),
+        _HAT,
+    ),
+    **dict.fromkeys(("unhat", "unskew", "vee", "vex"), "M[[2, 0, 1], [1, 2, 0]]"),
     "exp3": "ph.Rotor.from_rotation_vector(v)",
     "log3": "R.to_rotation_vector()",
     "exp6": "ph.RigidTransform.from_exp_coords(xi), the rotation vector first",
@@ -274,7 +295,10 @@ WRITE = {
     "trexp": "ph.RigidTransform.from_exp_coords(xi), the rotation vector first",
     "trlog": "T.as_exp_coords(), the rotation vector first",
     "trnorm": f"ph.RigidTransform.from_matrix(H, nearest=True){TO_MOVED}",
-    "trinterp": f"U.interpolate(T, t){TO_MOVED}",
+    "trinterp": (
+        "ph.RigidTransform(ph.slerp(U.rotor, T.rotor, t), (1 - t) * U.translation + t * T.translation)"
+        f"{TO_MOVED}"
+    ),
     **dict.fromkeys(("rotation_matrix", "t2r"), "T.rotor.to_matrix()"),
     "r2t": f"{_ROTATED}({MATRIX}){TO_MOVED}",
     "tr2rt": "T.as_components()",

@@ -18,6 +18,7 @@ import numpy as np
 
 from polhode._algebra.constructors import as_bivectors
 from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
 from polhode._mechanics.body_arrays import bodies_of, has
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.laws import function_of, law_of_formula, one_of
@@ -66,6 +67,7 @@ _FOREIGN = {
     **dict.fromkeys(("from_table", "interpolated", "table"), "torque.tabulated(times, torques)"),
     **dict.fromkeys(("thrust", "thruster"), "force.thrust(F, at=x)"),
 }
+
 
 def __dir__() -> list[str]:
     return __all__

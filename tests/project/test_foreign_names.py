@@ -29,7 +29,6 @@ BASE = {
     "ph": ph,
     "functools": functools,
     "math": math,
-    "functools": functools,
     "itertools": itertools,
     "operator": operator,
     "sympy": sympy,

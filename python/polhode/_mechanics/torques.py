@@ -72,8 +72,8 @@ class Torque(Sum):
         This is the right side of handout eq. (4.21) in body axes, in N m; for a `gyrostat` it is the
         reaction of the wheel to being turned, for `reaction_wheels` their torque on a body whose inertia is
         without their moments about their axes. The inertia is about the centre of mass, or about the fixed
-        point if a law holds the body; from a `Body` the right one is taken, and the mass. The time t is in s, by
-        default that of the state.
+        point if a law holds the body; from a `Body` the right one is taken, and the mass. The time t is in s,
+        by default that of the state.
 
         Examples
         --------

@@ -8,7 +8,6 @@ import {
   Problem,
   type Quadruple,
   type Solid,
-  State,
   type Surface,
   type Triple,
 } from "./core.ts";

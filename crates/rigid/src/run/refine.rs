@@ -63,6 +63,9 @@ const MARGIN_AT_JUMPS: f64 = 2.0;
 /// Maximum number of sweeps with different steps.
 const MOST_SWEEPS: u32 = 30;
 
+/// How often steps are halved with which a first sweep fails.
+const MOST_HALVINGS: u32 = 8;
+
 /// After this many sweeps without agreement, sweeps with noise show whether rounding is the cause.
 const FEW_SWEEPS: u32 = 5;
 
@@ -195,6 +198,8 @@ pub(crate) struct Convergence {
     before: bool,
     /// The error of the last sweep.
     reached: f64,
+    /// How often steps were halved because a sweep failed.
+    halvings: u32,
 }
 
 type SweepResult = Result<Option<Converged>, SimulateError>;
@@ -219,7 +224,22 @@ impl Convergence {
             previous: f64::INFINITY,
             before: true,
             reached: f64::INFINITY,
+            halvings: 0,
         }
+    }
+
+    /// Takes the error of a sweep. Equal steps that are too long may diverge, or meet points at which a law has no value:
+    /// shorter ones are next. Any other error is returned, and in the end the last one.
+    pub fn take_error(&mut self, error: SimulateError) -> Result<(), SimulateError> {
+        let by_steps = matches!(error, SimulateError::Undefined { .. } | SimulateError::Diverged { .. });
+        let finer = self.rule.refined(2.0);
+        let equal = matches!(self.rule, StepRule::Step(_)) && self.pair.is_none();
+        if !(by_steps && equal) || self.halvings == MOST_HALVINGS || finer == self.rule {
+            return Err(error);
+        }
+        self.halvings += 1;
+        (self.rule, self.coarse) = (finer, None);
+        Ok(())
     }
 
     /// The sweep to run next.

@@ -135,9 +135,13 @@ impl Problem {
         };
         let mut sweeps = Convergence::new(first, accuracy, scales);
         loop {
-            let sweep = self.sweep(engine, times, (sweeps.next(), bounds), events, progress)?;
-            if let Some(found) = sweeps.take(sweep, &follow)? {
-                return Ok(found);
+            match self.sweep(engine, times, (sweeps.next(), bounds), events, progress) {
+                Err(error) => sweeps.take_error(error)?,
+                Ok(sweep) => {
+                    if let Some(found) = sweeps.take(sweep, &follow)? {
+                        return Ok(found);
+                    }
+                }
             }
         }
     }

@@ -280,13 +280,3 @@ def test_laws_do_not_keep_errors_of_others():
         (good + bad).at(BODY, START)
     with pytest.raises(ValueError, match="table"):
         (T.tabulated([0, 1], np.zeros((2, 3))) + bad).at(BODY, START, 3.0)
-
-
-@pytest.mark.parametrize(("name", "what"), [("x", "position"), ("v", "velocity")])
-def test_position_and_velocity_of_a_torque_name_the_stepper(name, what):
-    with pytest.raises(ph.FormulaError, match=f"`{name}` has no value.*{what} of the centre.*ph.Stepper"):
-        T.formula(f"{name}∧e1")
-    with pytest.raises(ph.FormulaError) as other:
-        T.formula("q∧e1")
-    assert "Stepper" not in str(other.value)
-    assert T.formula(f"{name}∧e1", **{name: ph.e2}).at(BODY, START) == (ph.e2 ^ ph.e1)

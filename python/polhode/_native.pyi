@@ -316,8 +316,7 @@ def torque_at(
     inertia: Inertia,
     rotor_row: Array,
     omega: Array,
-    center: Array,
-    mass: float,
+    translation: tuple[Array, float],
     time: float,
 ) -> Array: ...
 

@@ -95,7 +95,7 @@ class Torque(Sum):
         center = np.concatenate([state.position.components, state.velocity.components])
         mass = inertia.mass if isinstance(inertia, Body) else math.nan
         laws = list(torque.laws)
-        return bivector(_native.torque_at(laws, body._core, rotor, omega, center, mass, time))
+        return bivector(_native.torque_at(laws, body._core, rotor, omega, (center, mass), time))
 
     def _about_pivot(self, bodies: Any) -> tuple[Any, Torque]:
         """Return the bodies in axes whose origin is the fixed point, if there is one, and the laws there."""

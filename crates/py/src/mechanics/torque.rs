@@ -97,7 +97,7 @@ impl Law {
     }
 }
 
-/// The torque of all laws in body axes, at a state and a time.
+/// The torque of all laws in body axes, at a state and a time; `translation` has position and velocity, and the mass.
 #[pyfunction]
 pub(crate) fn torque_at<'py>(
     py: Python<'py>,
@@ -105,8 +105,7 @@ pub(crate) fn torque_at<'py>(
     inertia: &Inertia,
     rotor_row: Rows<'py>,
     omega: Rows<'py>,
-    center: Rows<'py>,
-    mass: f64,
+    translation: (Rows<'py>, f64),
     time: f64,
 ) -> PyResult<Array<'py>> {
     let frame = inertia.0.principal_frame();
@@ -121,6 +120,7 @@ pub(crate) fn torque_at<'py>(
     }
     let omega = frame.reverse().apply_bivector(Bivector(one(&omega)?));
     let state = Phase { rotor: rotor(&rotor_row)? * frame, momentum: body.momentum(omega), time };
+    let (center, mass) = translation;
     let [x, y, z, u, v, w] = one(&center)?;
     let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
     let torque = total(&torques, &Point { body: &body, mass, phase: &state, center: &center })

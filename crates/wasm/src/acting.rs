@@ -9,7 +9,7 @@ use polhode_rigid::facts;
 use polhode_rigid::state::point::Seen;
 use serde_json::Value;
 
-/// The torque in space, the vectors that the laws depend on, and the thrusts, in the state of a row of [`crate::rows`].
+/// The torque in space, the vectors that the laws depend on, and the thrusts, in the state of a row of states.
 pub fn acting(of: &Opened, row: [f64; ROW]) -> Result<Value, String> {
     let [time, s, x, y, z, a, b, c, .., px, py, pz, u, v, w] = row;
     let state = Seen {

@@ -55,7 +55,7 @@ fn files_that_cannot_be_read() {
     assert!(
         read("rock.gltf").ends_with("unknown extension 'gltf', expected stl, obj or ply; convert the mesh")
     );
-    assert!(read("rock").contains("unknown extension '', expected stl, obj or ply"));
+    assert!(read("rock").contains("no extension, expected stl, obj or ply"));
 }
 
 #[test]
@@ -275,7 +275,7 @@ fn corrupt_and_truncated_ply() {
     assert_eq!(text("0 0 0\n1 0 x\n"), at(11, "'x' is not a number"));
     assert_eq!(text(&format!("{vertices}-3 0 1 2\n")), at(13, "invalid list length -3.0"));
     assert_eq!(text(&format!("{vertices}2 0 1\n")), at(13, "a face needs at least 3 corners, got 2"));
-    for index in ["3.0", "-1.0", "0.5", "NaN", "4294967296.0"] {
+    for index in ["3", "-1", "0.5", "NaN", "4294967296"] {
         assert_eq!(
             text(&format!("{vertices}3 0 1 {index}\n")),
             at(13, &format!("vertex {index} does not exist: there are 3 vertices, numbered from 0"))

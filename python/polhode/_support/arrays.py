@@ -50,9 +50,7 @@ def as_floats(values: Any, what: str) -> Array:
         except OverflowError as error:
             raise ValueError(f"{what} has an integer beyond the range of float64 (1.8e308)") from error
     if array.dtype.kind not in "iuf":
-        remedy = "; for symbols pass those of sympy.symbols" if array.dtype.kind == "U" else ""
-        found = _not_numbers(values, array)
-        raise TypeError(f"{what} must be real numbers (int or float), got {found}{remedy}")
+        raise TypeError(f"{what} must be real numbers (int or float), got {_not_numbers(values, array)}")
     require_broadcast(array, what)
     return in_aligned_memory(array.astype(np.float64, copy=False))
 

@@ -87,34 +87,16 @@ impl Scene {
         Ok(())
     }
 
-    /// The output times must increase, and tables of torques cover them.
+    /// The output times must increase.
     fn check_times(&self) -> Result<(), Diagnostic> {
-        let times = self.times();
-        let (Some(&start), Some(&end)) = (times.first(), times.last()) else { return Ok(()) };
-        if times.is_sorted_by(|a, b| a < b) {
-            return self.check_tables([start, end]);
+        if self.times().is_sorted_by(|a, b| a < b) {
+            return Ok(());
         }
         let message = format!(
-            "its output times in {} s are equal after rounding beside the start at {start:e} s; start earlier",
-            self.run.duration
+            "its output times in {} s are equal after rounding beside the start at {:e} s; start earlier",
+            self.run.duration, self.time
         );
         Err(self.diagnose("initial.time", message))
-    }
-
-    fn check_tables(&self, [start, end]: [f64; 2]) -> Result<(), Diagnostic> {
-        for law in &self.torques {
-            if let Torque::Tabulated(table) = &law.torque
-                && ![start, end].iter().all(|&time| table.covers(time))
-            {
-                let (first, last) = table.span();
-                let message = format!(
-                    "has rows from {first} s to {last} s, but the run is from {start} s to {end} s; add rows or \
-                     change the duration"
-                );
-                return Err(self.diagnose("torque.tabulated", message));
-            }
-        }
-        Ok(())
     }
 
     /// The body alone, its mesh read from its file.

@@ -83,12 +83,12 @@ impl Table {
     }
 
     /// The first and the last time.
-    pub(crate) fn span(&self) -> (f64, f64) {
+    fn span(&self) -> (f64, f64) {
         (self.times[0], self.times[self.times.len() - 1])
     }
 
     /// Whether a time is between them. A step to the last time may end a rounding after it.
-    pub(crate) fn covers(&self, time: f64) -> bool {
+    fn covers(&self, time: f64) -> bool {
         let (first, last) = self.span();
         let rounding = 4.0 * f64::EPSILON * first.abs().max(last.abs());
         (first - rounding..=last + rounding).contains(&time)

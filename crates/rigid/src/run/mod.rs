@@ -184,9 +184,8 @@ impl Problem {
     ) -> Result<Motion, SimulateError> {
         self.check(times, &options)?;
         let begin = self.start();
-        let start = begin.phase;
         let adapts = options.method.unwrap_or_else(|| self.best()).adapts();
-        let point = Point { body: &self.body, mass: self.mass, phase: &start, center: &begin.center };
+        let point = self.point(&begin);
         let samples = samples(&self.torques, self.forces(), &point, times, &options, adapts)?;
         let of_forces = samples.get(self.torques.len()..).unwrap_or_default();
         let mut bounds =
@@ -237,8 +236,11 @@ impl Problem {
         let stepped = self.translation.as_ref().filter(|_| self.center_motion().is_none());
         let translation = stepped.map_or(0.0, |t| t.rate(&self.center));
         let start = self.start();
-        let at = Point { body: &self.body, mass: self.mass, phase: &start.phase, center: &start.center };
-        fastest_rate(&self.torques, &at).max(translation)
+        fastest_rate(&self.torques, &self.point(&start)).max(translation)
+    }
+
+    fn point<'a>(&'a self, at: &'a Carried) -> Point<'a> {
+        Point { body: &self.body, mass: self.mass, phase: &at.phase, center: &at.center }
     }
 
     fn forces(&self) -> &[Force] {

@@ -316,11 +316,12 @@ impl Convergence {
         let mut rounding = self.magnification.map_or(0.0, |known| known.rounding_error(fine.steps));
         let (truncation, shorter) = self.truncation(difference, coarse, &fine);
         // Explicit steps that turn the body far amplify noise themselves: it is measured again in shorter ones.
-        let turns_far = matches!(self.rule, StepRule::Step(_)) && coarse.largest[0] * coarse.longest >= 1.0;
+        let equal = matches!(self.rule, StepRule::Step(_));
+        let turns_far = equal && coarse.largest[0] * coarse.longest >= 1.0;
         if turns_far && rounding.min(truncation) > self.accuracy.acceptable {
             (self.magnification, rounding) = (None, 0.0);
         }
-        let jumps = fine.errors_of_jumps > 0.0 && matches!(self.rule, StepRule::Step(_));
+        let jumps = fine.errors_of_jumps > 0.0 && equal;
         let error = (truncation + rounding).max(f64::EPSILON * (fine.steps as f64).sqrt());
         let goal = self.accuracy.reachable(rounding);
         if error <= goal && self.magnification.is_some() {

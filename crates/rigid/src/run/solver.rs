@@ -15,7 +15,6 @@ use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::state::carried::Carried;
 use crate::state::checks::check_horizons;
-use crate::state::point::Point;
 
 impl Problem {
     /// The motion by one method.
@@ -150,7 +149,7 @@ impl Problem {
     fn warnings(&self, times: &[f64], step: f64, (method, sweep): (Method, &Sweep)) -> Vec<String> {
         let start = self.start();
         let span = span(times, start.phase.time);
-        let at = Point { body: &self.body, mass: self.mass, phase: &start.phase, center: &start.center };
+        let at = self.point(&start);
         let is_aliased = |law: &&Torque| is_aliased(law, &at, span, step);
         let aliased = self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step));
         let forces = self.forces().iter().filter(|force| is_aliased_force(force, &at, span, step));

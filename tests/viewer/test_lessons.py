@@ -458,6 +458,24 @@ def test_phrases_turn_to_the_page_of_their_step(name, lesson):
     awaits_reader(page, text)
 
 
+def test_a_phrase_pressed_before_the_next_frame_gets_the_focus(lesson):
+    """The page is rendered before its effects run; those of the turn to the motion come too late."""
+    page = lesson(ROOT / "examples/lessons/half-angles.md")
+    read(page, "model.page.value")
+    text = page.page.evaluate(
+        f"""async () => {{
+            const root = {VIEWER}.shadowRoot;
+            root.querySelector("#tab-motion").click();
+            while (!root.querySelector(".motion")) await Promise.resolve();
+            const link = root.querySelector("a.drive");
+            link.click();
+            return link.textContent;
+        }}"""
+    )
+    page.until("model.page.value === 'algebra'")
+    awaits_reader(page, text)
+
+
 def test_a_lesson_without_a_motion_says_so(lesson):
     page = lesson(ROOT / "examples/lessons/half-angles.md")
     page.page.locator("#tab-motion").click()

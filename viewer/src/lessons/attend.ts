@@ -7,17 +7,20 @@ import type { Lessons } from "./lessons.ts";
  * may be below the picture or beyond the edge.
  */
 export function useAttention(app: RefObject<HTMLElement | null>, lessons: Lessons): void {
-  const { page } = lessons.model;
+  const signals = [lessons.lesson, lessons.index, lessons.answers, lessons.model.page];
+  const rendered = signals.map((signal) => signal.value);
   useEffect(() => {
     const { next } = lessons;
     const root = app.current;
     if (!next || !root) return;
+    // Preact runs pending effects before it renders newer values; those are not on the page yet.
+    if (signals.some((signal, k) => signal.peek() !== rendered[k])) return;
     lessons.next = null;
     if (isElsewhere(root)) return;
     const target = next.map((selector) => root.querySelector<HTMLElement>(selector)).find(Boolean);
     target?.focus({ preventScroll: true });
     target?.scrollIntoView({ block: "nearest" });
-  }, [lessons.lesson.value, lessons.index.value, lessons.answers.value, page.value]);
+  }, rendered);
 }
 
 /** Whether the user writes in another part of the document, such as a cell of a notebook. */

@@ -56,7 +56,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None, *, complex_too: b
             return kind.asarray(values)
     array = _as_array(values, what)
     if array.dtype.kind == "U" and array.ndim == 0:
-        raise TypeError(f"{what} must be numbers, got the text {values!r}; for symbols pass those of sympy.symbols")
+        raise TypeError(f"{what} must be numbers, got the text {values!r}; for symbols pass sympy.symbols")
     # A list that mixes floats with integers is not exact.
     if array.dtype == object and (
         isinstance(values, np.ndarray) or not any(isinstance(x, float) for x in array.flat)

@@ -13,7 +13,7 @@ use super::indices::sum_repeated;
 use super::names::Names;
 use super::number::{FRACTIONS, Number};
 use super::reading::read;
-use super::token::{Item, Token, tokens};
+use super::token::{Item, Token};
 use super::tree::{Kind, Named, Node, Span, Tight, Tree, is_numeric};
 use crate::formula::{Error, MAX_DEPTH, Space};
 
@@ -25,7 +25,7 @@ const MAX_HEIGHT: usize = 4 * MAX_DEPTH;
 /// # Errors
 /// With the place in the text, and what to do.
 pub fn parse(text: &str, space: Space, names: &Names) -> Result<Tree, Error> {
-    let items = read(&tokens(text)?, space, names)?;
+    let items = read(text, space, names)?;
     if items.is_empty() {
         return Err(Error::new(Span::default(), "the formula is empty"));
     }

@@ -9,8 +9,9 @@ use super::tree::{Named, Span, Tight};
 use crate::formula::{Error, Space};
 
 /// Replaces all words of a formula by their meanings.
-pub(crate) fn read(tokens: &[Token], space: Space, names: &Names) -> Result<Vec<Token>, Error> {
-    let reader = Reader { space, names, labels: names.iter().any(|name| name.contains('(')) };
+pub(crate) fn read(text: &str, space: Space, names: &Names) -> Result<Vec<Token>, Error> {
+    let tokens = &tokens(text)?[..];
+    let reader = Reader { text, space, names, labels: names.iter().any(|name| name.contains('(')) };
     let mut items = Vec::with_capacity(tokens.len());
     let mut rest = tokens;
     while let Some((token, after)) = rest.split_first() {
@@ -30,6 +31,7 @@ pub(crate) fn read(tokens: &[Token], space: Space, names: &Names) -> Result<Vec<
 }
 
 struct Reader<'a> {
+    text: &'a str,
     space: Space<'a>,
     names: &'a Names,
     labels: bool,
@@ -98,7 +100,7 @@ impl Reader<'_> {
             return Some(Ok(item));
         }
         if let Some(problem) = generators(&atom.name).and_then(|generators| self.no_blade(&generators)) {
-            let power = format!("1e+{}", atom.name.trim_start_matches('e'));
+            let power = format!("{}e+{}", self.digits_before(atom), atom.name.trim_start_matches('e'));
             let message = if power.parse::<f64>().is_ok_and(f64::is_finite) {
                 format!("`{}` {problem}. Write a power of ten as `{power}`", atom.name)
             } else {
@@ -109,6 +111,13 @@ impl Reader<'_> {
         }
         let is_index = self.is_indexed(&atom.name);
         (is_index || self.names.is_open()).then(|| Ok(Item::Name(atom.name.clone())))
+    }
+
+    /// The digits to which a letter is joined; 1 without any.
+    fn digits_before(&self, atom: &Atom) -> &str {
+        let before = &self.text[..atom.span.start];
+        let digits = before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
+        if digits == before.len() { "1" } else { &before[digits..] }
     }
 
     /// The item of a bound name.

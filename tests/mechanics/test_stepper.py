@@ -160,6 +160,14 @@ def test_convergence_of_order_4():
     assert error(0.1) / error(0.05) == pytest.approx(16, rel=0.25)
 
 
+def test_the_time_of_many_steps_is_their_product():
+    """A sum of rounded tenths would miss 100 s by more than 1e-12."""
+    stepper = ph.Stepper(BODY, START, step=0.1)
+    for _ in range(1000):
+        stepper.step(0.1)
+    assert stepper.time == 100.0
+
+
 # --- errors
 
 

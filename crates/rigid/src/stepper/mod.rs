@@ -21,6 +21,7 @@ use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use alone::Alone;
 use lanes::Groups;
+use polhode_ga::simd::double::two_sum;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::sync::Arc;
 
@@ -75,7 +76,8 @@ pub struct Stepper {
     longest: f64,
     /// Ascending times at which a law jumps: steps of the method end there.
     jumps: Vec<f64>,
-    time: f64,
+    /// The sum of the start and all steps: rounded, and the rest.
+    time: [f64; 2],
     moves: bool,
 }
 
@@ -103,7 +105,7 @@ impl Stepper {
         } else {
             Bodies::Alone(members.iter().map(Alone::new).collect())
         };
-        let (jumps, time, moves) = (Vec::new(), 0.0, false);
+        let (jumps, time, moves) = (Vec::new(), [0.0; 2], false);
         let mut stepper = Stepper { members, bodies, method, longest, jumps, time, moves };
         stepper.reset(&ensemble.starts);
         Ok(stepper)
@@ -111,7 +113,7 @@ impl Stepper {
 
     /// Sets the states of all bodies.
     pub fn reset(&mut self, starts: &[Start]) {
-        self.time = starts.first().map_or(0.0, |start| start.time);
+        self.time = [starts.first().map_or(0.0, |start| start.time), 0.0];
         for (body, (member, start)) in self.members.iter_mut().zip(starts).enumerate() {
             member.center = start.center;
             if member.wheels().next().is_some() {
@@ -140,14 +142,14 @@ impl Stepper {
 
     /// Commands the motors of all wheels from now on: a row of torques in N m for all bodies, or one for each.
     pub fn command(&mut self, torques: &[f64]) {
-        let count = self.wheels();
+        let (count, [time, _]) = (self.wheels(), self.time);
         let shared = torques.len() == count;
         for (body, member) in self.members.iter_mut().enumerate() {
             let mut row = if shared { torques } else { &torques[body * count..][..count] };
             for law in &mut member.torques {
                 if let Torque::Wheels(wheels) = law {
                     let (own, rest) = row.split_at(wheels.count());
-                    *law = Torque::Wheels(Arc::new(wheels.commanded(self.time, own)));
+                    *law = Torque::Wheels(Arc::new(wheels.commanded(time, own)));
                     row = rest;
                 }
             }
@@ -161,7 +163,7 @@ impl Stepper {
         let mut speeds = Vec::new();
         for (body, member) in bodies.iter().zip(&self.members) {
             let omega = body.principal_omega(member);
-            speeds.extend(member.wheels().flat_map(|wheels| wheels.speeds(self.time, omega)));
+            speeds.extend(member.wheels().flat_map(|wheels| wheels.speeds(self.time(), omega)));
         }
         speeds
     }
@@ -173,7 +175,13 @@ impl Stepper {
 
     /// The time in s.
     pub fn time(&self) -> f64 {
-        self.time
+        self.time[0]
+    }
+
+    /// The time after a step: a thousand steps of 0.01 s take 10 s.
+    fn time_after(&self, dt: f64) -> [f64; 2] {
+        let [time, rest] = self.time;
+        two_sum(time, dt + rest).into()
     }
 
     /// Whether the centres of mass move.
@@ -237,7 +245,7 @@ impl Stepper {
                 member.center = body.center();
             }
         }
-        self.time += dt;
+        self.time = self.time_after(dt);
         Ok(())
     }
 
@@ -246,7 +254,7 @@ impl Stepper {
         let moving = if self.moves { &self.members[..] } else { &[] };
         let after = |(body, member): (usize, &Member)| {
             let center = member.law.map_or(member.center, |law| law.after(&member.center, dt.into()));
-            let time = self.time + dt;
+            let [time, _] = self.time_after(dt);
             if center.is_finite() { Ok(center) } else { Err((body, SimulateError::Diverged { time })) }
         };
         moving.iter().enumerate().map(after).collect()
@@ -254,7 +262,7 @@ impl Stepper {
 
     /// A step of length `dt` in pieces of equal steps, which end where a law jumps.
     fn pieces(&self, dt: f64) -> Vec<Steps> {
-        let (from, to) = (self.time, self.time + dt);
+        let (from, [to, _]) = (self.time(), self.time_after(dt));
         let mut pieces = Vec::with_capacity(1);
         let mut begin = from;
         while begin != to || pieces.is_empty() {

@@ -214,12 +214,20 @@ def formula(text: str, /, **values: Any) -> Force:
 
 
 @explains_calls
-def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Force:
+def function(f: Callable[..., Any], *, omega_body: bool = False) -> Force:
     """Return the force of a Python function ``f(t, position, velocity, rotor)``.
 
-    Its arguments are the time in s, the position and the velocity of the centre of mass, vectors in space,
-    and the rotor from body axes to space; it returns the force in space in N, a vector or (3,). Its
-    exceptions pass through `simulate`. It is slower than a `formula`; the force can be pickled if f can.
+    Its arguments are the time in s, the position and the velocity of the centre of mass, vectors in space in
+    m and m/s, and the rotor from body axes to space; it returns the force in space in N, a vector or (3,).
+    Its exceptions pass through `simulate`. It is slower than a `formula`; the force can be pickled if f can.
+
+    Parameters
+    ----------
+    f
+        The function.
+    omega_body
+        Whether to call ``f(t, position, velocity, rotor, omega_body)``, with the angular velocity in body
+        axes, a bivector in rad/s, such as for the lift of a spinning ball.
 
     Examples
     --------
@@ -229,4 +237,7 @@ def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Forc
     >>> ph.simulate(ball, thrown, [0, 1, 2], force=law).velocity["e1"].round(4)  # exp(-t/2)
     array([1.    , 0.6065, 0.3679])
     """
-    return native_force("function", function_of(f, "t", "position", "velocity", "rotor"))
+    if not isinstance(omega_body, bool):
+        raise TypeError(f"omega_body must be True or False, got {omega_body!r}")
+    spin = ("omega_body",) if omega_body else ()
+    return native_force("function", function_of(f, "t", "position", "velocity", "rotor", *spin), omega_body)

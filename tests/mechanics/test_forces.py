@@ -23,6 +23,10 @@ def falling_up(t, position, velocity, rotor):
     return -M * position
 
 
+def lifted(t, position, velocity, rotor, omega_body):
+    return 0.5 * velocity.dot(rotor(omega_body))
+
+
 # --- values
 
 
@@ -36,6 +40,7 @@ VALUES = [
     F.central(3.5),
     F.formula("q cross(v, B) - k x", q=2, B=ph.e3, k=0.5),
     F.function(falling_up),
+    F.function(lifted, omega_body=True),
     F.constant([0, 0, -9.81]) + F.drag(0.1),
 ]
 
@@ -54,6 +59,7 @@ def test_repr_of_forces():
     assert repr(F.thrust([0, 0, 1], at=[0.5, 0, 0])) == "thrust([0.0, 0.0, 1.0], at=[0.5, 0.0, 0.0])"
     assert repr(F.formula("-k x", k=2.0)) == "formula('-k x', k=2.0)"
     assert repr(F.function(falling_up)) == "function(falling_up)"
+    assert repr(F.function(lifted, omega_body=True)) == "function(lifted, omega_body=True)"
     assert sum([F.drag(0.1), F.drag(0.2)]) == F.drag(0.1) + F.drag(0.2)
     assert -2 * ph.e3 + F.drag(0.1) == F.constant([0, 0, -2]) + F.drag(0.1)
     assert F.drag(0.1) - 2 * ph.e3 == F.drag(0.1) + F.constant([0, 0, -2])
@@ -209,8 +215,9 @@ def test_two_opposite_thrusters_are_a_couple():
         lambda turn: F.formula("R f ~R + k Ω_S·x - v", f=turn(ph.e1), k=0.5),
         lambda turn: F.formula("R (I I(Ω_B)) ~R"),
         lambda turn: F.function(lambda t, x, v, R: R(turn(ph.e1)) - 0.5 * x + t * v),
+        lambda turn: F.function(lambda t, x, v, R, omega: R(turn(ph.e1).dot(omega)), omega_body=True),
     ],
-    ids=["thrust", "formula", "map", "function"],
+    ids=["thrust", "formula", "map", "function", "function of the spin"],
 )
 def test_motion_does_not_depend_on_body_axes(force):
     turn = ph.Rotor.from_components([1, 2, 3, 4])
@@ -250,6 +257,21 @@ def test_formulas_and_functions_equal_built_in_forces(law, text, function):
         assert law.certificate.evaluations == formula.certificate.evaluations
     else:
         assert text in ("-k v", "-k x")
+
+
+def test_functions_of_the_spin_equal_formulas():
+    """The lift of a spinning ball, ``k v·Ω``: it turns the velocity in the plane of the rotation."""
+    state = start([1, 2, 0], [0, 0.5, 0.25])
+    formula = F.formula("k v·Ω_S", k=0.5)
+    function = F.function(lifted, omega_body=True)
+    one, other = (ph.simulate(BODY, state, TIMES, force=force, step=1 / 16) for force in (formula, function))
+    np.testing.assert_allclose(other.position.components, one.position.components, rtol=1e-13, atol=1e-13)
+    assert function.at(BODY, state).is_close(formula.at(BODY, state), rtol=1e-14)
+    assert (2 * function).at(BODY, state).is_close(2 * formula.at(BODY, state), rtol=1e-14)
+    with pytest.raises(TypeError, match="position, velocity, rotor and omega_body"):
+        F.function(falling_up, omega_body=True)
+    with pytest.raises(TypeError, match="omega_body must be True or False, got 1"):
+        F.function(lifted, omega_body=1)
 
 
 def test_a_formula_knows_time_and_mass():

@@ -27,7 +27,9 @@ def names_of_motion(body: Body, state: State, t: float) -> dict[str, Any]:
 def value_of(law: _native.Force, motion: dict[str, Any]) -> Multivector:
     """Return the force of a law at a state, a vector in space, given the names of the motion."""
     if law.name == "function":
-        found = law.arguments[0](*(motion[name] for name in ("t", "x", "v", "R")))
+        f, omega_body = law.arguments
+        names = ("t", "x", "v", "R", "Ω_B") if omega_body else ("t", "x", "v", "R")
+        found = f(*(motion[name] for name in names))
         components = as_vectors(found, "the force that the function returned")
         if components.shape != (3,):
             raise ValueError(

@@ -120,4 +120,7 @@ def _text(law: _native.Force) -> str:
     if law.name == "thrust" and len(law.arguments) == 2:
         F, at = law.arguments
         return shown("thrust", [F], {"at": at})
+    if law.name == "function":
+        f, omega_body = law.arguments
+        return shown("function", [f], {"omega_body": True} if omega_body else {})
     return shown(law.name, law.arguments, {})

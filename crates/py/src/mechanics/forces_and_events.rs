@@ -11,7 +11,7 @@ use polhode_rigid::laws::event::{self, Direction, Quantity};
 use polhode_rigid::laws::force;
 use polhode_rigid::laws::formula::{Formula, Purpose};
 use polhode_rigid::laws::registry::{self, Entry, Shape};
-use polhode_rigid::state::point::Function;
+use polhode_rigid::state::point::{Function, Seen};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -49,16 +49,10 @@ fn forces(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResu
             formulas.into_iter().map(Law::Formula).collect()
         }
         "function" => {
-            let callback = Callback { call: sole(arguments)?, raised: raised.clone(), what: "force" };
+            let (call, spins) = arguments.extract()?;
+            let callback = Callback { call, raised: raised.clone(), what: "force" };
             vec![Law::Function(Function::new(move |seen| {
-                callback.at(
-                    seen.time,
-                    |py| {
-                        let (x, v) = (vector_of(py, seen.position)?, vector_of(py, seen.velocity)?);
-                        (seen.time, x, v, rotor_of(py, seen.rotor)?).into_pyobject(py)
-                    },
-                    vector,
-                )
+                callback.at(seen.time, |py| arguments_of_force(py, seen, spins), vector)
             }))]
         }
         _ => {
@@ -67,6 +61,16 @@ fn forces(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResu
         }
     };
     Ok(Laws { rows, shape: given.shape })
+}
+
+/// The arguments of a function at a point, with the angular velocity or without.
+fn arguments_of_force<'py>(py: Python<'py>, seen: &Seen, spins: bool) -> PyResult<Bound<'py, PyTuple>> {
+    let (position, velocity) = (vector_of(py, seen.position)?, vector_of(py, seen.velocity)?);
+    let rotor = rotor_of(py, seen.rotor)?;
+    if !spins {
+        return (seen.time, position, velocity, rotor).into_pyobject(py);
+    }
+    (seen.time, position, velocity, rotor, bivector_of(py, seen.omega)?).into_pyobject(py)
 }
 
 /// An event to detect along a motion.

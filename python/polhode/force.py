@@ -12,8 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from polhode._algebra.multivector import Multivector
-from polhode._algebra.rotor import Rotor
 from polhode._mechanics.forces import Force, force_of, native_force
 from polhode._mechanics.laws import function_of, law_of_formula
 from polhode._mechanics.parameters import named_together

@@ -1,5 +1,6 @@
 //! Simulation of one body: in closed form if there is one, else by integration, with a certificate.
 
+pub(crate) mod accuracy;
 pub(crate) mod center;
 pub mod certificate;
 pub(crate) mod closed_form;

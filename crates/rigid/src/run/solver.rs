@@ -1,10 +1,11 @@
 //! The motion of a problem by one method: in closed form, or by sweeps of steps.
 
+use super::accuracy::{Accuracy, Scales};
 use super::certificate::{Certificate, DriftMonitor, off_unit};
 use super::closed_form::{ClosedForm, check_kept};
 use super::engine::Engine;
 use super::limits::{StepBounds, span};
-use super::refine::{Accuracy, Converged, Convergence, Scales, SweepPlan};
+use super::refine::{Converged, Convergence, SweepPlan};
 use super::stops::{aliasing_warning, force_aliasing_warning, is_aliased, is_aliased_force, turn_warning};
 use super::sweep::{Integrator, Progress, StepRule, Sweep, is_finite};
 use super::{Motion, NO_CLOSED_FORM, Options, Problem};

@@ -3,23 +3,23 @@
 //! A formula is compiled and its grades are checked once. Then it is evaluated on the values that the motion defines for
 //! its names.
 
+mod motion;
 pub(crate) mod side_by_side;
 
+use motion::given;
+pub(crate) use motion::{Motion, given_names};
 pub(crate) use side_by_side::Formulas;
 
 use crate::error::TorqueError;
 use crate::laws::torque::lanes::seen;
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
-use polhode_ga::formula::{
-    Error, Given, Input, Meaning, Names, Op, Program, Runner, Space, Span, Type, compile, parse,
-};
+use polhode_ga::formula::{Error, Given, Input, Names, Op, Program, Runner, Space, Span, compile, parse};
 use polhode_ga::product::Grades;
 use polhode_ga::simd::lanes::One;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::G3;
-use polhode_ga::{Bivector, Graded, Rotor, Vector};
-use std::array::from_fn;
+use polhode_ga::{Bivector, Graded, Rotor};
 use std::cell::RefCell;
 use std::fmt;
 use std::sync::Arc;
@@ -44,21 +44,6 @@ pub enum Purpose {
     Force,
     /// A number that crosses zero at an event.
     Event,
-}
-
-/// The names that the motion defines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Motion {
-    Rotor,
-    Time,
-    OmegaBody,
-    OmegaSpace,
-    MomentumBody,
-    MomentumSpace,
-    Inertia,
-    Position,
-    Velocity,
-    Mass,
 }
 
 /// The source of an input.
@@ -94,38 +79,6 @@ struct Compiled {
     runner: Runner,
     /// The step that is its value.
     result: usize,
-}
-
-/// The names that the motion defines in the formula of a torque with units. After a number, `m` is the metre.
-pub(crate) fn given_names() -> impl Iterator<Item = &'static str> {
-    let names = given(Purpose::Torque(Axes::Body)).into_iter();
-    names.filter(|(_, motion)| *motion != Motion::Mass).map(|(name, _)| name)
-}
-
-/// The names that the motion defines. `Ω` is the angular velocity in the axes of the torque.
-fn given(purpose: Purpose) -> Vec<(&'static str, Motion)> {
-    let mut names = vec![
-        ("x", Motion::Position),
-        ("v", Motion::Velocity),
-        ("m", Motion::Mass),
-        ("R", Motion::Rotor),
-        ("t", Motion::Time),
-        ("Ω_B", Motion::OmegaBody),
-        ("Ω_S", Motion::OmegaSpace),
-        ("Omega_B", Motion::OmegaBody),
-        ("Omega_S", Motion::OmegaSpace),
-        ("L", Motion::MomentumSpace),
-        ("L_B", Motion::MomentumBody),
-        ("I", Motion::Inertia),
-    ];
-    match purpose {
-        Purpose::Torque(Axes::Body) => names.extend([("Ω", Motion::OmegaBody), ("Omega", Motion::OmegaBody)]),
-        Purpose::Torque(Axes::Space) => {
-            names.extend([("Ω", Motion::OmegaSpace), ("Omega", Motion::OmegaSpace)]);
-        }
-        Purpose::Force | Purpose::Event => {}
-    }
-    names
 }
 
 impl Purpose {
@@ -168,59 +121,6 @@ impl Purpose {
         let listed = listed.join(", ");
         format!("{} is a {wanted}, grade {grade}; this has the grade{s} {listed}; {remedy}", self.name())
     }
-}
-
-impl Motion {
-    fn meaning(self) -> Meaning {
-        match self {
-            Motion::Rotor => Meaning::Value(Type::ROTOR),
-            Motion::Time | Motion::Mass => Meaning::Value(Type::SCALAR),
-            Motion::Position | Motion::Velocity => Meaning::Value(Type::of(VECTOR)),
-            Motion::Inertia => Meaning::Map { grade: 2 },
-            _ => Meaning::Value(Type::of(Grades::BIVECTOR)),
-        }
-    }
-
-    /// Whether it changes faster than the attitude: the angular velocity, the momentum and the velocity of the centre of
-    /// mass, or its position, which steps for attitudes do not know.
-    pub fn is_rate(self) -> bool {
-        !matches!(self, Motion::Rotor | Motion::Time | Motion::Inertia | Motion::Mass)
-    }
-
-    /// Whether it is that of the centre of mass.
-    pub fn is_of_center(self) -> bool {
-        matches!(self, Motion::Position | Motion::Velocity)
-    }
-
-    /// Its value at a point of the motion, with `frame` from principal axes to those of the body.
-    fn at(self, point: &Point, frame: Rotor) -> Given {
-        let Point { body, phase: state, center, mass } = *point;
-        let vector = |v: Vector| Given::Value(Graded::new(&v.0, VECTOR).unwrap_or_default());
-        let bivector = |b: Bivector| Given::Value(Graded::new(&b.0, Grades::BIVECTOR).unwrap_or_default());
-        match self {
-            Motion::Rotor => {
-                let rotor =
-                    if frame == Rotor::IDENTITY { state.rotor } else { state.rotor * frame.reverse() };
-                Given::Value(Graded::new(&rotor.components(), Grades::EVEN).unwrap_or_default())
-            }
-            Motion::Time => Given::Value(Graded::default().map(|_| state.time)),
-            Motion::OmegaBody => bivector(frame.apply_bivector(body.omega(state.momentum))),
-            Motion::OmegaSpace => bivector(state.rotor.apply_bivector(body.omega(state.momentum))),
-            Motion::MomentumBody => bivector(frame.apply_bivector(state.momentum)),
-            Motion::MomentumSpace => bivector(state.rotor.apply_bivector(state.momentum)),
-            Motion::Inertia => inertia(body, frame),
-            Motion::Position => vector(center.position),
-            Motion::Velocity => vector(center.velocity),
-            Motion::Mass => Given::Value(Graded::default().map(|_| mass)),
-        }
-    }
-}
-
-/// The matrix of `I(…)`, with `frame` from principal axes to those of the body.
-fn inertia(body: &Gyrostat, frame: Rotor) -> Given {
-    let (f, i) = (frame.to_matrix(), body.moments);
-    let entry = |j: usize, k: usize| (0..3).map(|a| f[j][a] * i[a] * f[k][a]).sum();
-    Given::Matrix(from_fn(|n| entry(n / 3, n % 3)))
 }
 
 thread_local! {

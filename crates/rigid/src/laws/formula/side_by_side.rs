@@ -1,6 +1,7 @@
 //! Torque formulas for bodies in lanes: one program with values for each body.
 
-use super::{Axes, Compiled, Formula, Motion, Purpose, Source, inertia};
+use super::motion::inertia;
+use super::{Axes, Compiled, Formula, Motion, Purpose, Source};
 use crate::laws::forcing::Place;
 use crate::laws::torque::lanes::{Three, in_lanes, reversed, seen, turned};
 use crate::state::phase::Gyrostat;

@@ -1,16 +1,19 @@
 //! Torque laws; torques add up. A torque is a bivector; its components are those of the axial vector.
 
+mod dependence;
 mod gains;
 pub(crate) mod lanes;
 pub(crate) mod orbit;
+mod scales;
 mod table;
 mod wheels;
 
 pub use super::formula::Axes;
-use super::formula::{Formula, Motion};
+use super::formula::Formula;
 use crate::error::{SimulateError, TorqueError};
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::{Function, Point};
+pub use dependence::Dependence;
 pub use gains::Gains;
 use lanes::{gradient, quadratic, seen};
 pub use orbit::{KeplerOrbit, Orbit, dipole_field, on_orbit};
@@ -99,15 +102,6 @@ pub struct FormulaLaw {
     pub(crate) axis: Option<Vector>,
 }
 
-/// Dependence of a torque on the state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Dependence {
-    /// On the attitude and time alone: a kick at fixed attitude is exact.
-    Attitude,
-    /// On the angular velocity too.
-    Rate,
-}
-
 impl Torque {
     /// The same law with its body components seen from other body axes: `x' = ~F x F`.
     pub fn in_axes(self, frame: Rotor) -> Torque {
@@ -146,32 +140,6 @@ impl Torque {
         }
     }
 
-    /// The dependence of [`Torque::value`] on the state.
-    pub fn dependence(&self) -> Dependence {
-        match self {
-            Torque::Heavy(_)
-            | Torque::GravityGradient(_)
-            | Torque::ConstantBody(_)
-            | Torque::ConstantSpace(_)
-            | Torque::Damping(_)
-            | Torque::Magnetic { .. }
-            | Torque::TorsionSpring { .. }
-            | Torque::Wheel(_)
-            | Torque::Tabulated(_) => Dependence::Attitude,
-            Torque::Control { damping, .. } if damping.is_zero() => Dependence::Attitude,
-            Torque::QuadraticDamping(_)
-            | Torque::ViscousDamping(_)
-            | Torque::Control { .. }
-            | Torque::Larmor(_)
-            | Torque::Wheels(_)
-            | Torque::Function(_) => Dependence::Rate,
-            Torque::Formula(_) | Torque::Registered(_) => match self.needs(Motion::is_rate) {
-                true => Dependence::Rate,
-                false => Dependence::Attitude,
-            },
-        }
-    }
-
     /// The formula of a law that is computed by one.
     pub(crate) fn formula(&self) -> Option<&Formula> {
         match self {
@@ -181,47 +149,11 @@ impl Torque {
         }
     }
 
-    fn needs(&self, what: impl Fn(Motion) -> bool) -> bool {
-        self.formula().is_some_and(|formula| formula.needs(what))
-    }
-
     /// The same on a body with this mass in kg; NaN leaves it unknown.
     pub(crate) fn with_mass(self, mass: f64) -> Torque {
         match self {
             Torque::Formula(law) => Torque::Formula(law.with_mass(mass)),
             other => other,
-        }
-    }
-
-    /// Whether the torque depends on the mass by itself.
-    pub(crate) fn reads_mass(&self) -> bool {
-        self.needs(|motion| motion == Motion::Mass)
-    }
-
-    /// Whether the torque depends on position or velocity of the centre of mass.
-    pub(crate) fn reads_center(&self) -> bool {
-        match self {
-            Torque::Function(law) => law.reads_center(),
-            _ => self.formula().is_some_and(Formula::reads_center),
-        }
-    }
-
-    /// Whether the torque is known to have kinks, such as `|Ω| Ω` at rest.
-    pub(crate) fn has_kinks(&self) -> bool {
-        match self {
-            Torque::QuadraticDamping(_) => true,
-            Torque::Formula(_) | Torque::Registered(_) => self.formula().is_some_and(Formula::has_kinks),
-            _ => false,
-        }
-    }
-
-    /// Whether the torque does not depend on time explicitly.
-    pub fn is_autonomous(&self) -> bool {
-        match self {
-            Torque::GravityGradient(_) | Torque::Tabulated(_) | Torque::Wheels(_) | Torque::Function(_) => {
-                false
-            }
-            _ => !self.needs(|motion| motion == Motion::Time),
         }
     }
 
@@ -305,36 +237,6 @@ impl Torque {
         if let Torque::Damping(g) = self { *g } else { 0.0 }
     }
 
-    /// Largest torque in N m, a scale for steps; 0 if it is unknown or unbounded.
-    pub fn size(&self, body: &Gyrostat) -> f64 {
-        match self {
-            Torque::Heavy(c) => c.norm(),
-            Torque::GravityGradient(orbit) => {
-                let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
-                3.0 * orbit.rate() * orbit.rate() * orbit.largest_nearness() * largest
-            }
-            Torque::ConstantBody(torque) | Torque::ConstantSpace(torque) => torque.norm(),
-            Torque::Magnetic { dipole, field } => dipole.norm() * field.norm(),
-            Torque::TorsionSpring { stiffness, .. } => stiffness.abs() * std::f64::consts::PI,
-            Torque::Control { stiffness, .. } => stiffness.bound() * std::f64::consts::PI,
-            Torque::Tabulated(table) => table.largest(),
-            Torque::Wheels(wheels) => wheels.sizes()[0],
-            Torque::Registered(law) => law.size,
-            Torque::Damping(_)
-            | Torque::QuadraticDamping(_)
-            | Torque::ViscousDamping(_)
-            | Torque::Wheel(_)
-            | Torque::Larmor(_)
-            | Torque::Formula(_)
-            | Torque::Function(_) => 0.0,
-        }
-    }
-
-    /// The larger of [`Torque::size`] and the torque at a point, in N m: a scale for steps.
-    pub fn size_at(&self, at: &Point) -> f64 {
-        self.size(at.body).max(self.value(at).map_or(0.0, |torque| torque.norm()))
-    }
-
     /// The potential energy in J, of a law that has one; of wheels with motors the energy of their rotation.
     pub fn potential(&self, body: &Gyrostat, state: &Phase) -> Option<f64> {
         let back = state.rotor.reverse();
@@ -355,37 +257,6 @@ impl Torque {
                 .first()
                 .copied(),
             _ => None,
-        }
-    }
-
-    /// The range of the potential energy in J.
-    pub fn potential_range(&self) -> f64 {
-        match self {
-            Torque::Heavy(c) => 2.0 * c.norm(),
-            Torque::Magnetic { dipole, field } => 2.0 * dipole.norm() * field.norm(),
-            Torque::TorsionSpring { stiffness, .. } => {
-                0.5 * stiffness.abs() * std::f64::consts::PI * std::f64::consts::PI
-            }
-            Torque::Registered(law) if law.potential.is_some() => 2.0 * law.size,
-            _ => 0.0,
-        }
-    }
-
-    /// Times at which the law is not smooth, in increasing order: steps end there.
-    pub fn breaks(&self) -> &[f64] {
-        match self {
-            Torque::Tabulated(table) => table.times(),
-            Torque::Wheels(wheels) => wheels.breaks(),
-            _ => &[],
-        }
-    }
-
-    /// Those of the breaks at which it jumps.
-    pub fn jumps(&self) -> &[f64] {
-        match self {
-            Torque::Tabulated(table) => table.jumps(),
-            Torque::Wheels(wheels) => wheels.breaks(),
-            _ => &[],
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::support::arrays::{Array, Rows, all_threads, bad, line, numbers, place
 use crate::support::pool;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use polhode_ga::simd::threads::Threads;
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::SimulateError;
 use polhode_rigid::ensemble::{self, Ensemble, Outputs, Start, Summary};
 use polhode_rigid::run::Options;
@@ -147,14 +147,11 @@ pub(crate) fn starts(
     };
     let omegas = spread(numbers(omegas)?.as_chunks::<3>().0, batch(omegas), shape)?;
     let centers = spread(numbers(centers)?.as_chunks::<6>().0, batch(centers), shape)?;
-    let start = |body: usize| {
-        let [x, y, z, u, v, w] = *one_of(&centers, body);
-        Start {
-            time: *one_of(&begins, body),
-            rotor: *one_of(&rotors, body),
-            omega: Bivector(*one_of(&omegas, body)),
-            center: Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) },
-        }
+    let start = |body: usize| Start {
+        time: *one_of(&begins, body),
+        rotor: *one_of(&rotors, body),
+        omega: Bivector(*one_of(&omegas, body)),
+        center: Center::from(*one_of(&centers, body)),
     };
     Ok((0..count).map(start).collect())
 }

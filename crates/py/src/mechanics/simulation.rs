@@ -7,7 +7,7 @@ use super::law_value::{LawValue, failed};
 use super::torque::Law;
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::support::facts::dict;
-use polhode_ga::{Bivector, Vector};
+use polhode_ga::Bivector;
 use polhode_rigid::SimulateError;
 use polhode_rigid::laws::event::Direction;
 use polhode_rigid::methods::Method;
@@ -229,8 +229,7 @@ pub(crate) fn simulate<'py>(
     let forces: Vec<_> =
         forces.iter().map(|force| force.get().0.single().cloned()).collect::<PyResult<_>>()?;
     let events = events.iter().map(|event| event.get().event.clone()).collect();
-    let [x, y, z, u, v, w] = one(&center)?;
-    let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
+    let center = Center::from(one(&center)?);
     let setup = Setup {
         inertia: inertia.0,
         rotor: rotor(&rotor_row)?,

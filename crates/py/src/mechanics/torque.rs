@@ -121,8 +121,7 @@ pub(crate) fn torque_at<'py>(
     let omega = frame.reverse().apply_bivector(Bivector(one(&omega)?));
     let state = Phase { rotor: rotor(&rotor_row)? * frame, momentum: body.momentum(omega), time };
     let (center, mass) = translation;
-    let [x, y, z, u, v, w] = one(&center)?;
-    let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
+    let center = Center::from(one(&center)?);
     let torque = total(&torques, &Point { body: &body, mass, phase: &state, center: &center })
         .map_err(|error| failed(laws.iter().map(Bound::as_super), format!("at t = {time} s: {error}")))?;
     Ok(line(py, frame.apply_bivector(torque).0.to_vec()))

@@ -12,10 +12,10 @@ use crate::mechanics::torque::Law;
 use crate::support::arrays::{Array, Rows, bad, line, numbers, table};
 use crate::support::facts::dict;
 use draws::{Bodies, PointValues, Points, Varied, bodies, given, inertias, varied};
+use polhode_ga::Bivector;
 use polhode_ga::formula::Given;
 use polhode_ga::product::Grades;
-use polhode_ga::{Bivector, Vector};
-use polhode_rigid::ensemble::{Ensemble, Start};
+use polhode_rigid::ensemble::Ensemble;
 use polhode_rigid::laws::registry::{Entry, TABLE};
 use polhode_rigid::laws::torque::{Axes, Torque};
 use polhode_rigid::run::Setup;
@@ -183,11 +183,7 @@ impl Scene {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(Results<'py>, Vec<Inertia>, Array<'py>)> {
         let bodies = self.bodies(py, first, count)?;
-        let centers = bodies.starts.iter().map(|Start { center, .. }| {
-            let (Vector([x, y, z]), Vector([u, v, w])) = (center.position, center.velocity);
-            [x, y, z, u, v, w]
-        });
-        let centers = table(py, centers)?;
+        let centers = table(py, bodies.starts.iter().map(|start| start.center.components()))?;
         let options = self.scene.options();
         let results = run_many(py, &bodies, &[count], numbers(&times)?, &options, threads, &[], progress)?;
         Ok((results, inertias(&bodies), centers))

@@ -7,7 +7,7 @@ use polhode_ga::Vector;
 use polhode_ga::simd::threads::Threads;
 use polhode_rigid::ensemble::bins::{self, WIDTH};
 use polhode_rigid::ensemble::reduce::{COUNTED, ENDS, REGIMES, ROW, Watch, bins_of_periods, code};
-use polhode_rigid::ensemble::{Ensemble, Outputs, Start};
+use polhode_rigid::ensemble::{Ensemble, Outputs};
 use polhode_rigid::scene::KEPT;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -132,11 +132,8 @@ pub(crate) fn reduced<'py>(
         let last = PyArray1::from_vec(py, last.collect()).reshape(vec![count, size])?;
         result.set_item(name, last)?;
     }
-    let starts = bodies.starts.iter().map(|Start { center, .. }| {
-        let (Vector([x, y, z]), Vector([u, v, w])) = (center.position, center.velocity);
-        [x, y, z, u, v, w]
-    });
-    result.set_item("centers", table(py, starts)?)?;
+    let centers = bodies.starts.iter().map(|start| start.center.components());
+    result.set_item("centers", table(py, centers)?)?;
     if let Some((nominal, axis, upright)) = watched {
         let (nominal, upright) =
             (numbers(&nominal)?.as_chunks::<4>().0, numbers(&upright)?.as_chunks::<3>().0);

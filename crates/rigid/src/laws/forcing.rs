@@ -8,7 +8,7 @@ use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
 use polhode_ga::simd::lanes::{Lanes, One};
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::{Bivector, Rotor};
 
 /// States of bodies in lanes.
 #[derive(Clone, Copy, Debug)]
@@ -130,7 +130,7 @@ impl Forcing<1, false> for BodyForcing<'_> {
         if self.torques.is_empty() || self.failure.is_some() {
             return [One::ZERO; 3];
         }
-        let (phase, center) = (&self.phase(at), &center_of(center));
+        let (phase, center) = (&self.phase(at), &Center::from(One::alone(*center)));
         let at = Point { center, ..Point::at_rest(self.body, phase) };
         let torque = total_torque(self.torques, &at, self.middle);
         self.noted(torque.map(|torque| torque.0))
@@ -152,12 +152,7 @@ impl Forcing<1, false> for BodyForcing<'_> {
             return [One::ZERO; 3];
         };
         let phase = self.phase(at);
-        let acceleration = translation.acceleration(self.body, &phase, &center_of(center));
+        let acceleration = translation.acceleration(self.body, &phase, &Center::from(One::alone(*center)));
         self.noted(acceleration.map(|a| a.0).map_err(|error| error.at(phase.time)))
     }
-}
-
-fn center_of(numbers: &[One; 6]) -> Center {
-    let [x, y, z, u, v, w] = One::alone(*numbers);
-    Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) }
 }

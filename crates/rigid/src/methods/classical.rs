@@ -20,7 +20,7 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::simd::lanes::{Lanes, One};
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::{Bivector, Rotor};
 use std::array;
 
 /// Rotor and angular velocity in principal axes; optionally position and velocity of the centre of mass.
@@ -370,10 +370,7 @@ impl Classical {
         step::<N, 1, false, _>(&self.alone, &mut acting, &mut state, time, [h, h / 6.0]);
         acting.finish()?;
         let state = One::alone(doubled(&state));
-        let center = match state[7..] {
-            [x, y, z, u, v, w] => Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) },
-            _ => from.center,
-        };
+        let center = state[7..].try_into().map_or(from.center, |numbers: [f64; 6]| Center::from(numbers));
         Ok(Carried::new(phase(&self.body, &state, time + h), center))
     }
 }

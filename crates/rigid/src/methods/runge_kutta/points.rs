@@ -5,7 +5,7 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Phase;
 use polhode_ga::simd::lanes::{Lanes, dot, mapped_back, matrix};
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::{Bivector, Rotor};
 
 /// States of bodies in lanes.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +61,7 @@ impl<const W: usize, const F: bool> Points<W, F> {
         let rotor = Rotor::from_unit_components([r[0], r[1], r[2], r[3]]);
         let momentum_space = Bivector([m[0], m[1], m[2]]);
         let momentum = rotor.reverse().apply_bivector(momentum_space);
-        let center = Center { position: Vector([c[0], c[1], c[2]]), velocity: Vector([c[3], c[4], c[5]]) };
+        let center = Center::from(c);
         let lost = Bivector([0, 1, 2].map(|k| self.lost[k].0[l]));
         let phase = Phase { rotor, momentum, time: self.time.0[l] };
         Carried { phase, momentum_space, driven: Bivector::default(), center, lost }

@@ -425,6 +425,27 @@ def test_an_interrupted_run_leaves_no_file(number, code, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["long.toml", "out.nc"]
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_during_an_import_interrupt_after_it(number, tmp_path):
+    """An interrupted import may be swallowed, as by NumPy, or crash at the end of the program."""
+    (tmp_path / "slow.py").write_text(f"import signal\nsignal.raise_signal({int(number)})\ncomplete = True\n")
+    program = """
+import time
+from polhode._cli.interrupts import interruptible
+
+received = []
+try:
+    with interruptible(received):
+        import slow
+        time.sleep(60)
+except KeyboardInterrupt:
+    print(slow.complete, *received)
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+    done = processes.run([sys.executable, "-c", program], env=environment)
+    assert (done.stdout, done.stderr) == (f"True {int(number)}\n", "")
+
+
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no signal for another process")
 def test_ctrl_c_while_the_command_starts(tmp_path):
     """It comes while NumPy is imported, of which a traceback would tell nothing."""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import shutil
-import signal
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
+from polhode._cli.interrupts import uninterruptible
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.ensemble.collect import EnsembleRecords
 from polhode._report.ensemble.netcdf import EnsembleFile, bytes_of_file
@@ -50,7 +49,7 @@ def run(
     with unfinished(targets[0]) as part:
         with naming(targets[0]):
             stopped = _stopped(part, records, threads, quiet)
-        with _uninterrupted():
+        with uninterruptible():
             _write(targets, part, records, stopped, pages)
     return records
 
@@ -64,7 +63,7 @@ def _stopped(part: Path, records: Records, threads: int | None, quiet: bool) -> 
     """Run all bodies into a file; return whether Ctrl-C stopped the run after some bodies."""
     with contextlib.ExitStack() as opened:
         # HDF5 may swallow an interrupt while it creates a file.
-        with _uninterrupted():
+        with uninterruptible():
             file = opened.enter_context(contextlib.closing(EnsembleFile(part, records.scene)))
         stopped = False
         try:
@@ -73,7 +72,7 @@ def _stopped(part: Path, records: Records, threads: int | None, quiet: bool) -> 
             if not records.complete:
                 raise
             stopped = True
-        with _uninterrupted():
+        with uninterruptible():
             file.end(records)
     return stopped
 
@@ -90,7 +89,7 @@ def _run_bodies(records: Records, file: EnsembleFile | None, threads: int | None
     with _progress(records, quiet) as report:
         for rows, motions in records.blocks(report, threads):
             # A block is recorded as a whole.
-            with _uninterrupted():
+            with uninterruptible():
                 if file is not None:
                     file.add(rows, motions)
                 records.add(rows, motions)  # type: ignore[arg-type]  # of its own blocks
@@ -130,23 +129,6 @@ def require_room(scene: Scene, targets: list[Path]) -> None:
         if wanted > free:
             room = f"{_memory.size(wanted)}; its disk has {_memory.size(free)} free"
             raise OSError(f"{targets[0]} needs {room}: {remedy}")
-
-
-@contextlib.contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Delay Ctrl-C to the end of the block."""
-    waiting: list[int] = []
-
-    def remember(number: int, _: FrameType | None) -> None:
-        waiting.append(number)
-
-    before = signal.signal(signal.SIGINT, remember)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if waiting:
-        raise KeyboardInterrupt
 
 
 @contextlib.contextmanager

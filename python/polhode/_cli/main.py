@@ -10,14 +10,12 @@ import os
 import re
 import signal
 import sys
-import threading
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode import _start
 from polhode._cli import check, common, store
 from polhode._cli.common import (
     add_amount,
@@ -29,6 +27,7 @@ from polhode._cli.common import (
     read_scene,
     whole_number,
 )
+from polhode._cli.interrupts import interruptible
 from polhode._native import SceneError, __version__
 from polhode._support.counts import counted
 from polhode._support.files import UnreadableError, words_of
@@ -44,16 +43,16 @@ def main(arguments: list[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
-    ends: list[int] = []
+    received: list[int] = []
     try:
-        _restore_ctrl_c()
-        given = _with_values(sys.argv[1:] if arguments is None else arguments)
-        options = _parser(given).parse_args(given)
-        with _printed_warnings(), _ending_as_ctrl_c(ends):
-            code = int(options.command(options))
+        with interruptible(received):
+            given = _with_values(sys.argv[1:] if arguments is None else arguments)
+            options = _parser(given).parse_args(given)
+            with _printed_warnings():
+                code = int(options.command(options))
         print(end="", flush=True)
     except KeyboardInterrupt as stop:
-        code = common.TERMINATED if ends else common.INTERRUPTED
+        code = common.TERMINATED if signal.SIGTERM in received else common.INTERRUPTED
         _complain(str(stop) or "interrupted; no file was changed", code)
     except (SceneError, UnreadableError) as error:
         code = _complain(str(error), common.BAD_INPUT)
@@ -63,37 +62,6 @@ def main(arguments: list[str] | None = None) -> int:
         code = _complain(f"polhode: error: {words_of(error) or 'out of memory'}", common.FAILED)
     _drop_output()
     return code
-
-
-def _restore_ctrl_c() -> None:
-    """Let Ctrl-C interrupt the command even if it was started to ignore it, as a background job of a script.
-
-    So ``kill -INT`` always stops a long run and keeps the complete bodies.
-    """
-    if signal.getsignal(signal.SIGINT) in (signal.SIG_IGN, _start.stop):
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-
-
-@contextmanager
-def _ending_as_ctrl_c(ends: list[int]) -> Iterator[None]:
-    """Let the signal to terminate end the command as Ctrl-C does, so that it removes its unfinished files.
-
-    The list then has the signal.
-    """
-
-    def end(number: int, _: object) -> None:
-        ends.append(number)
-        raise KeyboardInterrupt
-
-    is_main = threading.current_thread() is threading.main_thread()
-    if not is_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:  # another program handles it
-        yield
-        return
-    signal.signal(signal.SIGTERM, end)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 @contextmanager

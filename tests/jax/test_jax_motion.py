@@ -15,6 +15,7 @@ EPS = np.finfo(float).eps
 INERTIA = ph.Inertia.from_matrix([[2, 0.1, 0], [0.1, 3, 0.2], [0, 0.2, 4]])
 MOMENTS = [2.0, 3.0, 4.0]
 R0, OMEGA = ph.Rotor.from_components([4, 1, -2, 1]), np.array([0.5, 0.25, 3.0])
+STATE = ph.State(R0, OMEGA)
 ROWS = np.random.default_rng(0).normal(size=(5, 3))
 ATTITUDE = {
     "heavy": ph.torque.heavy([0.5, 0.25, 1.0]),
@@ -323,6 +324,20 @@ def test_invalid_input_raises(change, message):
     given = {"inertia": MOMENTS, "rotor": R0, "omega_body": OMEGA, "times": [1.0], "step": 0.1, **change}
     with pytest.raises(ValueError, match=message):
         ph.jax.simulate(**given)
+
+
+@pytest.mark.parametrize(
+    ("rotor", "omega", "message"),
+    [
+        (STATE, [1.0], "the rotor must not be a State; pass state.rotor, state.omega_body"),
+        (R0, STATE, "the angular velocity must not be a State"),
+        (R0, "fast", "the angular velocity must be real numbers, got 'fast'"),
+        (None, OMEGA, "the rotor must be real numbers, got None"),
+    ],
+)
+def test_arguments_that_are_not_numbers_raise(rotor, omega, message):
+    with pytest.raises(TypeError, match=message):
+        ph.jax.simulate(MOMENTS, rotor, omega, [1.0], step=0.1)
 
 
 def test_traced_times_need_a_number_of_steps():

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body
 from polhode._mechanics.inertia import Inertia
+from polhode._mechanics.state import State
 from polhode._support.arrays import require_components
 from polhode.jax._components import Four, compose, joined, reverse, split, turned
 from polhode.jax._library import Array, jnp
@@ -74,6 +75,11 @@ def as_array(value: Any, _name: str = "") -> Array:
 
 def rows(value: Any, size: int, what: str) -> Array:
     """Return an array of floats (..., size)."""
-    array = as_array(value)
+    if isinstance(value, State):
+        raise TypeError(f"{what} must not be a State; pass state.rotor, state.omega_body")
+    try:
+        array = as_array(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{what} must be real numbers, got {value!r}") from None
     require_components(array.shape, size, what)
     return array

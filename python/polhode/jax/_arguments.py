@@ -68,8 +68,10 @@ def _body(inertia: Any) -> tuple[Array, Four | None]:
 
 
 def as_array(value: Any, _name: str = "") -> Array:
-    """Return an array of floats from numbers or a multivector."""
+    """Return an array of floats from real numbers or a multivector; a TypeError for complex ones."""
     array = jnp.asarray(value._data if isinstance(value, Multivector) else value)
+    if jnp.issubdtype(array.dtype, jnp.complexfloating):
+        raise TypeError(f"expected real numbers, got dtype {array.dtype}")
     return array if jnp.issubdtype(array.dtype, jnp.floating) else array.astype(jnp.result_type(float))
 
 

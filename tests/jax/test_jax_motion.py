@@ -341,6 +341,21 @@ def test_arguments_that_are_not_numbers_raise(rotor, omega, message):
         ph.jax.simulate(MOMENTS, rotor, omega, [1.0], step=0.1)
 
 
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        (lambda law: law.damping(ph.e1), "g must be real numbers, got a multivector"),
+        (lambda law: law.damping(None), "g must be real numbers, got None"),
+        (lambda law: law.heavy(ph.e1 ^ ph.e2), r"c must be a vector, .*write B.dual\(\)"),
+        (lambda law: law.constant_body(ph.e1), r"N must be a bivector, .*write a.undual\(\)"),
+        (lambda law: law.tabulated([0, 1], "up"), "torques must be real numbers, got 'up'"),
+    ],
+)
+def test_laws_name_arguments_of_another_kind(law, message):
+    with pytest.raises(TypeError, match=message):
+        law(ph.jax.torque)
+
+
 def test_traced_times_need_a_number_of_steps():
     with pytest.raises(ValueError, match=r"with traced times .* give steps"):
         jax.jit(lambda t: ph.jax.simulate(MOMENTS, R0, OMEGA, t, step=0.1))(np.array([1.0]))

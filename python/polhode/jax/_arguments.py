@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from polhode._algebra.constructors import one_grade
 from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body
 from polhode._mechanics.inertia import Inertia
 from polhode._mechanics.state import State
-from polhode._support.arrays import require_components
+from polhode._support.arrays import refuse_multivectors, require_components
 from polhode.jax._components import Four, compose, joined, reverse, split, turned
 from polhode.jax._library import Array, jnp
 
@@ -45,7 +47,7 @@ def start(inertia: Any, rotor: Any, omega_body: Any) -> Start:
     """Return bodies and initial states from the arguments of the functions of this package."""
     moments, frame = _body(inertia)
     r = rows(rotor, 4, "the rotor")
-    w = rows(omega_body, 3, "the angular velocity")
+    w = rows(omega_body, 3, "the angular velocity", grade=2)
     dtype = jnp.result_type(moments, r, w)
     moments, r, w = (x.astype(dtype) for x in (moments, r, w))
     if frame is not None:
@@ -67,21 +69,25 @@ def _body(inertia: Any) -> tuple[Array, Four | None]:
     return rows(inertia, 3, "inertia: principal moments, or an Inertia,"), None
 
 
-def as_array(value: Any, _name: str = "") -> Array:
-    """Return an array of floats from real numbers or a multivector; a TypeError for complex ones."""
-    array = jnp.asarray(value._data if isinstance(value, Multivector) else value)
+def as_array(value: Any, what: str) -> Array:
+    """Return an array of floats from real numbers or a rotor; a TypeError for others."""
+    if isinstance(value, State):
+        raise TypeError(f"{what} must not be a State; pass state.rotor, state.omega_body")
+    numbers = value._data if isinstance(value, Rotor) else value
+    refuse_multivectors(numbers, what)
+    try:
+        array = jnp.asarray(numbers)
+    except (TypeError, ValueError):
+        raise TypeError(f"{what} must be real numbers, got {value!r}") from None
     if jnp.issubdtype(array.dtype, jnp.complexfloating):
-        raise TypeError(f"expected real numbers, got dtype {array.dtype}")
+        raise TypeError(f"{what} must be real numbers, got {value!r}")
     return array if jnp.issubdtype(array.dtype, jnp.floating) else array.astype(jnp.result_type(float))
 
 
-def rows(value: Any, size: int, what: str) -> Array:
-    """Return an array of floats (..., size)."""
-    if isinstance(value, State):
-        raise TypeError(f"{what} must not be a State; pass state.rotor, state.omega_body")
-    try:
-        array = as_array(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{what} must be real numbers, got {value!r}") from None
+def rows(value: Any, size: int, what: str, grade: int | None = None) -> Array:
+    """Return an array of floats (..., size) from numbers, a rotor, or a multivector of this grade."""
+    if grade is not None and isinstance(value, Multivector):
+        value = one_grade(value, grade, what)._data
+    array = as_array(value, what)
     require_components(array.shape, size, what)
     return array

@@ -109,7 +109,7 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
     end at the times unless the output times are traced; then a step across a jump of ``kind="previous"``
     takes the torque of its middle.
     """
-    when, table = as_floats(times, "times"), as_array(torques)
+    when, table = as_floats(times, "times"), rows(torques, 3, "torques", grade=2)
     # Raises for wrong times, frame and kind.
     native.tabulated(when, np.zeros((*table.shape[:-1], 3)), frame, kind)
     slopes = spline_slopes(when, table) if kind == "cubic" and when.size > 2 else None
@@ -170,14 +170,14 @@ def _of_native(law: Any) -> Torque:
 
 
 def _gains(value: Any, name: str) -> Three:
-    array = as_array(value)
+    array = as_array(value, name)
     return split(array) if array.shape[-1:] == (3,) else (array,) * 3
 
 
 def _rotor(value: Any, name: str) -> Four:
     if value is None:
-        return split(as_array([1.0, 0.0, 0.0, 0.0]))
-    array = as_array(value)
+        return split(as_array([1.0, 0.0, 0.0, 0.0], name))
+    array = as_array(value, name)
     if array.shape[-1:] != (4,):
         raise ValueError(
             f"{name} needs the 4 components of a rotor in the last axis, got shape {array.shape}"
@@ -187,8 +187,8 @@ def _rotor(value: Any, name: str) -> Four:
 
 _CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
     "scalar": as_array,
-    "vector": lambda value, name: split(rows(value, 3, name)),
-    "bivector": lambda value, name: split(rows(value, 3, name)),
+    "vector": lambda value, name: split(rows(value, 3, name, grade=1)),
+    "bivector": lambda value, name: split(rows(value, 3, name, grade=2)),
     "gains": _gains,
     "rotor": _rotor,
 }

@@ -171,6 +171,17 @@ def test_steps_shorter_than_the_tolerance_needs_have_an_estimate(max_step):
     assert 1e-13 < error <= found.certificate.error_estimate <= 1e-3
 
 
+@pytest.mark.parametrize("heavy", [[0.3, 0.2, 1.0], [-0.5, 2, 1.5]])
+def test_the_error_of_a_chaotic_motion_names_a_time_that_is_reached(heavy):
+    state, law = ph.State(ONE, [0.1, 0.5, 0.3]), ph.torque.heavy(heavy)
+    times = np.linspace(0, 1000, 401)
+    with pytest.raises(ValueError, match="still differ completely") as refused:
+        ph.simulate(ASYMMETRIC, state, times, law)
+    until = float(re.search("up to t = (.*) s, where", str(refused.value))[1])
+    assert 10 < until < 1000
+    assert ph.simulate(ASYMMETRIC, state, times[times <= until], law).certificate.error_estimate <= 1e-6
+
+
 def test_chaotic_motion_is_rejected_or_reported():
     """The default call reported an error of 3e-5 as 7e-11."""
     state, law = ph.State(ONE, [3, 2, -1]), ph.torque.heavy([-0.5, 2, 1.5])

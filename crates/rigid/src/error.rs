@@ -72,8 +72,14 @@ pub enum SimulateError {
     #[error("the laws are stiff: {steps:.1e} steps would be needed; use the method midpoint")]
     Stiff { steps: f64 },
     /// Halving the step no longer reduces the difference of two runs.
-    #[error("rtol = {rtol:.1e} was not reached: {}", unreached(*reached, *step))]
-    NotConverged { rtol: f64, reached: f64, step: f64 },
+    #[error("rtol = {rtol:.1e} was not reached: {}", unreached(*reached, *step, *agreed))]
+    NotConverged {
+        rtol: f64,
+        reached: f64,
+        step: f64,
+        /// The last output time up to which the results agreed, in s.
+        agreed: Option<f64>,
+    },
     /// The method does not support these laws.
     #[error("{method} {reason}")]
     Unfit { method: &'static str, reason: &'static str },
@@ -124,16 +130,19 @@ fn bound(what: &str) -> &'static str {
     }
 }
 
-fn unreached(reached: f64, step: f64) -> String {
+fn unreached(reached: f64, step: f64, agreed: Option<f64>) -> String {
+    let remedy = agreed.map_or("simulate a shorter time".to_owned(), |time| {
+        format!("simulate up to t = {} s, where results still agree", seconds(time))
+    });
     if reached > 0.1 {
         return format!(
-            "results still differ completely at steps of {step:.3e} s, because the \
-             motion amplifies rounding; simulate a shorter time, or give a step"
+            "results still differ completely at steps of {step:.3e} s, because the motion amplifies rounding; \
+             {remedy}, or give a step"
         );
     }
     format!(
-        "halving the step to {step:.3e} s leaves an error of {reached:.1e}, because \
-         the motion amplifies rounding; use rtol >= {:.0e} or simulate a shorter time",
+        "halving the step to {step:.3e} s leaves an error of {reached:.1e}, because the motion amplifies \
+         rounding; use rtol >= {:.0e} or {remedy}",
         2.0 * reached
     )
 }

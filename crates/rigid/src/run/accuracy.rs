@@ -53,8 +53,7 @@ pub(crate) struct Scales {
     pub is_smooth: bool,
 }
 
-/// Largest difference of two sweeps at the output times and events: in the rotor, and in angular velocity, position and
-/// velocity relative to their largest magnitudes.
+/// Largest difference of two sweeps at the output times and events.
 pub(crate) fn difference(
     scales: &Scales,
     coarse: &Sweep,
@@ -65,21 +64,34 @@ pub(crate) fn difference(
     if coarse.ends != fine.ends {
         return 1.0;
     }
-    let body = &scales.body;
-    let [fastest, farthest, swiftest] = fine.largest.map(|x| x.max(f64::MIN_POSITIVE));
-    let fastest = fastest.max(body.least_rate());
-    let apart = |a: &Carried, b: &Carried| {
-        let (r, s) = (a.phase.rotor.components(), b.phase.rotor.components());
-        let turn = (0..4).map(|k| (r[k] - s[k]) * (r[k] - s[k])).sum::<f64>().sqrt();
-        let spin = (body.omega(a.phase.momentum) - body.omega(b.phase.momentum)).norm() / fastest;
-        let place = (a.center.position - b.center.position).norm() / farthest;
-        let velocity = (a.center.velocity - b.center.velocity).norm() / swiftest;
-        turn.max(spin).max(place).max(velocity)
-    };
+    let apart = |a: &Carried, b: &Carried| apart(scales, fine, a, b);
     let outputs = coarse.states.iter().zip(&fine.states).map(|(a, b)| apart(a, b));
     // A grazing event may be missing in one of them.
     let same = coarse.events.len() == fine.events.len();
     let events = coarse.events.iter().zip(&fine.events).filter(|(a, b)| same && a.event == b.event);
     let events = events.map(|(a, b)| apart(&follow(&a.at, b.at.phase.time), &b.at));
     outputs.chain(events).fold(0.0, f64::max)
+}
+
+/// The last output time up to which two sweeps differ by no more than this, in s, if that is after the start.
+pub(crate) fn agreement(scales: &Scales, coarse: &Sweep, fine: &Sweep, within: f64) -> Option<f64> {
+    let pairs = coarse.states.iter().zip(&fine.states);
+    let differences = pairs.map(|(a, b)| (apart(scales, fine, a, b), b.phase.time));
+    let agreeing = differences.take_while(|(difference, _)| *difference <= within);
+    // At the start there is none.
+    agreeing.filter(|(difference, _)| *difference > 0.0).last().map(|(_, time)| time)
+}
+
+/// The difference of two states of sweeps: in the rotor, and in angular velocity, position and velocity relative to the
+/// largest magnitudes of the finer sweep.
+fn apart(scales: &Scales, fine: &Sweep, a: &Carried, b: &Carried) -> f64 {
+    let body = &scales.body;
+    let [fastest, farthest, swiftest] = fine.largest.map(|x| x.max(f64::MIN_POSITIVE));
+    let fastest = fastest.max(body.least_rate());
+    let (r, s) = (a.phase.rotor.components(), b.phase.rotor.components());
+    let turn = (0..4).map(|k| (r[k] - s[k]) * (r[k] - s[k])).sum::<f64>().sqrt();
+    let spin = (body.omega(a.phase.momentum) - body.omega(b.phase.momentum)).norm() / fastest;
+    let place = (a.center.position - b.center.position).norm() / farthest;
+    let velocity = (a.center.velocity - b.center.velocity).norm() / swiftest;
+    turn.max(spin).max(place).max(velocity)
 }

@@ -5,7 +5,7 @@
 //! the motion is measured once by sweeps with noise ([`super::noise`]), as soon as two sweeps are close. A motion that
 //! amplifies rounding beyond the tolerance is rejected then, before further sweeps.
 
-use super::accuracy::{Accuracy, Scales, difference};
+use super::accuracy::{Accuracy, Scales, agreement, difference};
 use super::noise::{FIRST_SIZE, LINEAR, Magnification, Noise};
 use super::sweep::{LEAST_TOLERANCE, StepRule, Sweep};
 use crate::error::SimulateError;
@@ -52,6 +52,9 @@ const ORDER_AT_JUMPS: f64 = 1.0;
 
 /// Safety factor of the errors caused by jumps: they change the times of later jumps.
 const MARGIN_AT_JUMPS: f64 = 2.0;
+
+/// Sweeps that differ by less than this part of the accepted error agree: a run up to there would have other sweeps.
+const AGREEING: f64 = 0.1;
 
 /// Maximum number of sweeps with different steps.
 const MOST_SWEEPS: u32 = 30;
@@ -291,6 +294,7 @@ impl Convergence {
                 rtol: self.accuracy.goal,
                 reached,
                 step: fine.longest,
+                agreed: agreement(&self.scales, coarse, &fine, AGREEING * self.accuracy.acceptable),
             });
         }
         self.last = shorter.map(|by| (difference, by));
@@ -377,7 +381,7 @@ impl Convergence {
                 return Ok(Some(self.converged(coarse, self.reached)));
             }
             let (rtol, reached) = (self.accuracy.goal, self.previous);
-            return Err(SimulateError::NotConverged { rtol, reached, step: coarse.longest });
+            return Err(SimulateError::NotConverged { rtol, reached, step: coarse.longest, agreed: None });
         }
         // Fixed steps may have met a wrong rate.
         let adapts = matches!(self.rule, StepRule::Tolerance(_));

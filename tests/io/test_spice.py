@@ -164,6 +164,7 @@ def test_the_command(kernels, tmp_path, capsys):
         ({"body_frame": None}, "body_frame is not known; give body_frame="),
         ({"body_frame": "NOBODY"}, "the kernels have no frame 'NOBODY'"),
         ({"body_frame": "IAU_EARTH"}, "must be a frame of class 3 for a CK, got 'IAU_EARTH' of class 2"),
+        ({"reference_frame": "EME2000"}, "SPICE calls it 'J2000': give reference_frame='J2000'"),
         ({"reference_frame": "NOWHERE"}, "no frame 'NOWHERE'; .* or another reference_frame="),
         (
             {"epoch": "2025-01-01T00:00:00"},

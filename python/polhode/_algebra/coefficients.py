@@ -11,6 +11,7 @@ import numpy as np
 from polhode import _generic, _native
 from polhode._algebra.foreign_values import refuse_operand
 from polhode._support.arrays import (
+    Array,
     as_floats,
     in_aligned_memory,
     is_complex,
@@ -97,6 +98,13 @@ def duplicate(array: Any) -> Any:
 def reshaped(array: Any, shape: tuple[int, ...]) -> Any:
     """Return the same elements in another shape."""
     return array.reshape(shape) if isinstance(array, np.ndarray) else kind_of(array).reshape(array, shape)
+
+
+def known_floats(values: Any, what: str) -> Array:
+    """Convert coefficients of any kind to NumPy's float64; a TypeError while JAX or torch trace them."""
+    if isinstance(values, np.ndarray):
+        return as_coefficients(values, what, float)  # type: ignore[no-any-return]
+    return as_floats(values, what)
 
 
 def taken(array: Any, places: list[int]) -> Any:

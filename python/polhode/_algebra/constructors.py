@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra.algebra import algebra
-from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.coefficients import as_coefficients, known_floats
 from polhode._algebra.grades import with_grades
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.products import coerced
@@ -219,8 +219,8 @@ def one_grade(value: Any, grade: int, what: str) -> Multivector:
 
 
 def pure(value: Any, grade: int, what: str) -> Array:
-    """Return the components of a value of one grade, as float64."""
-    return as_coefficients(one_grade(value, grade, what)._data, what, float)  # type: ignore[no-any-return]
+    """Return the components of a value of one grade, as NumPy's float64."""
+    return known_floats(one_grade(value, grade, what)._data, what)
 
 
 def _of_3d(value: Multivector, what: str) -> Multivector:

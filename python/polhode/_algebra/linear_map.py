@@ -12,7 +12,7 @@ from polhode import _native
 from polhode._algebra import decompositions as _decompositions
 from polhode._algebra.algebra import Algebra
 from polhode._algebra.coefficients import as_coefficients
-from polhode._algebra.constructors import e1, pure
+from polhode._algebra.constructors import e1, one_grade
 from polhode._algebra.foreign_values import has_reflected
 from polhode._algebra.grades import with_grades
 from polhode._algebra.multivector import Multivector
@@ -25,6 +25,7 @@ from polhode._support.arrays import (
     batch_shape,
     first_index,
     frozen,
+    is_complex,
     lengths,
     power_of_two,
 )
@@ -235,11 +236,14 @@ class LinearMap:
         return np.trace(self.matrix, axis1=-2, axis2=-1)[()]
 
     def __call__(self, X: Any) -> Multivector:
-        """``F(X)``, in float64; batches broadcast. Of complex X, ``F(X.real) + i F(X.imag)``."""
+        """``F(X)``; batches broadcast. Of complex X, ``F(X.real) + i F(X.imag)``.
+
+        NumPy's results are float64. Arrays of other libraries keep their type, and derivatives pass through.
+        """
         if not isinstance(X, Multivector):
             name = type(X).__name__
             raise TypeError(f"a linear map acts on multivectors, got {name}; wrap arrays with ph.vector")
-        if X.dtype in (np.complex64, np.complex128):
+        if is_complex(X._data):
             return self(X.real) + 1j * self(X.imag)
         if self.grade == 2:
             components = _components(X, self.algebra, 2, "the argument of a map of bivectors")
@@ -247,11 +251,12 @@ class LinearMap:
         if X.algebra is not self.algebra:
             own = "3-d space" if self.algebra is _G3 else self.algebra
             raise TypeError(f"this linear map acts on values of {own}, got one of {X.algebra}")
-        first, *others = [self._part(X.astype(float), k) for k in X.grades]
+        given = X.astype(float) if isinstance(X._data, np.ndarray) else X
+        first, *others = [self._part(given, k) for k in given.grades]
         return sum(others, start=first)
 
     def _part(self, X: Multivector, k: int) -> Multivector:
-        components, own = X.grade(k).components, self.algebra
+        components, own = X.grade(k)._data, self.algebra
         if k == 0:
             return own.scalar(components[..., 0]).wedge(np.ones(self.shape))
         if k == 1:
@@ -486,15 +491,21 @@ def _space(algebra: Any, grade: int) -> tuple[Algebra, int]:
 
 
 def _components(value: Any, algebra: Algebra, grade: int, what: str) -> Array:
-    """Return the components of a value of the algebra with a single grade, as float64."""
+    """Return the components of a value of the algebra with a single grade, as float64 if they are NumPy's."""
     if algebra is _G3:
-        return pure(value, grade, what)
+        return _floats(one_grade(value, grade, what)._data, what)
     if not isinstance(value, Multivector) or value.algebra is not algebra:
         got = value.algebra if isinstance(value, Multivector) else type(value).__name__
         raise TypeError(f"{what} must be a value of {algebra}, got {got}")
     if value._held() & ~(1 << grade):
         raise TypeError(f"{what} must be of grade {grade}, got {value!r}, which has other grades")
-    return as_coefficients(with_grades(value, 1 << grade), what, float)  # type: ignore[no-any-return]
+    return _floats(with_grades(value, 1 << grade), what)
+
+
+def _floats(data: Any, what: str) -> Array:
+    if not isinstance(data, np.ndarray):
+        return data  # type: ignore[no-any-return]  # of another library
+    return as_coefficients(data, what, float)  # type: ignore[no-any-return]
 
 
 class _OfSpace(type):

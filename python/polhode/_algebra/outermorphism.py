@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._algebra.coefficients import kind_of
 from polhode._support.arrays import Array
 
 if TYPE_CHECKING:
@@ -44,7 +45,8 @@ def outermorphism(algebra: Algebra, matrix: Array) -> Array:
 def times(matrix: Array, components: Array) -> Array:
     """Return the matrices times the components, by IEEE rules as in the products."""
     with np.errstate(over="ignore", invalid="ignore"):
-        product: Array = (matrix @ components[..., np.newaxis])[..., 0]
+        factor = matrix if isinstance(components, np.ndarray) else kind_of(components).asarray(matrix)
+        product: Array = (factor @ components[..., np.newaxis])[..., 0]
     return product
 
 

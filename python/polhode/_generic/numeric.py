@@ -77,10 +77,12 @@ class Numeric:
         return self.xp.stack(list(self.xp.broadcast_arrays(*components)), axis=-1)
 
     def is_concrete(self, x: Array) -> bool:
-        """Whether values are known: not while JAX traces, nor in a Dask graph."""
+        """Whether values are known: not while JAX traces, nor in a Dask graph, nor under `vmap` of torch."""
         library = type(x).__module__.partition(".")[0]
         if library == "dask":
             return False
+        if library == "torch":
+            return _has_values(x)
         jax = sys.modules.get("jax")
         return jax is None or not isinstance(x, jax.core.Tracer)
 
@@ -202,6 +204,14 @@ class Numeric:
         for x in components[1:]:
             ok = ok & self.xp.isfinite(x)
         self.require(ok, "a component is NaN or infinite; remove such values first")
+
+
+def _has_values(tensor: Any) -> bool:
+    try:
+        bool(tensor.any())
+    except RuntimeError:  # under vmap, also inside grad; torch has no public function that says so
+        return False
+    return True
 
 
 def components(data: Array) -> list[Array]:

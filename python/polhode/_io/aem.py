@@ -130,7 +130,9 @@ def read_aem(
     try:
         text = contents(path, copies=4).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise FileError(f"{name}: error: not text from byte {error.start} on") from None
+        raise FileError(
+            f"{name}: error: not text in UTF-8 from byte {error.start} on; save the file as UTF-8"
+        ) from None
     source = Source(name, text.splitlines())
     header, segments = _parsed(source)
     chosen = _chosen(header, segments, segment)
@@ -226,7 +228,8 @@ def _parsed(source: Source) -> tuple[_Place, list[_Segment]]:
 def _pair(place: _Place) -> tuple[str, _Place]:
     key, sign, value = place.text.partition("=")
     if not sign or not re.fullmatch(r"[A-Z][A-Z0-9_]*", key.strip()):
-        raise place.error(f"expected KEYWORD = value, got {place.text[:40]!r}")
+        remedy = "; an AEM in XML is not read, export it as KVN" if place.text.startswith("<") else ""
+        raise place.error(f"expected KEYWORD = value, got {place.text[:40]!r}{remedy}")
     skipped = len(value) - len(value.lstrip())
     column = place.column + len(key) + 1 + (skipped if value.strip() else 0)
     return key.strip(), _Place(place.source, value.strip(), place.line, column)
@@ -319,7 +322,10 @@ def _numbers(segment: _Segment) -> Array:
     kind = _required(segment, "ATTITUDE_TYPE")
     count = _NUMBERS.get(kind.text.upper())
     if count is None:
-        raise kind.error(f"ATTITUDE_TYPE must be {' or '.join(_NUMBERS)} to be read, got {kind.text!r}")
+        raise kind.error(
+            f"ATTITUDE_TYPE must be {' or '.join(_NUMBERS)} to be read, got {kind.text!r}; export "
+            "the attitudes as quaternions"
+        )
     rows = []
     for line in segment.lines:
         words = [(found.start(), found[0]) for found in re.finditer(r"\S+", line.text)][1:]

@@ -339,7 +339,10 @@ def _require_frame(spice: Any, frame: str, name: str) -> int:
     """Return the code of a frame."""
     code = int(spice.namfrm(frame))
     if code == 0:
-        raise ValueError(f"the kernels have no frame {frame!r}; give the frame kernel, or another {name}=")
+        remedy = f"give the frame kernel, or another {name}="
+        if frame.strip().upper() == "EME2000":
+            remedy = f"SPICE calls it 'J2000': give {name}='J2000'"
+        raise ValueError(f"the kernels have no frame {frame!r}; {remedy}")
     return code
 
 
@@ -378,5 +381,8 @@ def _descriptor(spice: Any, handle: int, name: str, chosen: int | None) -> Any:
     descriptor = found[(chosen or 1) - 1]
     kind = int(spice.dafus(descriptor, 2, 6)[1][2])
     if kind != _TYPE:
-        raise FileError(f"{name}: error: segments of type 3 are read, got type {kind}")
+        raise FileError(
+            f"{name}: error: segments of type {_TYPE} are read, got type {kind}; sample it with SPICE's "
+            "pxform, and pass the matrices to Rotor.from_matrix"
+        )
     return descriptor

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
+from polhode._algebra.coefficients import known_floats
 from polhode._algebra.constructors import as_point, vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
@@ -309,7 +310,9 @@ class Body(metaclass=ListsOwnNames):
                 f"rotor must be a single Rotor, got {turn!r}; see Rotor.from_quaternion, from_matrix, "
                 "from_scipy; a displacement is position="
             )
-        return Body._of(self._core.moved(turn._data, as_point(position, "the position")))
+        return Body._of(
+            self._core.moved(known_floats(turn._data, "the rotor"), as_point(position, "the position"))
+        )
 
     def __add__(self, other: Body) -> Body:
         if not isinstance(other, Body):

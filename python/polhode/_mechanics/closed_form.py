@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.coefficients import known_floats
 from polhode._algebra.constructors import bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor, check_rotor
@@ -189,7 +189,7 @@ def given(
     remedies = f"; see {remedy} and Inertia.from_matrix"
     inertias = objects_of(inertia, (Inertia,), "inertia must be an Inertia", remedies)
     check_rotor(rotor, "rotor")
-    rows = [as_coefficients(rotor._data, "the rotor", float), angular_velocity(omega_body)._data]
+    rows = [known_floats(rotor._data, "the rotor"), angular_velocity(omega_body)._data]
     names = ["the inertia", "the rotor", "the angular velocity"]
     if law is not None:
         rows, names = [*rows, law], [*names, name]

@@ -167,6 +167,8 @@ class Inertia(LinearMap, metaclass=ListsOwnNames):
 
     def __call__(self, B: Any) -> Multivector:
         """``I(B)``: the angular momentum of a rotation with angular velocity B, both in body axes."""
+        if _foreign(B):
+            return super().__call__(B)
         return bivector(self._core.apply(pure(B, 2, "the plane of rotation")), copy=False)
 
     @overload
@@ -186,6 +188,8 @@ class Inertia(LinearMap, metaclass=ListsOwnNames):
         """
         if L is None:
             return LinearMap.from_function(self.inverse, grade=2)
+        if _foreign(L):
+            return self.inverse()(L)
         return bivector(self._core.inverse(pure(L, 2, "the angular momentum")), copy=False)
 
     @property
@@ -239,6 +243,11 @@ class Inertia(LinearMap, metaclass=ListsOwnNames):
     def __reduce__(self) -> tuple[Any, ...]:
         core = self._core
         return _restored, (core.matrix().ravel(), core.principal_moments(), core.principal_frame())
+
+
+def _foreign(value: Any) -> bool:
+    """Whether a value has the arrays of another library, such as JAX, which may take derivatives."""
+    return isinstance(value, Multivector) and not isinstance(value._data, np.ndarray)
 
 
 def _many(cores: list[_native.Inertia], shape: Shape) -> Any:

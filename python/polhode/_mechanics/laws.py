@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.coefficients import known_floats
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
@@ -59,7 +59,7 @@ def formula_value(value: Any, name: str, batches: bool = False) -> Any:
         return finite(float(one), name)
     if value.shape and not batches:
         raise ValueError(f"{name} must be a single value, got batch shape {value.shape}")
-    data = as_coefficients(value._data, name, float)
+    data = known_floats(value._data, name)
     if value.shape:
         check_finite(data, name)
     elif not np.isfinite(data).all():

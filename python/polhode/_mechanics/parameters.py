@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.coefficients import known_floats
 from polhode._algebra.constructors import as_bivectors, as_vectors
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor, check_rotor
@@ -87,7 +87,7 @@ def rotors(value: Rotor | None, name: str) -> tuple[float, ...] | Batch:
     if value is None:
         return (1.0, 0.0, 0.0, 0.0)
     check_rotor(value, name)
-    return rows(as_coefficients(value._data, name, float), name)
+    return rows(known_floats(value._data, name), name)
 
 
 def gains(value: Any, name: str) -> tuple[float, ...] | Batch:
@@ -155,7 +155,7 @@ def named_together(given: tuple[tuple[str, Any], ...]) -> tuple[tuple[str, Any],
 
 
 def _of_values(values: Multivector) -> Batch:
-    data = as_coefficients(values._data, "a value", float)
+    data = known_floats(values._data, "a value")
     if isinstance(values, Rotor):
         return Batch(data, Rotor.identity())
     return Batch(data, Multivector._of(np.ones(data.shape[-1]), values._mask))

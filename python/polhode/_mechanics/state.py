@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._algebra.coefficients import known_floats
 from polhode._algebra.constructors import as_bivectors, as_vectors, bivector, vector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor, check_rotor
@@ -89,6 +90,8 @@ class State(metaclass=ListsOwnNames):
         check_rotor(rotor, "rotor")
         if (omega_body is None) == (omega_space is None):
             raise TypeError("give either omega_body or omega_space, the angular velocity in rad/s")
+        if not isinstance(rotor._data, np.ndarray):
+            rotor = Rotor._from_rows(known_floats(rotor._data, "the rotor"))
         if omega_space is not None:
             omega_body = (~rotor)(angular_velocity(omega_space))
         # A frozen dataclass does not allow assignment to attributes.

@@ -44,6 +44,11 @@ def as_floats(values: Any, what: str) -> Array:
                 f"{what} must be known numbers, but JAX traces it, for jit, grad or vmap; use ph.jax there"
             ) from None
         raise
+    except RuntimeError:
+        raise TypeError(
+            f"{what} must be known numbers, but torch records it, for a gradient or vmap; pass x.detach(), "
+            "or use ph.jax for derivatives of motions"
+        ) from None
     if array.dtype == object and all(isinstance(x, int | float) for x in array.flat):
         try:  # integers beyond 64 bits
             array = array.astype(np.float64)

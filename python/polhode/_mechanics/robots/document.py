@@ -13,9 +13,13 @@ from polhode._support.files import contents
 
 _LARGEST, _DEEPEST = 50_000_000, 200
 
+# Columns of a line in messages, and how many of them before the place.
+_WIDEST, _BEFORE = 160, 40
+
 # Products of three numbers below this do not overflow.
 _GREATEST = 1e100
 
+_INVALID = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
 _NO_COMMA = "write decimals with a point, and spaces between numbers"
 
 
@@ -36,10 +40,20 @@ class Source:
         text = self.lines[line - 1].replace("\t", " ").rstrip() if line <= len(self.lines) else ""
         if not text.strip() or not text.isprintable():
             return message
+        first = max(0, column - _BEFORE) if len(text) > _WIDEST else 0
         found = re.match(r"<[^\s>]*>?|\w+", text[column:])
+        text, column = _excerpt(text, first), column - first + (first > 0)
         bar = " " * len(str(line))
-        carets = "^" * (len(found[0]) if found else 1)
+        carets = "^" * min(len(found[0]) if found else 1, max(1, len(text) - column))
         return f"{message}\n{bar} |\n{line} | {text}\n{bar} | {' ' * column}{carets}"
+
+
+def _excerpt(text: str, first: int) -> str:
+    """Return a line, or its part from a column on if it is long, as in files without line breaks."""
+    if len(text) <= _WIDEST:
+        return text
+    part = text[first : first + _WIDEST]
+    return f"{'…' if first else ''}{part}{'…' if first + _WIDEST < len(text) else ''}"
 
 
 @dataclass(eq=False)
@@ -139,6 +153,14 @@ def read(path: str | os.PathLike[str]) -> Node:
     return parse(content, name)
 
 
+def _is_utf8(content: bytes) -> bool:
+    try:
+        content.decode()
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
 def parse(content: bytes, name: str) -> Node:
     """Return the root element of an XML document; `name` appears in errors."""
     # Expat counts lines by \n alone.
@@ -175,6 +197,8 @@ def parse(content: bytes, name: str) -> Node:
         words = f"not well-formed XML: {expat.ErrorString(error.code)}"
         if not content.strip():
             words = "the file is empty; export it again"
+        elif error.code == _INVALID and not _is_utf8(content):
+            words = "not XML in UTF-8, nor in an encoding that its first line states; save the file as UTF-8"
         raise DocumentError(source.error(error.lineno, error.offset, words)) from None
     except DocumentError:
         raise

@@ -67,11 +67,13 @@ def _include(node: Node, folder: Path, known: set[str]) -> None:
             _include(child, folder, known)
             children.append(child)
             continue
-        path = folder / child.attributes.get("file", "")
+        if not child.attributes.get("file"):
+            raise child.error("<include> needs the attribute 'file' with the path of a file")
+        path = folder / child.attributes["file"]
         # Path.is_file raises for a name that is too long.
         if not os.path.isfile(path):
             raise child.error(
-                f"<include> needs the attribute 'file' with the path of a file, got {str(path)!r}"
+                f"no such file: {str(path)!r}; paths in <include> are relative to the main file"
             )
         if os.path.abspath(path) in known:
             raise child.error(f"{str(path)!r} is included twice; MuJoCo reads a file once")

@@ -16,10 +16,9 @@ from polhode._support.files import check_target, form_of
 
 if TYPE_CHECKING:
     from polhode._scene.scene import Scene
+    from polhode._support.blocks import Report
 
 OK, FAILED, BAD_INPUT, DRIFTED, INTERRUPTED, TERMINATED = 0, 1, 3, 4, 130, 143
-
-Report = Callable[[int, float], object]
 
 # Name of standard input in messages; bytes that are read from it, more than a scene may have.
 _STDIN, _LARGEST = "<stdin>", 10_000_001

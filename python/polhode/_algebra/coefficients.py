@@ -56,7 +56,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None, *, complex_too: b
             register_pytrees()
             return kind.asarray(values)
     array = _as_array(values, what)
-    if array.dtype.kind == "U" and array.ndim == 0:
+    if isinstance(values, str) and values.isidentifier():
         raise TypeError(f"{what} must be numbers, got the text {values!r}; for symbols pass sympy.symbols")
     # A list that mixes floats with integers is not exact.
     if array.dtype == object and (

@@ -9,24 +9,22 @@ from typing import TYPE_CHECKING, Any, Never, NoReturn
 import numpy as np
 
 from polhode._algebra import transform_conversions as _conversions
-from polhode._algebra.algebra import algebra
 from polhode._algebra.coefficients import (
     as_coefficients,
     common,
     namespace,
     number_like,
     register_pytrees,
-    require_real,
 )
-from polhode._algebra.constructors import one_grade, scalar
+from polhode._algebra.constructors import scalar
 from polhode._algebra.estimation import mean
-from polhode._algebra.euclidean import vector_in
 from polhode._algebra.foreign_tables import TRANSFORM
-from polhode._algebra.foreign_values import has_reflected, remedy_for
+from polhode._algebra.foreign_values import has_reflected
 from polhode._algebra.grades import concatenate, stack
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._algebra.screws import adjoint_matrix, screw_parameters
+from polhode._algebra.transform_arguments import as_rotor, as_vector, not_a_rotor, refuse, required, spread
 from polhode._algebra.transform_batches import TransformBatch
 from polhode._support.arrays import Array, Shape, common_batch, is_float, power_of_two
 from polhode._support.calls import explains_calls_of
@@ -81,15 +79,15 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         if rotor is None:
             rotor = Rotor.identity()
         if not isinstance(rotor, Rotor):
-            raise _not_a_rotor(rotor, translation)
-        moved = _as_vector(translation, "the translation")
+            raise not_a_rotor(rotor, translation)
+        moved = as_vector(translation, "the translation")
         try:
             shape = np.broadcast_shapes(rotor.shape, moved.shape)
         except ValueError:
             raise ValueError(
                 f"batch shapes do not broadcast: the rotor has {rotor.shape}, the translation {moved.shape}"
             ) from None
-        self._set(_spread(rotor, shape), _spread(moved, shape))
+        self._set(spread(rotor, shape), spread(moved, shape))
         _register_pytrees()
 
     def _like(self, rotor: Rotor, translation: Multivector) -> RigidTransform:
@@ -121,7 +119,7 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         >>> T.apply(ph.e1)
         0.5 e1 + 0.8660254 e2
         """
-        return RigidTransform(_as_rotor(rotation))
+        return RigidTransform(as_rotor(rotation))
 
     @staticmethod
     def from_translation(translation: Any) -> RigidTransform:
@@ -149,7 +147,7 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
                 "the translation comes first: write RigidTransform.from_components(x, R), or with the rotor "
                 "first RigidTransform(R, x)"
             )
-        return RigidTransform(_as_rotor(rotation), translation)
+        return RigidTransform(as_rotor(rotation), translation)
 
     @staticmethod
     def from_matrix(matrix: Any, nearest: bool = False) -> RigidTransform:
@@ -284,7 +282,7 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         """
         if isinstance(transforms, RigidTransform):
             return transforms
-        given = [_required(part, f"item {i} of concatenate") for i, part in enumerate(transforms)]
+        given = [required(part, f"item {i} of concatenate") for i, part in enumerate(transforms)]
         parts = [part if part.shape else part._reshaped((1,)) for part in given]
         rotor, translation = ([getattr(part, name) for part in parts] for name in ("rotor", "translation"))
         return RigidTransform(concatenate(rotor), concatenate(translation))
@@ -299,7 +297,7 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         >>> ph.RigidTransform.stack([T, T, T]).shape
         (3, 2)
         """
-        parts = [_required(part, f"item {i} of stack") for i, part in enumerate(transforms)]
+        parts = [required(part, f"item {i} of stack") for i, part in enumerate(transforms)]
         return RigidTransform(stack(part.rotor for part in parts), stack(part.translation for part in parts))
 
     # --- converters
@@ -368,7 +366,7 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         -e1 + e2
         """
         given = isinstance(points, Multivector)
-        x = _as_vector(points, "points")
+        x = as_vector(points, "points")
         moved = (~self.rotor)(x - self.translation) if inverse else self.rotor(x) + self.translation
         return moved if given else moved.components
 
@@ -379,25 +377,25 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         if has_reflected(other, "__rmul__"):
             return NotImplemented
         if not isinstance(other, RigidTransform):
-            _refuse(self, "*", other)
+            refuse(self, "*", other)
         return RigidTransform(self.rotor * other.rotor, self.apply(other.translation))
 
     # Nothing but a transform is a factor, for type checkers too.
     def __rmul__(self, other: Never) -> NoReturn:
-        _refuse(other, "*", self)
+        refuse(other, "*", self)
 
     def __matmul__(self, other: Never) -> Any:
         if has_reflected(other, "__rmatmul__"):
             return NotImplemented
-        return _refuse(self, "@", other)
+        return refuse(self, "@", other)
 
     def __rmatmul__(self, other: Never) -> NoReturn:
-        _refuse(other, "@", self)
+        refuse(other, "@", self)
 
     def __rshift__(self, other: Never) -> Any:
         if has_reflected(other, "__rrshift__"):
             return NotImplemented
-        return _refuse(self, ">>", other)
+        return refuse(self, ">>", other)
 
     def inv(self) -> RigidTransform:
         """Return the transform that moves back.
@@ -443,7 +441,7 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         >>> start.interpolate(end, 0.25).translation
         e1
         """
-        _required(other, "the other transform")
+        required(other, "the other transform")
         step: RigidTransform = (self.inv() * other) ** t
         return self * step
 
@@ -476,87 +474,13 @@ class RigidTransform(TransformBatch, metaclass=ListsOwnNames):
         >>> bool((T * T.inv()).is_close(ph.RigidTransform(), atol=1e-12))
         True
         """
-        _required(other, "the other transform")
+        required(other, "the other transform")
         near = self.rotor.distance(other.rotor) <= rtol
         return near & self.translation.is_close(other.translation, rtol, atol)
 
     def _nearer(self) -> RigidTransform:
         """Return the same transform with the rotor of a turn of at most π."""
         return RigidTransform(self.rotor.canonical(), self.translation)
-
-
-def _required(value: Any, what: str) -> RigidTransform:
-    """Return a transform; a TypeError, with the function that converts, for anything else."""
-    if isinstance(value, RigidTransform):
-        return value
-    if isinstance(value, Rotor):
-        remedy = "; write RigidTransform.from_rotation(R)"
-    elif _is_matrix(value):
-        remedy = "; write RigidTransform.from_matrix(M)"
-    else:
-        remedy = remedy_for(value)
-    raise TypeError(f"{what} must be a RigidTransform, got {type(value).__name__}{remedy}")
-
-
-def _refuse(left: object, operator: str, right: object) -> NoReturn:
-    """Raise a TypeError for an operator whose operands are not two transforms joined by ``*``."""
-    named = [_named(left, "S"), _named(right, "T")]
-    if None not in named:
-        raise TypeError(f"transforms are joined by *, of two transforms; write {named[0]} * {named[1]}")
-    other = left if named[0] is None else right
-    remedy = remedy_for(other) or "; write T.apply(x) to move points"
-    raise TypeError(f"{operator} of a RigidTransform needs another one, got {type(other).__name__}{remedy}")
-
-
-def _named(value: object, name: str) -> str | None:
-    """Return what to write for an operand that is a transform or converts to one."""
-    if isinstance(value, RigidTransform):
-        return name
-    if isinstance(value, Rotor):
-        return "RigidTransform.from_rotation(R)"
-    return "RigidTransform.from_matrix(M)" if _is_matrix(value) else None
-
-
-def _is_matrix(value: object) -> bool:
-    shape = getattr(value, "shape", None)
-    return not isinstance(value, Multivector) and isinstance(shape, tuple) and shape[-2:] == (4, 4)
-
-
-def _as_vector(value: Any, what: str) -> Multivector:
-    given = (
-        one_grade(value, 1, what) if isinstance(value, Multivector) else vector_in(algebra(3), value, what)
-    )
-    require_real(given._data, what)
-    return given
-
-
-def _spread(value: Any, shape: Shape) -> Any:
-    if value.shape == shape:
-        return value
-    data = namespace(value._data).broadcast_to(value._data, (*shape, value._data.shape[-1]))
-    return value._like(np.ascontiguousarray(data) if isinstance(data, np.ndarray) else data)
-
-
-def _not_a_rotor(rotor: Any, translation: Any) -> TypeError:
-    """Return the error for a transform whose first argument is not a rotor."""
-    if isinstance(translation, Rotor):
-        return TypeError("the rotor comes first: write RigidTransform(R, x)")
-    return TypeError(
-        f"rotor must be a Rotor, got {type(rotor).__name__}; write Rotor.from_matrix(M) for matrices "
-        "(..., 3, 3), RigidTransform.from_matrix(M) for (..., 4, 4), from_translation(x) without a rotor; "
-        "see from_components and from_scipy for values of SciPy"
-    )
-
-
-def _as_rotor(rotation: Any) -> Rotor:
-    if isinstance(rotation, Rotor):
-        return rotation
-    if not hasattr(rotation, "as_quat"):
-        raise TypeError(
-            f"the rotation must be a Rotor or a Rotation of SciPy, got {type(rotation).__name__}; write "
-            "Rotor.from_matrix(M) for matrices (..., 3, 3)"
-        )
-    return Rotor.from_scipy(rotation)
 
 
 def _of_leaves(_: None, leaves: Iterable[Any]) -> RigidTransform:

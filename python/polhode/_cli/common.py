@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,10 +17,9 @@ from polhode._support.files import check_target, form_of
 
 if TYPE_CHECKING:
     from polhode._scene.scene import Scene
+    from polhode._support.blocks import Report
 
 OK, FAILED, BAD_INPUT, DRIFTED, INTERRUPTED, TERMINATED = 0, 1, 3, 4, 130, 143
-
-Report = Callable[[int, float], object]
 
 # Name of standard input in messages; bytes that are read from it, more than a scene may have.
 _STDIN, _LARGEST = "<stdin>", 10_000_001
@@ -152,6 +152,31 @@ def progress(name: str, quiet: bool = False) -> Iterator[Report | None]:
 
         def report(number: int, fraction: float) -> None:
             bar.update(task, description=f"{name}, pass {number}" if number else name, completed=fraction)
+
+        yield report
+
+
+@contextmanager
+def progress_of_bodies(
+    name: str, number: int, quiet: bool = False, steps: Callable[[], int] = lambda: 0
+) -> Iterator[Report | None]:
+    """Show a progress bar of bodies on standard error, with their rate and that of the `steps` so far."""
+    from polhode._support.extras import progress_bar
+
+    shown = progress_bar("{task.completed:.0f} of {task.total:.0f} bodies, {task.fields[rate]}")
+    if shown is None or quiet:
+        yield None
+        return
+    begin = time.monotonic()
+    with shown as bar:
+        task = bar.add_task(name, total=number, rate="…")
+
+        def report(_: int, fraction: float) -> None:
+            seconds = max(time.monotonic() - begin, 1e-3)
+            rate = f"{fraction * number / seconds:.3g} bodies/s"
+            if done := steps():
+                rate += f", {done / seconds:.3g} body-steps/s"
+            bar.update(task, completed=fraction * number, rate=rate)
 
         yield report
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import shutil
-import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
+from polhode._cli.common import progress_of_bodies
 from polhode._cli.interrupts import uninterruptible
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.ensemble.collect import EnsembleRecords
@@ -16,7 +15,6 @@ from polhode._report.ensemble.netcdf import EnsembleFile, bytes_of_file
 from polhode._report.ensemble.reduced import ReducedRecords
 from polhode._scene.scene import Scene
 from polhode._support import memory as _memory
-from polhode._support.extras import progress_bar
 from polhode._support.files import naming, unfinished, write_atomically
 
 Records = EnsembleRecords | ReducedRecords
@@ -86,7 +84,10 @@ def _nominal(scene: Scene) -> Trajectory:
 
 
 def _run_bodies(records: Records, file: EnsembleFile | None, threads: int | None, quiet: bool) -> None:
-    with _progress(records, quiet) as report:
+    scene = records.scene
+    assert scene.ensemble is not None
+    shown = progress_of_bodies(scene.path.name, scene.ensemble.number, quiet, lambda: records.total_steps)
+    with shown as report:
         for rows, motions in records.blocks(report, threads):
             # A block is recorded as a whole.
             with uninterruptible():
@@ -129,25 +130,3 @@ def require_room(scene: Scene, targets: list[Path]) -> None:
         if wanted > free:
             room = f"{_memory.size(wanted)}; its disk has {_memory.size(free)} free"
             raise OSError(f"{targets[0]} needs {room}: {remedy}")
-
-
-@contextlib.contextmanager
-def _progress(records: Records, quiet: bool) -> Iterator[Callable[[int, float], Any] | None]:
-    """Show a progress bar with the rate on standard error, if that is a terminal."""
-    shown = progress_bar("{task.completed:.0f} of {task.total:.0f} bodies, {task.fields[rate]}")
-    if shown is None or quiet:
-        yield None
-        return
-    assert records.scene.ensemble is not None
-    number, begin = records.scene.ensemble.number, time.monotonic()
-    with shown as bar:
-        task = bar.add_task(records.scene.path.name, total=number, rate="…")
-
-        def report(_: int, fraction: float) -> None:
-            seconds = max(time.monotonic() - begin, 1e-3)
-            rate = f"{fraction * number / seconds:.3g} bodies/s"
-            if steps := records.total_steps:
-                rate += f", {steps / seconds:.3g} body-steps/s"
-            bar.update(task, completed=fraction * number, rate=rate)
-
-        yield report

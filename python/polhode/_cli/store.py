@@ -6,17 +6,14 @@ import argparse
 import json
 import math
 import re
-import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode._cli import common
 from polhode._cli.common import file_name
 from polhode._support.counts import counted
-from polhode._support.extras import progress_bar
 from polhode._support.files import unreadable
 
 if TYPE_CHECKING:
@@ -107,12 +104,14 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
 
     path = Path(options.output)
     require_ensemble(scene, path, options.bodies)
+    assert scene.ensemble is not None
+    first, end = options.bodies or (0, scene.ensemble.number)
     if options.html is not None:
         raise ValueError("--html shows the motions of a run, which a store does not load: leave it out")
     # Other processes may fill the same store.
     keeps = next((f"--{name}" for name in ("resume", "bodies") if getattr(options, name)), None)
     try:
-        with _progress(scene, options.bodies, options.quiet) as report:
+        with common.progress_of_bodies(scene.path.name, end - first, options.quiet) as report:
             store = fill(
                 scene,
                 path,
@@ -234,26 +233,3 @@ def as_text(result: dict[str, Any]) -> str:
         for failure in result["failures"]["first"]:
             lines.append(f"    body {failure['body']} after {failure['time']:.6g} s: {failure['message']}")
     return "\n".join(lines)
-
-
-@contextmanager
-def _progress(
-    scene: Scene, bodies: tuple[int, int] | None, quiet: bool
-) -> Iterator[Callable[[int, float], Any] | None]:
-    """Show a progress bar with the rate on standard error, if that is a terminal."""
-    shown = progress_bar("{task.completed:.0f} of {task.total:.0f} bodies, {task.fields[rate]}")
-    if shown is None or quiet:
-        yield None
-        return
-    assert scene.ensemble is not None
-    first, end = bodies or (0, scene.ensemble.number)
-    number, begin = end - first, time.monotonic()
-    with shown as bar:
-        task = bar.add_task(scene.path.name, total=number, rate="…")
-
-        def report(_: int, fraction: float) -> None:
-            seconds = max(time.monotonic() - begin, 1e-3)
-            rate = f"{fraction * number / seconds:.3g} bodies/s"
-            bar.update(task, completed=fraction * number, rate=rate)
-
-        yield report

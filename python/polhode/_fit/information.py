@@ -47,17 +47,42 @@ def information(
     `scaling` has the powers of `Laws.scaling`.
     """
     top = int(np.argmax(at.moments))
-    ratios = at.ratios
     rest = [k for k in range(3) if k != top]
     jacobian = model.jacobian(at) / np.sqrt(variance)
-    of, laws = model.layout.places, model.laws
+    of = model.layout.places
     jacobian[:, of["shape"]] = _by_ratios(jacobian[:, of["shape"]], at, rest, top)
-    largest = float(np.exp(at.scale))
-    jacobian[:, of["scale"]] /= largest
+    jacobian[:, of["scale"]] /= float(np.exp(at.scale))
+    names, units, values, scale = _parameters(model, at, rest, top, scaling)
+    _, singular, rows = np.linalg.svd(jacobian * scale, full_matrices=False)
+    least = float(singular[0]) * model.flow.precision * len(scale) or 1.0
+    spread = 1 / np.maximum(singular, least)
+    root = scale[:, np.newaxis] * rows.T * spread
+    covariance = root @ root.T
+    unsure = [
+        *_large_errors(names, np.sqrt(np.diag(covariance)[:2])),
+        *_directions(names, rows, spread, singular <= least),
+        *_rivals(model, at, variance, others),
+    ]
+    if unsure:
+        unsure.append(_arc(model, at))
+    statements = [
+        *_always(model, scaling),
+        *unsure,
+        *_symmetries(at.ratios, covariance, rest),
+        *_bounds(model, at, np.sqrt(np.diag(covariance))[of["torque"]]),
+    ]
+    return Information(tuple(names), tuple(units), values, covariance, tuple(statements))
+
+
+def _parameters(
+    model: Model, at: Parameters, rest: list[int], top: int, scaling: Array | None
+) -> tuple[list[str], list[str], Array, Array]:
+    """Return names, units, values and sizes of the parameters, in the order of the columns."""
+    of, laws, largest = model.layout.places, model.laws, float(np.exp(at.scale))
     values, scale = np.zeros(model.size), np.ones(model.size)
     sizes = model.torque_sizes(at)
     given: dict[str, tuple[Any, Any, list[str], str]] = {
-        "shape": (ratios[rest], 1.0, [f"i{k + 1}/i{top + 1}" for k in rest], ""),
+        "shape": (at.ratios[rest], 1.0, [f"i{k + 1}/i{top + 1}" for k in rest], ""),
         "omega": (at.omega, model.rate, [f"omega_{k}" for k in _AXES], "rad/s"),
         "attitude": (0.0, 1.0, [f"attitude_{k}" for k in _AXES], "rad"),
         "axes": (0.0, 1.0, [f"axes_{k}" for k in _AXES], "rad"),
@@ -74,28 +99,7 @@ def information(
             names, units = names + own, units + [unit] * len(own)
     if laws is not None:
         units[of["torque"]] = laws.units(scaling)
-    _, singular, rows = np.linalg.svd(jacobian * scale, full_matrices=False)
-    least = float(singular[0]) * model.flow.precision * len(scale) or 1.0
-    spread = 1 / np.maximum(singular, least)
-    root = scale[:, np.newaxis] * rows.T * spread
-    covariance = root @ root.T
-    statements = _always(model, scaling)
-    errors = np.sqrt(np.diag(covariance)[:2])
-    unsure = [
-        f"{name}: its standard deviation is {error:.2g}"
-        for name, error in zip(names, errors, strict=False)
-        if error > _UNSURE
-    ]
-    unsure += _directions(names, rows, spread, singular <= least)
-    unsure += _rivals(model, at, variance, others)
-    if unsure:
-        unsure.append(_arc(model, at))
-    statements += [
-        *unsure,
-        *_symmetries(ratios, covariance, rest),
-        *_bounds(model, at, np.sqrt(np.diag(covariance))[of["torque"]]),
-    ]
-    return Information(tuple(names), tuple(units), values, covariance, tuple(statements))
+    return names, units, values, scale
 
 
 def _by_ratios(by_shape: Array, at: Parameters, rest: list[int], top: int) -> Array:
@@ -117,6 +121,13 @@ def _always(model: Model, scaling: Array | None) -> list[str]:
         relative = [] if scaling is None else [x for x, p in zip(model.laws.names, scaling, strict=True) if p]
         found.append(RELATIVE.format(", ".join(relative)) if relative else SCALE.format("the motion depends"))
     return found if model.layout.attitude else [*found, ATTITUDE]
+
+
+def _large_errors(names: list[str], errors: Array) -> Iterator[str]:
+    """Yield a statement for each of the first parameters with a large standard deviation."""
+    for name, error in zip(names, errors, strict=False):
+        if error > _UNSURE:
+            yield f"{name}: its standard deviation is {error:.2g}"
 
 
 def _directions(names: list[str], rows: Array, spread: Array, none: Any) -> Iterator[str]:

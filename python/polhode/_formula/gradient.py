@@ -29,7 +29,7 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
     def gradients(values: Mapping[str, Any] | None = None, /, **named: Any) -> Any:
         program, known = compiled(core, given(core, values, named))
         _require_scalar(program)
-        places = [_place(program, known, name) for name in names]
+        places = [_place(known, name) for name in names]
         data = [x._data if isinstance(x, Multivector) else x.matrix for x in known.values]
         if any(x.dtype == object for x in data):
             raise TypeError("gradients need floats; convert exact numbers with .astype(float)")
@@ -81,7 +81,7 @@ def _of_jax(jax: Any, value: Any) -> Any:
     return value._like(jax.numpy.asarray(value._data, dtype="float64"))
 
 
-def _place(program: _native.Program, known: Given, name: str) -> int:
+def _place(known: Given, name: str) -> int:
     wanted = _native.canonical(name)
     for i, ((other, *_), value) in enumerate(zip(known.kinds, known.values, strict=True)):
         if _native.canonical(other) == wanted:

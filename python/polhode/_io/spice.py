@@ -37,6 +37,12 @@ _CK_CLASS, _TYPE = 3, 3
 _RECORD, _SUMMARY, _MOST = 1024, (2, 6), 25
 # Names of time systems in epochs of SPICE.
 _SYSTEMS = {"UTC": "UTC", "TT": "TDT", "TDB": "TDB"}
+# What to give for an epoch or a frame that a motion does not have.
+_HINTS = {
+    "epoch": "epoch='YYYY-MM-DDThh:mm:ss'",
+    "reference_frame": "reference_frame='J2000'",
+    "body_frame": "body_frame= the name of a frame of class 3 in the frame kernel",
+}
 
 
 @explains_calls
@@ -110,52 +116,60 @@ def write_ck(
     check_target(Path(path))
     if not len(history):
         raise ValueError("the motion has no output times; a CK needs one or more")
-    hints = {
-        "epoch": "epoch='YYYY-MM-DDThh:mm:ss'",
-        "reference_frame": "reference_frame='J2000'",
-        "body_frame": "body_frame= the name of a frame of class 3 in the frame kernel",
-    }
-    given = {"epoch": epoch, "reference_frame": reference_frame, "body_frame": body_frame}
-    known = {name: x or history.attributes.get(name) for name, x in given.items()}
-    for name, hint in hints.items():
-        if known[name] is None:
-            raise ValueError(f"{name} is not known; give {hint}")
+    epoch = _known(history, "epoch", epoch)
+    reference_frame = _known(history, "reference_frame", reference_frame)
+    body_frame = _known(history, "body_frame", body_frame)
     system = str(time_system or history.attributes.get("time_system", "UTC"))
     with _loaded(kernels) as spice, tempfile.TemporaryDirectory() as folder:
-        number = _instrument(spice, str(known["body_frame"]))
-        _require_frame(spice, str(known["reference_frame"]), "reference_frame")
-        start = _of_epoch(spice, str(known["epoch"]), system)
+        number = _instrument(spice, body_frame)
+        _require_frame(spice, reference_frame, "reference_frame")
+        start = _of_epoch(spice, epoch, system)
         clock = spice.ckmeta(number, "SCLK")
         start_tt = spice.unitim(start, "ET", "TDT")
         ticks = _ticks(spice, clock, [spice.unitim(start_tt + t, "TDT", "ET") for t in history.time.tolist()])
         if (np.diff(ticks) <= 0).any():
             k = int(np.argmax(np.diff(ticks) <= 0))
             raise ValueError(f"output times {k} and {k + 1} are the same for the clock; give fewer of them")
-        quaternions = np.asarray((~history.rotor).to_quaternion(order="wxyz"))
-        rates = np.zeros((len(history), 3))
-        if history.omega_body is not None:
-            rates = np.asarray(history.rotor(history.omega_body).components)
         temporary = Path(folder) / "a.bc"
-        handle = spice.ckopn(str(temporary), f"polhode {_native.__version__}", 0)
-        try:
-            spice.ckw03(
-                handle,
-                ticks[0],
-                ticks[-1],
-                number,
-                str(known["reference_frame"]),
-                history.omega_body is not None,
-                str(history.attributes.get("object_name", "polhode"))[:40],
-                len(ticks),
-                ticks,
-                quaternions,
-                rates,
-                1,
-                ticks[:1],
-            )
-        finally:
-            spice.ckcls(handle)
+        _write_segment(spice, temporary, history, number, reference_frame, ticks)
         write_atomically({Path(path): temporary.read_bytes()})
+
+
+def _known(history: AttitudeHistory, name: str, given: str | None) -> str:
+    """Return an epoch or a frame as given, by default that of the history."""
+    known = given or history.attributes.get(name)
+    if known is None:
+        raise ValueError(f"{name} is not known; give {_HINTS[name]}")
+    return str(known)
+
+
+def _write_segment(
+    spice: Any, path: Path, history: AttitudeHistory, number: int, frame: str, ticks: Array
+) -> None:
+    """Write a CK with one segment: the attitudes of an instrument in a frame, at ticks of its clock."""
+    quaternions = np.asarray((~history.rotor).to_quaternion(order="wxyz"))
+    rates = np.zeros((len(history), 3))
+    if history.omega_body is not None:
+        rates = np.asarray(history.rotor(history.omega_body).components)
+    handle = spice.ckopn(str(path), f"polhode {_native.__version__}", 0)
+    try:
+        spice.ckw03(
+            handle,
+            ticks[0],
+            ticks[-1],
+            number,
+            frame,
+            history.omega_body is not None,
+            str(history.attributes.get("object_name", "polhode"))[:40],
+            len(ticks),
+            ticks,
+            quaternions,
+            rates,
+            1,
+            ticks[:1],
+        )
+    finally:
+        spice.ckcls(handle)
 
 
 @explains_calls

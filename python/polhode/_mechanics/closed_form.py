@@ -48,7 +48,7 @@ class ClosedForm(metaclass=ListsOwnNames):
         return self._core.shape
 
     def __getitem__(self, index: Any) -> Self:
-        parts, _, _ = batch_index(index, self.shape)
+        parts, _ = batch_index(index, self.shape)
         numbers = np.arange(int(np.prod(self.shape))).reshape(self.shape)
         return self._picked(numbers[parts], self._rows())
 

@@ -22,6 +22,7 @@ from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import BYTES_OF_POINT, Trajectory
 from polhode._support.arrays import as_count
+from polhode._support.blocks import in_blocks
 from polhode._support.calls import explains_calls
 from polhode._support.memory import require_array
 from polhode.event import Event
@@ -250,13 +251,5 @@ def simulate_blocks(
         raise ValueError(f"block must be at least 1, got {block}")
     count, length = checked_threads(threads), ensemble.shape[0]
     size = block or max(1, _BLOCK * length // max(ensemble.bytes, 1))
-
-    def motion(rows: slice) -> Trajectory:
-        def of_all(number: int, fraction: float) -> None:
-            if progress is not None:
-                progress(number, (rows.start + fraction * (rows.stop - rows.start)) / length)
-
-        return ensemble.block(rows).run(count, of_all if progress else None)
-
-    blocks = (slice(i, min(i + size, length)) for i in range(0, length, size))
-    return ((rows, motion(rows)) for rows in blocks)
+    blocks = in_blocks(slice(0, length), size, progress)
+    return ((rows, ensemble.block(rows).run(count, report)) for rows, report in blocks)

@@ -155,7 +155,7 @@ class State(metaclass=ListsOwnNames):
 
     def __getitem__(self, index: Any) -> State:
         shape = self.shape
-        parts, rows, _ = batch_index(index, shape)
+        parts, rows = batch_index(index, shape)
 
         def picked(value: Multivector) -> Array:
             components = value.components

@@ -211,7 +211,7 @@ class Trajectory(metaclass=ListsOwnNames):
     def __getitem__(self, index: Any) -> Trajectory:
         """Return the motions of some bodies of a batch, by an index of NumPy over the batch's axes."""
         try:
-            parts, rows, picked = batch_index(index, self.shape)
+            parts, rows = batch_index(index, self.shape)
         except IndexError as error:
             remedy = "" if self.shape else "; the state at a time t of one motion is at(t)"
             raise IndexError(f"{error}{remedy}") from None
@@ -228,11 +228,11 @@ class Trajectory(metaclass=ListsOwnNames):
             _drift=drift,
             inertia=self.inertia if isinstance(self.inertia, Inertia) else self.inertia[parts],
             certificate=self.certificate._of(parts),
-            failures=self._failures_at(parts, picked),
+            failures=self._failures_at(parts),
             attributes=dict(self.attributes),
         )
 
-    def _failures_at(self, index: tuple[Any, ...], shape: Shape) -> tuple[Failure, ...]:
+    def _failures_at(self, index: tuple[Any, ...]) -> tuple[Failure, ...]:
         """Return the failures among the picked bodies, with their new indices."""
         if not self.failures:
             return ()

@@ -22,6 +22,7 @@ from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.ensemble import EnsembleSpec
 from polhode._scene.table import TableReader
 from polhode._support.arrays import Array, as_count, frozen, hands_out_copies
+from polhode._support.blocks import Report, in_blocks
 from polhode._support.calls import created_by
 from polhode._support.file_kinds import EXAMPLES
 from polhode._support.files import is_endless, printable_stem
@@ -433,15 +434,10 @@ class Scene(metaclass=ListsOwnNames):
         if block is not None and as_count(block, "block") < 1:
             raise ValueError(f"block must be at least 1, got {block}")
         number, size = self.ensemble.number, block or self.block_of_motions
-        for start in range(0, number, size):
-            rows = slice(start, min(start + size, number))
-
-            def of_all(one: int, fraction: float, rows: slice = rows) -> None:
-                if progress is not None:
-                    progress(one, (rows.start + fraction * (rows.stop - rows.start)) / number)
-
-            trajectory = self._drawn(rows, of_all if progress else None, threads)
-            of_all(1, 1.0)
+        for rows, report in in_blocks(slice(0, number), size, progress):
+            trajectory = self._drawn(rows, report, threads)
+            if report is not None:
+                report(1, 1.0)
             yield rows, trajectory
 
     @property
@@ -459,9 +455,7 @@ class Scene(metaclass=ListsOwnNames):
         fits = max(1, _BLOCK * number // self.result_bytes)
         return min(fits, max(_FEW, -(-number // _BLOCKS)))
 
-    def _drawn(
-        self, rows: slice, progress: Callable[[int, float], object] | None, threads: int | None
-    ) -> Trajectory:
+    def _drawn(self, rows: slice, progress: Report | None, threads: int | None) -> Trajectory:
         """Return the motions of some bodies of the ensemble."""
         check_progress(progress)
         count = rows.stop - rows.start

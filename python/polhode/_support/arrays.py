@@ -321,14 +321,14 @@ def index_message(error: IndexError, shape: Shape, index: tuple[Any, ...]) -> st
     return f"{text} (batch shape {shape})"
 
 
-def batch_index(index: Any, shape: Shape) -> tuple[tuple[Any, ...], tuple[Any, ...], Shape]:
-    """Return an index of NumPy over a batch as a tuple, one that leaves a last axis, and the shape picked."""
+def batch_index(index: Any, shape: Shape) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """Return an index of NumPy over a batch as a tuple, and one that leaves a last axis."""
     parts = index if isinstance(index, tuple) else (index,)
     try:
-        picked = np.broadcast_to(np.False_, shape)[parts].shape
+        np.broadcast_to(np.False_, shape)[parts]
     except IndexError as error:
         raise IndexError(index_message(error, shape, parts)) from None
-    return parts, (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts, picked
+    return parts, (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
 
 
 def joined(*parts: Array) -> Array:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from polhode._report.ensemble.reduced import reduction_of
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._scene.scene import Scene
-
-Report = Callable[[int, float], object]
+from polhode._support.blocks import Report
 
 
 def compute_block(

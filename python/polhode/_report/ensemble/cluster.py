@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from polhode._report.ensemble.block import Report, compute_block
+from polhode._report.ensemble.block import compute_block
 from polhode._report.ensemble.store import EnsembleStore, StoreError
 from polhode._scene.scene import Scene
+from polhode._support.blocks import Report
 from polhode._support.extras import optional
 
 # Seconds to wait for a scheduler.

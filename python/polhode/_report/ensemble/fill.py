@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from polhode import _native
-from polhode._report.ensemble.block import Report, compute_block
+from polhode._report.ensemble.block import compute_block
 from polhode._report.ensemble.cluster import ClusterError, check_address, compute_on, connected
 from polhode._report.ensemble.layout import Variable
 from polhode._report.ensemble.netcdf import bytes_of_file
@@ -17,6 +17,7 @@ from polhode._report.ensemble.reduced import ReducedBlock, over_bodies, reductio
 from polhode._report.ensemble.store import EnsembleStore
 from polhode._scene.scene import Scene
 from polhode._support import memory
+from polhode._support.blocks import Report, part_of
 from polhode._support.counts import counted
 from polhode._support.files import check_target
 from polhode._support.locks import LockedError
@@ -136,17 +137,10 @@ def _compute(
     """Compute blocks one after the other; each is checked when its turn comes."""
     for index in blocks:
         if store.state(index) != "done":
-            compute_block(store, scene, index, _part_of(progress, index - blocks.start, len(blocks)), threads)
+            report = part_of(progress, index - blocks.start, 1, len(blocks))
+            compute_block(store, scene, index, report, threads)
         if progress is not None:
             progress(1, (index + 1 - blocks.start) / len(blocks))
-
-
-def _part_of(progress: Report | None, done: int, count: int) -> Report | None:
-    """Return the progress of one of `count` blocks."""
-    if progress is None:
-        return None
-    report = progress
-    return lambda number, fraction: report(number, (done + fraction) / count)
 
 
 def _kept(store: EnsembleStore) -> str:

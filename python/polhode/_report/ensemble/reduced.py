@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,8 +28,7 @@ from polhode._report.ensemble.collect import (
 from polhode._report.ensemble.layout import Variable
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
-
-Report = Callable[[int, float], object]
+from polhode._support.blocks import Report, in_blocks
 
 # What needs the motion of the nominal body.
 _COMPARED = {"extrema", "quantiles", "events"}
@@ -111,20 +110,13 @@ class Reduction:
 
     def block(self, rows: slice, progress: Report | None, threads: int | None) -> ReducedBlock:
         """Return some bodies, of which a few at a time have all their states in memory."""
-        scene, count = self.scene, rows.stop - rows.start
+        scene = self.scene
         counts = _native.BinCounts(len(scene.times)) if self.counting else None
         found, size = [], scene.block_of_motions
-        for first in range(rows.start, rows.stop, size):
-            some = slice(first, min(first + size, rows.stop))
-
-            def of_all(one: int, fraction: float, some: slice = some) -> None:
-                done = some.start - rows.start + fraction * (some.stop - some.start)
-                assert progress is not None
-                progress(one, done / count)
-
-            found.append(self._few(some, counts, of_all if progress else None, threads))
-            if progress is not None:
-                of_all(1, 1.0)
+        for some, report in in_blocks(rows, size, progress):
+            found.append(self._few(some, counts, report, threads))
+            if report is not None:
+                report(1, 1.0)
         columns = {name: np.concatenate([part[0][name] for part in found]) for name in found[0][0]}
         failures = [
             Failure((first * size + failure.index[0],), failure.time, failure.message)
@@ -278,15 +270,8 @@ def blocks_of(
     """Yield all bodies of an ensemble in blocks."""
     scene = reduction.scene
     assert scene.ensemble is not None
-    number = scene.ensemble.number
-    for start in range(0, number, scene.block):
-        rows = slice(start, min(start + scene.block, number))
-
-        def of_all(one: int, fraction: float, rows: slice = rows) -> None:
-            assert progress is not None
-            progress(one, (rows.start + fraction * (rows.stop - rows.start)) / number)
-
-        yield rows, reduction.block(rows, of_all if progress else None, threads)
+    for rows, report in in_blocks(slice(0, scene.ensemble.number), scene.block, progress):
+        yield rows, reduction.block(rows, report, threads)
 
 
 def over_bodies(reduction: Reduction, counts: _native.BinCounts) -> Iterator[Variable]:

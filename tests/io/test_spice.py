@@ -91,39 +91,40 @@ def test_a_known_turn(kernels, tmp_path):
         spice.kclear()
 
 
-def test_what_spice_writes_is_read(kernels, tmp_path):
-    """Written by spiceypy alone: a quarter turn about z of the frame, from m2q of the C-matrix."""
-    path = str(tmp_path / "a.bc")
+def write_by_spice(path, kernels, times, begins):
+    """Write a quarter turn about z of the frame by spiceypy alone, in intervals that begin at these times."""
     for kernel in kernels:
         spice.furnsh(kernel)
     # Rows of the C-matrix are the axes of the body in J2000: x of the body is y of J2000.
     quaternion = spice.m2q(np.array([[0, 1.0, 0], [-1, 0, 0], [0, 0, 1]]))
-    ticks = [spice.sce2c(-999, spice.str2et(EPOCH) + t) for t in (0, 1)]
+    ticks, starts = ([spice.sce2c(-999, spice.str2et(EPOCH) + t) for t in given] for given in (times, begins))
+    n, rates = len(times), [[0, 0.5, 0]] * len(times)
     handle = spice.ckopn(path, "test", 0)
-    rates = [[0, 0.5, 0]] * 2
-    spice.ckw03(
-        handle,
-        ticks[0],
-        ticks[1],
-        -999000,
-        "J2000",
-        True,
-        "x",
-        2,
-        ticks,
-        [quaternion] * 2,
-        rates,
-        1,
-        ticks[:1],
-    )
+    span = ticks[0], ticks[-1]
+    attitudes = n, ticks, [quaternion] * n, rates
+    spice.ckw03(handle, *span, -999000, "J2000", True, "x", *attitudes, len(starts), starts)
     spice.ckcls(handle)
     spice.kclear()
+
+
+def test_what_spice_writes_is_read(kernels, tmp_path):
+    path = str(tmp_path / "a.bc")
+    write_by_spice(path, kernels, [0, 1], [0])
     history = ph.io.read_ck(path, kernels=kernels, epoch=EPOCH)
     np.testing.assert_allclose(history.time, [0, 1], atol=CLOCK_ERROR)
     assert history.rotor[0](ph.e1).is_close(ph.e2, atol=1e-15)
     # y of J2000 is x of the body.
     np.testing.assert_allclose(history.omega_body.components, [[0.5, 0, 0]] * 2, atol=1e-15)
     assert history.attributes["body_frame"] == "CURLEW_BODY"
+
+
+def test_gaps_between_intervals_are_reported(kernels, tmp_path):
+    path = str(tmp_path / "a.bc")
+    write_by_spice(path, kernels, [0, 1, 60, 61], [0, 60])
+    with pytest.warns(UserWarning, match=r"a\.bc: the segment has 2 interpolation intervals") as caught:
+        history = ph.io.read_ck(path, kernels=kernels, epoch=EPOCH)
+    np.testing.assert_allclose(history.time, [0, 1, 60, 61], atol=CLOCK_ERROR)
+    assert caught[0].filename == __file__
 
 
 def test_what_is_written_is_read(kernels, tmp_path):

@@ -11,6 +11,7 @@ import contextlib
 import os
 import struct
 import tempfile
+import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -195,7 +196,8 @@ def read_ck(
     Returns
     -------
     AttitudeHistory
-        With the names of both frames as attributes. Times are known to about 1e-7 s.
+        With the names of both frames as attributes. Times are known to about 1e-7 s. A warning reports
+        several interpolation intervals, since the history does not keep the gaps between them.
 
     Raises
     ------
@@ -254,6 +256,8 @@ def read_ck(
             if not 0 < count <= os.path.getsize(path) // 32:
                 raise FileError(f"{name}: error: the segment has {count} records; the file may be damaged")
             records = np.array([spice.ckgr03(handle, descriptor, k + 1) for k in range(count)])
+            # The last numbers of a segment are those of its intervals and of its records.
+            intervals = int(spice.dafgda(handle, int(facts[5]) - 1, int(facts[5]))[0])
         finally:
             spice.dafcls(handle)
         clock = spice.ckmeta(number, "SCLK")
@@ -267,6 +271,12 @@ def read_ck(
     if not (np.isfinite(records).all() and (np.abs(records[:, 1:5]) <= 2).all()):
         raise FileError(
             f"{name}: error: the segment has numbers that are not those of attitudes; it is damaged"
+        )
+    if intervals > 1:
+        warnings.warn(
+            f"{name}: the segment has {intervals} interpolation intervals; SPICE has no attitudes between "
+            "them, but the history does not keep these gaps",
+            stacklevel=3,
         )
     attributes = {"epoch": epoch, "time_system": system, "reference_frame": space, "body_frame": body}
     try:

@@ -2,6 +2,7 @@
 
 import datetime
 
+import numpy as np
 import pytest
 
 from polhode._io.epochs import elapsed, later, parse_epoch
@@ -45,6 +46,32 @@ def test_a_leap_second_is_written_as_60():
         "2017-01-01T00:00:00",
     ]
     assert elapsed(before, parse_epoch("2016-12-31T23:59:60.5", "UTC"), "UTC") == 1.5
+
+
+DAY = datetime.datetime(2026, 1, 2)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        DAY,
+        DAY.replace(tzinfo=datetime.UTC),
+        DAY.replace(hour=5, tzinfo=datetime.timezone(datetime.timedelta(hours=5))),
+        np.datetime64("2026-01-02"),
+        np.datetime64("2026-01-02T00:00"),
+        np.datetime64("2026-01-02T00:00:00.000000000"),
+    ],
+    ids=str,
+)
+def test_datetimes_are_epochs(given):
+    assert parse_epoch(given, "UTC") == parse_epoch("2026-01-02T00:00:00", "UTC")
+
+
+def test_a_time_zone_belongs_to_utc():
+    with pytest.raises(ValueError, match="has a time zone, which belongs to UTC, not to TT"):
+        parse_epoch(DAY.replace(tzinfo=datetime.UTC), "TT")
+    with pytest.raises(TypeError, match=r"a string such as .* or a datetime, got int"):
+        parse_epoch(2026, "UTC")
 
 
 @pytest.mark.parametrize(

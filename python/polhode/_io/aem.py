@@ -7,6 +7,7 @@ the frame of space and B that of the body, it is the Hamilton quaternion of our 
 
 from __future__ import annotations
 
+import datetime
 import math
 import os
 import re
@@ -17,7 +18,7 @@ import numpy as np
 
 from polhode._algebra.constructors import bivector
 from polhode._algebra.rotor import Rotor
-from polhode._io.epochs import TIME_SYSTEMS, Epoch, elapsed, parse_epoch
+from polhode._io.epochs import TIME_SYSTEMS, Epoch, GivenEpoch, elapsed, parse_epoch
 from polhode._io.history import AttitudeHistory, FileError, continuous, require_file
 from polhode._mechanics.robots.document import Source
 from polhode._support.arrays import Array
@@ -69,7 +70,7 @@ def read_aem(
     path: str | os.PathLike[str],
     *,
     segment: int | None = None,
-    epoch: str | None = None,
+    epoch: str | datetime.datetime | np.datetime64 | None = None,
     body_frame: str | None = None,
     quaternion_type: str | None = None,
     attitude_dir: str | None = None,
@@ -87,7 +88,7 @@ def read_aem(
     segment
         Number of the segment from 1, for a file with several.
     epoch
-        Epoch of time 0, in the time system of the file; by default START_TIME.
+        Epoch of time 0, as text or a datetime, in the time system of the file; by default START_TIME.
     body_frame
         Which of REF_FRAME_A and REF_FRAME_B is that of the body, by name. By default the one that the
         standard names so: ``SC_BODY``, ``SC_BODY_1``, ...
@@ -281,7 +282,7 @@ def _word(
     return stated
 
 
-def _times(segment: _Segment, given: str | None) -> tuple[str, Array, Epoch]:
+def _times(segment: _Segment, given: GivenEpoch | None) -> tuple[str, Array, Epoch]:
     """Return the time system, the times in s and the epoch of time 0."""
     system = _required(segment, "TIME_SYSTEM")
     if system.text not in TIME_SYSTEMS:

@@ -25,7 +25,7 @@ def write_aem(
     motion: Trajectory | AttitudeHistory,
     path: str | os.PathLike[str],
     *,
-    epoch: str | None = None,
+    epoch: str | datetime.datetime | np.datetime64 | None = None,
     time_system: str | None = None,
     reference_frame: str | None = None,
     body_frame: str | None = None,
@@ -45,7 +45,7 @@ def write_aem(
     Parameters
     ----------
     epoch
-        Epoch of time 0, ``YYYY-MM-DDThh:mm:ss.d``; by default ``motion.attributes["epoch"]``.
+        Epoch of time 0, ``YYYY-MM-DDThh:mm:ss.d`` or a datetime; by default ``motion.attributes["epoch"]``.
     time_system
         ``"UTC"``, ``"TAI"``, ``"TT"``, ``"TDB"``, ``"GPS"``, ``"TCB"`` or ``"TCG"``; by default the
         attribute, else ``"UTC"``. In UTC leap seconds are counted.
@@ -119,7 +119,9 @@ def aem(motion: Trajectory | AttitudeHistory, **options: Any) -> str:
     system = _known(history, options, "time_system") or "UTC"
     if system not in TIME_SYSTEMS:
         raise ValueError(f"time_system must be one of {', '.join(TIME_SYSTEMS)}, got {system!r}")
-    epoch = _known(history, options, "epoch")
+    epoch = options.get("epoch")
+    if epoch is None:
+        epoch = history.attributes.get("epoch")
     if epoch is None:
         raise ValueError("the epoch of time 0 is not known; give epoch='YYYY-MM-DDThh:mm:ss' for START_TIME")
     frame = _known(history, options, "reference_frame")

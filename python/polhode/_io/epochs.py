@@ -7,6 +7,9 @@ import re
 from bisect import bisect_right
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
+from typing import TypeAlias
+
+import numpy as np
 
 # Days that begin after a leap second, 1 July and 1 January of these years (IERS Bulletin C).
 _JULY = (1972, 1981, 1982, 1983, 1985, 1992, 1993, 1994, 1997, 2012, 2015)
@@ -27,6 +30,10 @@ _PATTERN = re.compile(
 _DECIMALS = Decimal(1).scaleb(-18)
 
 
+# How users write an epoch.
+GivenEpoch: TypeAlias = str | datetime.datetime | np.datetime64
+
+
 @dataclass(frozen=True, order=True)
 class Epoch:
     """A day, as a proleptic ordinal, and the seconds since it began."""
@@ -44,19 +51,15 @@ class Epoch:
         return f"{date}T{minutes // 60:02d}:{minutes % 60:02d}:{first.zfill(2)}{point}{rest}"
 
 
-def parse_epoch(text: str, system: str) -> Epoch:
-    """Return the epoch of ``YYYY-MM-DDThh:mm:ss.d`` or ``YYYY-DDDThh:mm:ss.d``.
+def parse_epoch(given: GivenEpoch, system: str) -> Epoch:
+    """Return the epoch of ``YYYY-MM-DDThh:mm:ss.d`` or ``YYYY-DDDThh:mm:ss.d``, or of a datetime.
 
     Raises
     ------
     ValueError
         For another format, a day or time that does not exist in the time system, and UTC before 1972.
     """
-    if not isinstance(text, str):
-        raise TypeError(
-            f"an epoch must be a string such as '2026-01-01T00:00:00', got {type(text).__name__}; "
-            "write x.isoformat() for a datetime x, and str(x) for a numpy.datetime64"
-        )
+    text = _text_of(given, system)
     found = _PATTERN.fullmatch(text)
     if found is None:
         raise ValueError(f"an epoch must be YYYY-MM-DDThh:mm:ss or YYYY-DDDThh:mm:ss, got {text!r}")
@@ -77,6 +80,24 @@ def parse_epoch(text: str, system: str) -> Epoch:
     if int(hour) > 23 or int(minute) > 59 or second >= 60 + leap:
         raise ValueError(f"{text!r} is not a time of that day in {system}")
     return Epoch(day, 60 * minutes + second)
+
+
+def _text_of(given: GivenEpoch, system: str) -> str:
+    if isinstance(given, str):
+        return given
+    if isinstance(given, np.datetime64):
+        is_coarse = np.datetime_data(given.dtype)[0] in ("Y", "M", "W", "D", "h", "m")
+        return str(given.astype("datetime64[s]") if is_coarse else given)
+    if not isinstance(given, datetime.datetime):
+        raise TypeError(
+            "an epoch must be a string such as '2026-01-01T00:00:00' or a datetime, "
+            f"got {type(given).__name__}"
+        )
+    if given.tzinfo is not None:
+        if system != "UTC":
+            raise ValueError(f"{given!r} has a time zone, which belongs to UTC, not to {system}")
+        given = given.astimezone(datetime.UTC).replace(tzinfo=None)
+    return given.isoformat()
 
 
 def elapsed(start: Epoch, end: Epoch, system: str) -> float:

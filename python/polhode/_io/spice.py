@@ -8,6 +8,7 @@ components in the reference frame.
 from __future__ import annotations
 
 import contextlib
+import datetime
 import os
 import struct
 import tempfile
@@ -21,7 +22,7 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.constructors import bivector
 from polhode._algebra.rotor import Rotor
-from polhode._io.epochs import parse_epoch
+from polhode._io.epochs import GivenEpoch, parse_epoch
 from polhode._io.history import AttitudeHistory, FileError, continuous, require_file
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array
@@ -38,9 +39,8 @@ _CK_CLASS, _TYPE = 3, 3
 _RECORD, _SUMMARY, _MOST = 1024, (2, 6), 25
 # Names of time systems in epochs of SPICE.
 _SYSTEMS = {"UTC": "UTC", "TT": "TDT", "TDB": "TDB"}
-# What to give for an epoch or a frame that a motion does not have.
+# What to give for a frame that a motion does not have.
 _HINTS = {
-    "epoch": "epoch='YYYY-MM-DDThh:mm:ss'",
     "reference_frame": "reference_frame='J2000'",
     "body_frame": "body_frame= the name of a frame of class 3 in the frame kernel",
 }
@@ -54,7 +54,7 @@ def write_ck(
     kernels: _Paths,
     body_frame: str | None = None,
     reference_frame: str | None = None,
-    epoch: str | None = None,
+    epoch: str | datetime.datetime | np.datetime64 | None = None,
     time_system: str | None = None,
 ) -> None:
     r"""Write the attitudes of one body as a SPICE CK of type 3, atomically.
@@ -73,8 +73,8 @@ def write_ck(
     reference_frame
         Name of the frame of space, such as ``"J2000"``.
     epoch, time_system
-        Epoch of time 0 in ``"UTC"``, ``"TT"`` or ``"TDB"``; times are SI seconds from it on. These four are
-        by default the attributes of the motion, UTC for the time system.
+        Epoch of time 0, as text or a datetime, in ``"UTC"``, ``"TT"`` or ``"TDB"``; times are SI seconds from
+        it on. These four are by default the attributes of the motion, UTC for the time system.
 
     Raises
     ------
@@ -117,7 +117,9 @@ def write_ck(
     check_target(Path(path))
     if not len(history):
         raise ValueError("the motion has no output times; a CK needs one or more")
-    epoch = _known(history, "epoch", epoch)
+    epoch = epoch or history.attributes.get("epoch")
+    if epoch is None:
+        raise ValueError("epoch is not known; give epoch='YYYY-MM-DDThh:mm:ss'")
     reference_frame = _known(history, "reference_frame", reference_frame)
     body_frame = _known(history, "body_frame", body_frame)
     system = str(time_system or history.attributes.get("time_system", "UTC"))
@@ -137,7 +139,7 @@ def write_ck(
 
 
 def _known(history: AttitudeHistory, name: str, given: str | None) -> str:
-    """Return an epoch or a frame as given, by default that of the history."""
+    """Return a frame as given, by default that of the history."""
     known = given or history.attributes.get(name)
     if known is None:
         raise ValueError(f"{name} is not known; give {_HINTS[name]}")
@@ -179,7 +181,7 @@ def read_ck(
     *,
     kernels: _Paths,
     segment: int | None = None,
-    epoch: str | None = None,
+    epoch: str | datetime.datetime | np.datetime64 | None = None,
     time_system: str | None = None,
 ) -> AttitudeHistory:
     r"""Read the records of a segment of a SPICE CK of type 3.
@@ -191,7 +193,8 @@ def read_ck(
     segment
         Number of the segment from 1, for a file with several.
     epoch, time_system
-        Epoch of time 0, in ``"UTC"`` by default; without it, that of the first record in TDB, to 1e-9 s.
+        Epoch of time 0, as text or a datetime, in ``"UTC"`` by default; without it, that of the first record
+        in TDB, to 1e-9 s.
 
     Returns
     -------
@@ -278,7 +281,8 @@ def read_ck(
             "them, but the history does not keep these gaps",
             stacklevel=3,
         )
-    attributes = {"epoch": epoch, "time_system": system, "reference_frame": space, "body_frame": body}
+    stated = epoch if isinstance(epoch, str) else str(parse_epoch(epoch, system))
+    attributes = {"epoch": stated, "time_system": system, "reference_frame": space, "body_frame": body}
     try:
         quaternions = continuous(records[:, 1:5] * [1.0, -1.0, -1.0, -1.0])
         rotor = Rotor.from_quaternion(quaternions, order="wxyz")
@@ -338,7 +342,7 @@ def _words(spice: Any, error: Any) -> str:
     return f"SPICE: {' '.join(str(getattr(error, 'long', '') or error.short).split())}"
 
 
-def _of_epoch(spice: Any, epoch: str, system: str) -> float:
+def _of_epoch(spice: Any, epoch: GivenEpoch, system: str) -> float:
     if system not in _SYSTEMS:
         raise ValueError(f"time_system of a CK must be UTC, TT or TDB, got {system!r}")
     text = str(parse_epoch(epoch, system)).replace("T", " ")

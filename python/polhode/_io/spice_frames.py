@@ -5,6 +5,7 @@ They are written without SPICE. Frames and their numbers are arguments; none has
 
 from __future__ import annotations
 
+import datetime
 import os
 import re
 from collections.abc import Sequence
@@ -270,7 +271,13 @@ def write_fk(path: str | os.PathLike[str], frames: Sequence[TwoVectorFrame | CkF
 
 
 @explains_calls
-def write_sclk(path: str | os.PathLike[str], *, clock: int, epoch: str, time_system: str = "UTC") -> None:
+def write_sclk(
+    path: str | os.PathLike[str],
+    *,
+    clock: int,
+    epoch: str | datetime.datetime | np.datetime64,
+    time_system: str = "UTC",
+) -> None:
     """Write the SPICE clock kernel of a clock that runs with TT, atomically.
 
     The clock has seconds and ticks of 1/65536 s, reads 0 at the epoch, and runs for 136 years. It serves
@@ -281,8 +288,8 @@ def write_sclk(path: str | os.PathLike[str], *, clock: int, epoch: str, time_sys
     clock
         Its number, negative: by custom that of the spacecraft.
     epoch, time_system
-        When the clock reads 0, not later than the first attitude, in ``"UTC"``, ``"TT"``, ``"TAI"`` or
-        ``"GPS"``.
+        When the clock reads 0, as text or a datetime, not later than the first attitude, in ``"UTC"``,
+        ``"TT"``, ``"TAI"`` or ``"GPS"``.
 
     Raises
     ------

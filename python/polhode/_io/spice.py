@@ -117,7 +117,7 @@ def write_ck(
     check_target(Path(path))
     if not len(history):
         raise ValueError("the motion has no output times; a CK needs one or more")
-    epoch = epoch or history.attributes.get("epoch")
+    epoch = history.attributes.get("epoch") if epoch is None else epoch
     if epoch is None:
         raise ValueError("epoch is not known; give epoch='YYYY-MM-DDThh:mm:ss'")
     reference_frame = _known(history, "reference_frame", reference_frame)
@@ -265,7 +265,7 @@ def read_ck(
             spice.dafcls(handle)
         clock = spice.ckmeta(number, "SCLK")
         seconds = [spice.sct2e(clock, ticks) for ticks in records[:, 0]]
-        system = time_system or ("UTC" if epoch else "TDB")
+        system = time_system or ("UTC" if epoch is not None else "TDB")
         if epoch is None:
             epoch = str(spice.timout(seconds[0], "YYYY-MM-DDTHR:MN:SC.######### ::TDB"))
         start = spice.unitim(_of_epoch(spice, epoch, system), "ET", "TDT")

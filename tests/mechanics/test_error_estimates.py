@@ -177,7 +177,7 @@ def test_the_error_of_a_chaotic_motion_names_a_time_that_is_reached(heavy):
     times = np.linspace(0, 1000, 401)
     with pytest.raises(ValueError, match="still differ completely") as refused:
         ph.simulate(ASYMMETRIC, state, times, law)
-    until = float(re.search("up to t = (.*) s, where", str(refused.value))[1])
+    until = float(re.search("agree up to t = (.*) s; ", str(refused.value))[1])
     assert 10 < until < 1000
     assert ph.simulate(ASYMMETRIC, state, times[times <= until], law).certificate.error_estimate <= 1e-6
 

@@ -131,18 +131,16 @@ fn bound(what: &str) -> &'static str {
 }
 
 fn unreached(reached: f64, step: f64, agreed: Option<f64>) -> String {
-    let remedy = agreed.map_or("simulate a shorter time".to_owned(), |time| {
-        format!("simulate up to t = {} s, where results still agree", seconds(time))
-    });
+    let agree = agreed.map_or(String::new(), |time| format!("results agree up to t = {} s; ", seconds(time)));
     if reached > 0.1 {
         return format!(
             "results still differ completely at steps of {step:.3e} s, because the motion amplifies rounding; \
-             {remedy}, or give a step"
+             {agree}simulate a shorter time, or give a step"
         );
     }
     format!(
         "halving the step to {step:.3e} s leaves an error of {reached:.1e}, because the motion amplifies \
-         rounding; use rtol >= {:.0e} or {remedy}",
+         rounding; {agree}use rtol >= {:.0e} or simulate a shorter time",
         2.0 * reached
     )
 }

@@ -49,10 +49,10 @@ fn forces(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResu
             formulas.into_iter().map(Law::Formula).collect()
         }
         "function" => {
-            let (call, spins) = arguments.extract()?;
+            let (call, with_omega) = arguments.extract()?;
             let callback = Callback { call, raised: raised.clone(), what: "force" };
             vec![Law::Function(Function::new(move |seen| {
-                callback.at(seen.time, |py| arguments_of_force(py, seen, spins), vector)
+                callback.at(seen.time, |py| arguments_of_force(py, seen, with_omega), vector)
             }))]
         }
         _ => {
@@ -64,10 +64,10 @@ fn forces(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResu
 }
 
 /// The arguments of a function at a point, with the angular velocity or without.
-fn arguments_of_force<'py>(py: Python<'py>, seen: &Seen, spins: bool) -> PyResult<Bound<'py, PyTuple>> {
+fn arguments_of_force<'py>(py: Python<'py>, seen: &Seen, with_omega: bool) -> PyResult<Bound<'py, PyTuple>> {
     let (position, velocity) = (vector_of(py, seen.position)?, vector_of(py, seen.velocity)?);
     let rotor = rotor_of(py, seen.rotor)?;
-    if !spins {
+    if !with_omega {
         return (seen.time, position, velocity, rotor).into_pyobject(py);
     }
     (seen.time, position, velocity, rotor, bivector_of(py, seen.omega)?).into_pyobject(py)

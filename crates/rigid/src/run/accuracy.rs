@@ -73,13 +73,14 @@ pub(crate) fn difference(
     outputs.chain(events).fold(0.0, f64::max)
 }
 
-/// The last output time up to which two sweeps differ by no more than this, in s, if that is after the start.
+/// The last output time up to which two sweeps differ by no more than this, in s; None if they do not differ by more
+/// later, or not agree after the start.
 pub(crate) fn agreement(scales: &Scales, coarse: &Sweep, fine: &Sweep, within: f64) -> Option<f64> {
     let pairs = coarse.states.iter().zip(&fine.states);
-    let differences = pairs.map(|(a, b)| (apart(scales, fine, a, b), b.phase.time));
-    let agreeing = differences.take_while(|(difference, _)| *difference <= within);
-    // At the start there is none.
-    agreeing.filter(|(difference, _)| *difference > 0.0).last().map(|(_, time)| time)
+    let differences: Vec<f64> = pairs.map(|(a, b)| apart(scales, fine, a, b)).collect();
+    let last = differences.iter().position(|difference| *difference > within)?.checked_sub(1)?;
+    // The states at the start are equal.
+    (differences[last] > 0.0).then(|| fine.states[last].phase.time)
 }
 
 /// The difference of two states of sweeps: in the rotor, and in angular velocity, position and velocity relative to the

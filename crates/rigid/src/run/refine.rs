@@ -53,7 +53,8 @@ const ORDER_AT_JUMPS: f64 = 1.0;
 /// Safety factor of the errors caused by jumps: they change the times of later jumps.
 const MARGIN_AT_JUMPS: f64 = 2.0;
 
-/// Sweeps that differ by less than this part of the accepted error agree: a run up to there would have other sweeps.
+/// Sweeps that differ by less than this part of the accepted error agree: with a margin, so that a run up to there, which
+/// has other sweeps, reaches it.
 const AGREEING: f64 = 0.1;
 
 /// Maximum number of sweeps with different steps.

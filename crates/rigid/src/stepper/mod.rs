@@ -178,7 +178,7 @@ impl Stepper {
         self.time[0]
     }
 
-    /// The time after a step: a thousand steps of 0.01 s take 10 s.
+    /// The time after a step, in two parts, so that the rounding errors of many steps do not add up.
     fn time_after(&self, dt: f64) -> [f64; 2] {
         let [time, rest] = self.time;
         two_sum(time, dt + rest).into()

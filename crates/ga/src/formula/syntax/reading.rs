@@ -113,11 +113,13 @@ impl Reader<'_> {
         (is_index || self.names.is_open()).then(|| Ok(Item::Name(atom.name.clone())))
     }
 
-    /// The digits to which a letter is joined; 1 without any.
+    /// The number to which a letter is joined; 1 without any, or if its digits belong to a name.
     fn digits_before(&self, atom: &Atom) -> &str {
         let before = &self.text[..atom.span.start];
-        let digits = before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
-        if digits == before.len() { "1" } else { &before[digits..] }
+        let name = before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+        let digits = &before[name.len()..];
+        let is_index = name.ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        if is_index || digits.parse::<f64>().is_err() { "1" } else { digits }
     }
 
     /// The item of a bound name.

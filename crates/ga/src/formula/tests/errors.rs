@@ -63,6 +63,7 @@ fn errors_have_messages_and_places() {
         ("e4", "the basis vectors are e1 to e3", "e4"),
         ("1e5", "`1e+5`", "e5"),
         ("2 2.5e6", "`2.5e+6`", "e6"),
+        ("e2e5", "`1e+5`", "e5"),
         ("e11", "contains e1 twice", "e11"),
         ("e", "`e` has no value", "e"),
         ("exp B", "write its argument in brackets", "exp"),

@@ -442,8 +442,46 @@ except KeyboardInterrupt:
     print(slow.complete, *received)
 """
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
-    done = processes.run([sys.executable, "-c", program], env=environment)
+    # The signal wakes the program, long before it would end.
+    done = processes.run([sys.executable, "-c", program], env=environment, timeout=50)
     assert (done.stdout, done.stderr) == (f"True {int(number)}\n", "")
+
+
+def test_signals_in_a_block_that_delays_them_come_at_its_end():
+    """That to terminate has precedence; neither is lost where the block fails."""
+    program = """
+import signal
+from polhode._cli.interrupts import interruptible, uninterruptible
+signal.signal(signal.SIGTERM, signal.SIG_DFL)
+received = []
+try:
+    with interruptible(received), uninterruptible():
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGTERM)
+        print(*received)
+        raise OSError("the disk is full")
+except KeyboardInterrupt:
+    print(*received)
+"""
+    done = processes.run([sys.executable, "-c", program])
+    assert (done.stdout, done.stderr) == (f"\n{int(signal.SIGTERM)}\n", "")
+
+
+def test_a_signal_is_handled_where_the_program_runs_in_an_import(tmp_path):
+    (tmp_path / "inner.py").write_text("""
+import signal
+from polhode._cli.interrupts import interruptible
+received = []
+try:
+    with interruptible(received):
+        signal.raise_signal(signal.SIGINT)
+        received.append("no interrupt")
+except KeyboardInterrupt:
+    print(*received)
+""")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+    done = processes.run([sys.executable, "-c", "import inner"], env=environment)
+    assert (done.stdout, done.stderr) == (f"{int(signal.SIGINT)}\n", "")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no signal for another process")

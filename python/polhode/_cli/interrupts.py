@@ -1,9 +1,10 @@
-"""The signals that end the command: that of Ctrl-C, and that to terminate, as of ``kill``."""
+"""Handling of the signals SIGINT, as of Ctrl-C, and SIGTERM, as of ``kill``."""
 
 import _thread
 import signal
+import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
@@ -12,11 +13,14 @@ from polhode import _start
 
 # The handlers that are replaced; another program that runs the command may have its own.
 _REPLACED: dict[int, tuple[Any, ...]] = {
-    signal.SIGINT: (signal.SIG_IGN, signal.default_int_handler, _start.stop),
     signal.SIGTERM: (signal.SIG_DFL,),
+    signal.SIGINT: (signal.SIG_IGN, signal.default_int_handler, _start.stop),
 }
-# Seconds after which a signal is handled that came during an import.
-_LATER = 0.02
+# Seconds after which a signal that came during an import is sent again.
+_RETRY_DELAY = 0.02
+
+# The signals that came in each block that delays them, from the outermost.
+_delayed: list[list[int]] = []
 
 
 @contextmanager
@@ -26,53 +30,64 @@ def interruptible(received: list[int]) -> Iterator[None]:
     Ctrl-C does so even in a command that was started to ignore it, as a background job of a script: ``kill
     -INT`` always stops a long run and keeps the complete bodies. The list gets the numbers of the signals.
     """
+    imports, retries = _imports(sys._getframe()), dict[int, threading.Timer]()
 
     def interrupt(number: int, frame: FrameType | None) -> None:
-        if _is_importing(frame):
+        retries.pop(number, None)
+        if _delayed:
+            _delayed[-1].append(number)
+            return
+        if _imports(frame) > imports:
             # An import may lose the exception, or leave a library that crashes when the program ends.
-            later = threading.Timer(_LATER, _thread.interrupt_main, [number])
-            later.daemon = True
-            later.start()
+            retries[number] = threading.Timer(_RETRY_DELAY, _send, [number])
+            retries[number].daemon = True
+            retries[number].start()
             return
         received.append(number)
         raise KeyboardInterrupt
 
-    with _handled(interrupt, lambda number, old: old in _REPLACED[number]):
-        yield
-
-
-@contextmanager
-def uninterruptible() -> Iterator[None]:
-    """Delay both signals to the end of the block."""
-    waiting: list[int] = []
-    # A handler of another language is None.
-    with _handled(lambda number, _: waiting.append(number), lambda _, old: old is not None):
-        yield
-    if waiting:
-        signal.raise_signal(waiting[0])
-
-
-@contextmanager
-def _handled(
-    handler: Callable[[int, FrameType | None], None], replaces: Callable[[int, Any], bool]
-) -> Iterator[None]:
-    """Handle both signals by a function where it replaces the number's handler."""
     # Python handles signals in the main thread only.
     is_main = threading.current_thread() is threading.main_thread()
-    before = {number: signal.getsignal(number) for number in _REPLACED} if is_main else {}
-    before = {number: old for number, old in before.items() if replaces(number, old)}
-    for number in before:
-        signal.signal(number, handler)
+    before = {number: signal.getsignal(number) for number in _REPLACED if is_main}
+    before = {number: old for number, old in before.items() if old in _REPLACED[number]}
     try:
+        for number in before:
+            signal.signal(number, interrupt)
         yield
+        for number in list(retries):
+            interrupt(number, None)
     finally:
+        for timer in retries.values():
+            timer.cancel()
         for number, old in before.items():
             signal.signal(number, old)
 
 
-def _is_importing(frame: FrameType | None) -> bool:
+@contextmanager
+def uninterruptible() -> Iterator[None]:
+    """Delay both signals to the end of the block, in a block that is `interruptible`."""
+    waiting: list[int] = []
+    _delayed.append(waiting)
+    try:
+        yield
+    finally:
+        _delayed.pop()
+        if waiting:
+            signal.raise_signal(signal.SIGTERM if signal.SIGTERM in waiting else waiting[0])
+
+
+def _send(number: int) -> None:
+    """Send a signal to the main thread, which wakes it where the system can."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(threading.main_thread().ident or 0, number)
+    else:
+        _thread.interrupt_main(signal.Signals(number))
+
+
+def _imports(frame: FrameType | None) -> int:
+    """Return the number of frames of imports in a stack."""
+    count = 0
     while frame is not None:
-        if frame.f_code.co_filename.startswith("<frozen importlib"):
-            return True
+        count += frame.f_code.co_filename.startswith("<frozen importlib")
         frame = frame.f_back
-    return False
+    return count

@@ -55,11 +55,13 @@ DAY = datetime.datetime(2026, 1, 2)
     "given",
     [
         DAY,
+        DAY.date(),
         DAY.replace(tzinfo=datetime.UTC),
         DAY.replace(hour=5, tzinfo=datetime.timezone(datetime.timedelta(hours=5))),
         np.datetime64("2026-01-02"),
         np.datetime64("2026-01-02T00:00"),
         np.datetime64("2026-01-02T00:00:00.000000000"),
+        np.array("2026-01-02", dtype="datetime64[D]"),
     ],
     ids=str,
 )
@@ -70,6 +72,10 @@ def test_datetimes_are_epochs(given):
 def test_a_time_zone_belongs_to_utc():
     with pytest.raises(ValueError, match="has a time zone, which belongs to UTC, not to TT"):
         parse_epoch(DAY.replace(tzinfo=datetime.UTC), "TT")
+    with pytest.raises(ValueError, match=r"the epoch 0001-01-01T00:00:00.05:00 is outside of the calendar"):
+        parse_epoch(datetime.datetime(1, 1, 1, tzinfo=datetime.timezone(datetime.timedelta(hours=5))), "UTC")
+    with pytest.raises(ValueError, match="an epoch must be YYYY-MM-DD"):
+        parse_epoch(np.datetime64("NaT"), "UTC")
     with pytest.raises(TypeError, match=r"a string such as .* or a datetime, got int"):
         parse_epoch(2026, "UTC")
 

@@ -70,7 +70,7 @@ def read_aem(
     path: str | os.PathLike[str],
     *,
     segment: int | None = None,
-    epoch: str | datetime.datetime | np.datetime64 | None = None,
+    epoch: str | datetime.date | np.datetime64 | None = None,
     body_frame: str | None = None,
     quaternion_type: str | None = None,
     attitude_dir: str | None = None,
@@ -229,7 +229,11 @@ def _parsed(source: Source) -> tuple[_Place, list[_Segment]]:
 def _pair(place: _Place) -> tuple[str, _Place]:
     key, sign, value = place.text.partition("=")
     if not sign or not re.fullmatch(r"[A-Z][A-Z0-9_]*", key.strip()):
-        remedy = "; an AEM in XML is not read, export it as KVN" if place.text.startswith("<") else ""
+        remedy = (
+            "; an AEM in XML is not read, export it as KVN, which has such lines"
+            if place.text.startswith("<")
+            else ""
+        )
         raise place.error(f"expected KEYWORD = value, got {place.text[:40]!r}{remedy}")
     skipped = len(value) - len(value.lstrip())
     column = place.column + len(key) + 1 + (skipped if value.strip() else 0)

@@ -25,7 +25,7 @@ def write_aem(
     motion: Trajectory | AttitudeHistory,
     path: str | os.PathLike[str],
     *,
-    epoch: str | datetime.datetime | np.datetime64 | None = None,
+    epoch: str | datetime.date | np.datetime64 | None = None,
     time_system: str | None = None,
     reference_frame: str | None = None,
     body_frame: str | None = None,
@@ -45,7 +45,8 @@ def write_aem(
     Parameters
     ----------
     epoch
-        Epoch of time 0, ``YYYY-MM-DDThh:mm:ss.d`` or a datetime; by default ``motion.attributes["epoch"]``.
+        Epoch of time 0 in the time system, ``YYYY-MM-DDThh:mm:ss.d`` or a datetime; by default
+        ``motion.attributes["epoch"]``.
     time_system
         ``"UTC"``, ``"TAI"``, ``"TT"``, ``"TDB"``, ``"GPS"``, ``"TCB"`` or ``"TCG"``; by default the
         attribute, else ``"UTC"``. In UTC leap seconds are counted.

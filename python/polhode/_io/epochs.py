@@ -7,7 +7,7 @@ import re
 from bisect import bisect_right
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -31,7 +31,7 @@ _DECIMALS = Decimal(1).scaleb(-18)
 
 
 # How users write an epoch.
-GivenEpoch: TypeAlias = str | datetime.datetime | np.datetime64
+GivenEpoch: TypeAlias = str | datetime.date | np.datetime64
 
 
 @dataclass(frozen=True, order=True)
@@ -52,7 +52,9 @@ class Epoch:
 
 
 def parse_epoch(given: GivenEpoch, system: str) -> Epoch:
-    """Return the epoch of ``YYYY-MM-DDThh:mm:ss.d`` or ``YYYY-DDDThh:mm:ss.d``, or of a datetime.
+    """Return the epoch of ``YYYY-MM-DDThh:mm:ss.d`` or ``YYYY-DDDThh:mm:ss.d``, or of a date or datetime.
+
+    One without a time zone is a time of the system, not a local one.
 
     Raises
     ------
@@ -82,22 +84,32 @@ def parse_epoch(given: GivenEpoch, system: str) -> Epoch:
     return Epoch(day, 60 * minutes + second)
 
 
-def _text_of(given: GivenEpoch, system: str) -> str:
+def _text_of(given: Any, system: str) -> str:
+    if isinstance(given, np.ndarray) and given.ndim == 0:
+        given = given[()]
     if isinstance(given, str):
         return given
     if isinstance(given, np.datetime64):
         is_coarse = np.datetime_data(given.dtype)[0] in ("Y", "M", "W", "D", "h", "m")
         return str(given.astype("datetime64[s]") if is_coarse else given)
-    if not isinstance(given, datetime.datetime):
+    if not isinstance(given, datetime.date):
         raise TypeError(
             "an epoch must be a string such as '2026-01-01T00:00:00' or a datetime, "
             f"got {type(given).__name__}"
         )
-    if given.tzinfo is not None:
-        if system != "UTC":
-            raise ValueError(f"{given!r} has a time zone, which belongs to UTC, not to {system}")
-        given = given.astimezone(datetime.UTC).replace(tzinfo=None)
-    return given.isoformat()
+    if not isinstance(given, datetime.datetime):
+        return f"{given.isoformat()}T00:00:00"
+    if given.tzinfo is None:
+        return given.isoformat()
+    if system != "UTC":
+        raise ValueError(
+            f"the epoch {given.isoformat()} has a time zone, which belongs to UTC, not to {system}; "
+            f"give the time in {system}, without a zone"
+        )
+    try:
+        return given.astimezone(datetime.UTC).replace(tzinfo=None).isoformat()
+    except OverflowError:
+        raise ValueError(f"the epoch {given.isoformat()} is outside of the calendar of UTC") from None
 
 
 def elapsed(start: Epoch, end: Epoch, system: str) -> float:

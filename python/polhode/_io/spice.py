@@ -54,7 +54,7 @@ def write_ck(
     kernels: _Paths,
     body_frame: str | None = None,
     reference_frame: str | None = None,
-    epoch: str | datetime.datetime | np.datetime64 | None = None,
+    epoch: str | datetime.date | np.datetime64 | None = None,
     time_system: str | None = None,
 ) -> None:
     r"""Write the attitudes of one body as a SPICE CK of type 3, atomically.
@@ -181,7 +181,7 @@ def read_ck(
     *,
     kernels: _Paths,
     segment: int | None = None,
-    epoch: str | datetime.datetime | np.datetime64 | None = None,
+    epoch: str | datetime.date | np.datetime64 | None = None,
     time_system: str | None = None,
 ) -> AttitudeHistory:
     r"""Read the records of a segment of a SPICE CK of type 3.
@@ -410,7 +410,7 @@ def _descriptor(spice: Any, handle: int, name: str, chosen: int | None) -> Any:
     kind = int(spice.dafus(descriptor, 2, 6)[1][2])
     if kind != _TYPE:
         raise FileError(
-            f"{name}: error: segments of type {_TYPE} are read, got type {kind}; sample it with SPICE's "
-            "pxform, and pass the matrices to Rotor.from_matrix"
+            f"{name}: error: segments of type {_TYPE} are read, got type {kind}; sample the segment "
+            "with SPICE's pxform(body, space, time), and pass the matrices to Rotor.from_matrix"
         )
     return descriptor

@@ -275,7 +275,7 @@ def write_sclk(
     path: str | os.PathLike[str],
     *,
     clock: int,
-    epoch: str | datetime.datetime | np.datetime64,
+    epoch: str | datetime.date | np.datetime64,
     time_system: str = "UTC",
 ) -> None:
     """Write the SPICE clock kernel of a clock that runs with TT, atomically.

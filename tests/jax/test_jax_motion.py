@@ -329,7 +329,7 @@ def test_invalid_input_raises(change, message):
 @pytest.mark.parametrize(
     ("rotor", "omega", "message"),
     [
-        (STATE, [1.0], "the rotor must not be a State; pass state.rotor, state.omega_body"),
+        (STATE, [1.0], "the rotor must not be a State; pass state.rotor and state.omega_body"),
         (R0, STATE, "the angular velocity must not be a State"),
         (R0, "fast", "the angular velocity must be real numbers, got 'fast'"),
         (R0, [1j, 0, 0], r"the angular velocity must be real numbers, got \[1j, 0, 0\]"),

@@ -466,7 +466,7 @@ def test_a_phrase_pressed_before_the_next_frame_gets_the_focus(lesson):
         f"""async () => {{
             const root = {VIEWER}.shadowRoot;
             root.querySelector("#tab-motion").click();
-            while (!root.querySelector(".motion")) await Promise.resolve();
+            for (let k = 0; k < 1000 && !root.querySelector(".motion"); k++) await Promise.resolve();
             const link = root.querySelector("a.drive");
             link.click();
             return link.textContent;

@@ -56,8 +56,11 @@ def as_coefficients(values: Any, what: str, dtype: Any = None, *, complex_too: b
             register_pytrees()
             return kind.asarray(values)
     array = _as_array(values, what)
-    if isinstance(values, str) and values.isidentifier():
-        raise TypeError(f"{what} must be numbers, got the text {values!r}; for symbols pass sympy.symbols")
+    if isinstance(values, str) and all(map(str.isidentifier, values.replace(",", " ").split() or [values])):
+        raise TypeError(
+            f"{what} must be real numbers, got the text {values!r}; "
+            f"for symbols pass sympy.symbols({values!r})"
+        )
     # A list that mixes floats with integers is not exact.
     if array.dtype == object and (
         isinstance(values, np.ndarray) or not any(isinstance(x, float) for x in array.flat)

@@ -45,9 +45,11 @@ def as_floats(values: Any, what: str) -> Array:
             ) from None
         raise
     except RuntimeError:
+        if not any(type(leaf).__module__.partition(".")[0] == "torch" for leaf in leaves(values)):
+            raise
         raise TypeError(
-            f"{what} must be known numbers, but torch records it, for a gradient or vmap; pass x.detach(), "
-            "or use ph.jax for derivatives of motions"
+            f"{what} must be known numbers, but torch records it, for a gradient or vmap; pass x.detach() if "
+            "it has a gradient, or use ph.jax for derivatives of motions"
         ) from None
     if array.dtype == object and all(isinstance(x, int | float) for x in array.flat):
         try:  # integers beyond 64 bits

@@ -72,7 +72,7 @@ def _body(inertia: Any) -> tuple[Array, Four | None]:
 def as_array(value: Any, what: str) -> Array:
     """Return an array of floats from real numbers or a rotor; a TypeError for others."""
     if isinstance(value, State):
-        raise TypeError(f"{what} must not be a State; pass state.rotor, state.omega_body")
+        raise TypeError(f"{what} must not be a State; pass state.rotor and state.omega_body as two arguments")
     numbers = value._data if isinstance(value, Rotor) else value
     refuse_multivectors(numbers, what)
     try:

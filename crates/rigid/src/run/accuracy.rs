@@ -64,12 +64,11 @@ pub(crate) fn difference(
     if coarse.ends != fine.ends {
         return 1.0;
     }
-    let apart = |a: &Carried, b: &Carried| apart(scales, fine, a, b);
-    let outputs = coarse.states.iter().zip(&fine.states).map(|(a, b)| apart(a, b));
+    let outputs = coarse.states.iter().zip(&fine.states).map(|(a, b)| apart(scales, fine, a, b));
     // A grazing event may be missing in one of them.
     let same = coarse.events.len() == fine.events.len();
     let events = coarse.events.iter().zip(&fine.events).filter(|(a, b)| same && a.event == b.event);
-    let events = events.map(|(a, b)| apart(&follow(&a.at, b.at.phase.time), &b.at));
+    let events = events.map(|(a, b)| apart(scales, fine, &follow(&a.at, b.at.phase.time), &b.at));
     outputs.chain(events).fold(0.0, f64::max)
 }
 

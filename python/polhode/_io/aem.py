@@ -229,11 +229,9 @@ def _parsed(source: Source) -> tuple[_Place, list[_Segment]]:
 def _pair(place: _Place) -> tuple[str, _Place]:
     key, sign, value = place.text.partition("=")
     if not sign or not re.fullmatch(r"[A-Z][A-Z0-9_]*", key.strip()):
-        remedy = (
-            "; an AEM in XML is not read, export it as KVN, which has such lines"
-            if place.text.startswith("<")
-            else ""
-        )
+        remedy = ""
+        if place.text.startswith("<"):
+            remedy = "; an AEM in XML is not read, export it as KVN, which has such lines"
         raise place.error(f"expected KEYWORD = value, got {place.text[:40]!r}{remedy}")
     skipped = len(value) - len(value.lstrip())
     column = place.column + len(key) + 1 + (skipped if value.strip() else 0)

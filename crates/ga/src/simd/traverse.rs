@@ -1,7 +1,8 @@
 //! Application of kernels to rows of numbers.
 //!
 //! Values are stored row by row, `(rows, components)`. A block of rows is transposed into lanes, the kernel works on the
-//! lanes, and the result is transposed back. Data beyond the caches is prefetched, and results bypass the caches.
+//! lanes, and the result is transposed back. Results of data beyond the caches bypass them. Nothing is prefetched: rows
+//! are read in order, which the hardware foresees, and requests further ahead evicted each other from the first-level cache.
 
 use super::threads::Threads;
 use super::{ByRow, Element, Kernel, Lane, Path, in_line, to_next_line};

@@ -72,11 +72,7 @@ macro_rules! short {
             let mut registers = [$zero(); SIZE];
             for r in 0..SIZE {
                 // SAFETY: as the caller promises.
-                unsafe {
-                    let from = rows.add(r * $width);
-                    prefetch_ahead(from);
-                    registers[r] = T::$load(from);
-                }
+                registers[r] = unsafe { T::$load(rows.add(r * $width)) };
             }
             columns(registers)
         }
@@ -231,12 +227,6 @@ macro_rules! short {
     };
 }
 
-/// Prefetches the cache line 4 KiB ahead: beyond the end of a page, where hardware prefetching stops.
-#[inline(always)]
-fn prefetch_ahead<T>(from: *const T) {
-    prefetch(from.wrapping_byte_add(4096));
-}
-
 /// Prefetches a cache line.
 #[inline(always)]
 pub(super) fn prefetch<T>(at: *const T) {
@@ -352,11 +342,7 @@ pub(super) mod avx2 {
         let mut square = [_mm256_setzero_pd(); 4];
         for i in 0..4 {
             // SAFETY: as the caller promises.
-            unsafe {
-                let row = rows.add(i * size);
-                prefetch_ahead(row);
-                square[i] = T::load_4(row);
-            }
+            square[i] = unsafe { T::load_4(rows.add(i * size)) };
         }
         transpose(square)
     }

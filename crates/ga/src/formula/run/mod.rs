@@ -30,8 +30,9 @@ const FEW: usize = 8;
 /// product, since all inputs are read at once.
 const STREAMED: usize = 8 << 20;
 
-/// From this many bytes on, more than the second-level cache keeps beside other data, inputs are prefetched.
-const PREFETCHED: usize = 1 << 20;
+/// From this many bytes on, more than the second-level cache keeps beside other data, blocks are smaller: reading takes
+/// longer, and small blocks interleave it more finely with arithmetic.
+const FAR: usize = 1 << 20;
 
 /// This many lanes of 128 rows leave room in the first-level cache. Each step of a block has an overhead of some
 /// nanoseconds, so large blocks are faster.
@@ -39,9 +40,6 @@ const FEW_LANES: usize = 24;
 
 /// This many lanes of 64 rows still fit.
 const MANY_LANES: usize = 64;
-
-/// Prefetch distance in bytes.
-const AHEAD: usize = 2048;
 
 /// The first row without a value, and its first failing step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,11 +113,9 @@ impl Runner {
         };
         targets.iter_mut().zip(&schedule.results).for_each(|(target, &at)| target.at = at);
         let streamed = path.streams() && bytes >= STREAMED;
-        let far = bytes >= PREFETCHED;
-        let sweep = Sweep { runner: self, schedule, path, far, streamed, failure: Mutex::new(None) };
+        let sweep = Sweep { runner: self, schedule, path, streamed, failure: Mutex::new(None) };
         match sweep.schedule.lanes {
-            // Small blocks interleave memory access and arithmetic more finely.
-            0..=FEW_LANES if !far && rows.len() > 64 => {
+            0..=FEW_LANES if bytes < FAR && rows.len() > 64 => {
                 sweep.run::<T, 128>(threads, &factors, targets, rows.len())
             }
             0..=MANY_LANES if rows.len() > 16 => sweep.run::<T, 64>(threads, &factors, targets, rows.len()),
@@ -175,8 +171,7 @@ struct Sweep<'a> {
     runner: &'a Runner,
     schedule: &'a Schedule,
     path: Path,
-    /// Whether inputs are prefetched, and whether results bypass the caches.
-    far: bool,
+    /// Whether results bypass the caches.
     streamed: bool,
     failure: Mutex<Option<RowError>>,
 }
@@ -214,39 +209,28 @@ impl Sweep<'_> {
         total: usize,
     ) -> Result<(), RowError> {
         let mut lanes = self.schedule.filled::<W>();
-        let ahead = self.ahead::<T, W>(factors);
         let mut result = Ok(());
         by_blocks((self.path, self.streamed), total, &mut lanes, targets, |first, count, lanes| {
-            let prefetch = |task: usize| {
-                for (input, lines) in &ahead[task] {
-                    let row = factors[*input].rows(first, 1);
-                    let block = row.as_ptr().wrapping_add(W * row.len()).wrapping_byte_add(AHEAD);
-                    self.path.prefetch(block, lines.clone());
-                }
-            };
             // Whole blocks can be read in registers.
             let direct = count == W && self.path.has_short_blocks();
-            let own = |number: usize, task: &Task, lanes: &mut [Lane<W>]| {
-                prefetch(number);
-                match task {
-                    Task::Read { input, to, direct: by_step } => {
-                        if !(direct && *by_step) {
-                            self.path.gather(factors[*input].rows(first, count), &mut lanes[to.clone()]);
-                        }
-                        true
+            let own = |task: &Task, lanes: &mut [Lane<W>]| match task {
+                Task::Read { input, to, direct: by_step } => {
+                    if !(direct && *by_step) {
+                        self.path.gather(factors[*input].rows(first, count), &mut lanes[to.clone()]);
                     }
-                    Task::Do { step, operands, rows, to } if direct && *rows != [None; 2] => {
-                        let (a, b, out) = apart(lanes, operands, to);
-                        let numbers = |rows: Option<usize>, lanes| match rows {
-                            Some(input) => Numbers::Rows(factors[input].rows(first, count)),
-                            None => Numbers::Lanes(lanes),
-                        };
-                        let [a, b] = [numbers(rows[0], a), numbers(rows[1], b)];
-                        self.runner.steps[*step].in_registers(self.path, a, b, out);
-                        true
-                    }
-                    Task::Do { .. } => false,
+                    true
                 }
+                Task::Do { step, operands, rows, to } if direct && *rows != [None; 2] => {
+                    let (a, b, out) = apart(lanes, operands, to);
+                    let numbers = |rows: Option<usize>, lanes| match rows {
+                        Some(input) => Numbers::Rows(factors[input].rows(first, count)),
+                        None => Numbers::Lanes(lanes),
+                    };
+                    let [a, b] = [numbers(rows[0], a), numbers(rows[1], b)];
+                    self.runner.steps[*step].in_registers(self.path, a, b, out);
+                    true
+                }
+                Task::Do { .. } => false,
             };
             let known = self.runner.do_all(&self.schedule.tasks, (self.path, count), lanes, own);
             if !known {
@@ -255,21 +239,5 @@ impl Sweep<'_> {
             if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
         result
-    }
-
-    /// Far inputs: the cache lines of a block that each task prefetches, of some inputs. Memory serves a limited
-    /// number of requests at a time, and would idle during the arithmetic.
-    fn ahead<T: Element, const W: usize>(&self, factors: &[Factor<T>]) -> Vec<Vec<(usize, Range<usize>)>> {
-        let tasks = self.schedule.tasks.len();
-        let lines = |factor: &Factor<T>| W * size_of_val(factor.rows(0, 1)) / 64;
-        let rows = factors.iter().enumerate().filter(|(_, factor)| self.far && !factor.one);
-        let lines: Vec<_> =
-            rows.flat_map(|(i, factor)| (0..lines(factor)).map(move |line| (i, line))).collect();
-        let share = |task: usize| {
-            let share = &lines[task * lines.len() / tasks..(task + 1) * lines.len() / tasks];
-            let of_inputs = share.chunk_by(|s, t| s.0 == t.0);
-            of_inputs.map(|lines| (lines[0].0, lines[0].1..lines[0].1 + lines.len())).collect()
-        };
-        (0..tasks).map(share).collect()
     }
 }

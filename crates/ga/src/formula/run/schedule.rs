@@ -87,13 +87,13 @@ impl Runner {
     }
 
     /// Does the tasks for a block of rows, `count` of which matter; false if some row may have no value. `own` is called with
-    /// each task and its number, and returns whether it did the task: it reads all inputs.
+    /// each task, and returns whether it did the task: it reads all inputs.
     pub(crate) fn do_all<const W: usize>(
         &self,
         tasks: &[Task],
         (path, count): (Path, usize),
         lanes: &mut [Lane<W>],
-        own: impl FnMut(usize, &Task, &mut [Lane<W>]) -> bool,
+        own: impl FnMut(&Task, &mut [Lane<W>]) -> bool,
     ) -> bool {
         path.run(Tasks { runner: self, tasks, path, count, lanes, own })
     }
@@ -251,15 +251,15 @@ struct Tasks<'a, F, const W: usize> {
     own: F,
 }
 
-impl<F: FnMut(usize, &Task, &mut [Lane<W>]) -> bool, const W: usize> lanes::Work for Tasks<'_, F, W> {
+impl<F: FnMut(&Task, &mut [Lane<W>]) -> bool, const W: usize> lanes::Work for Tasks<'_, F, W> {
     type Output = bool;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> bool {
         let Tasks { runner, tasks, path, count, lanes, mut own } = self;
         let mut known = true;
-        for (number, task) in tasks.iter().enumerate() {
-            if !own(number, task, lanes)
+        for task in tasks {
+            if !own(task, lanes)
                 && let Task::Do { step, operands, to, .. } = task
             {
                 let step = &runner.steps[*step];

@@ -121,16 +121,18 @@ impl<const W: usize> SideBySide<'_, W> {
     /// Evaluates all rows, each with the bits of [`Runner::value`]; a row with a failing step has NaN as its results.
     pub fn run(&mut self) {
         let inputs = &self.schedule.inputs;
-        let known =
-            self.runner.do_all(&self.schedule.tasks, (self.path, W), &mut self.lanes, |_, task, lanes| {
-                match task {
-                    Task::Read { input, to, .. } => {
-                        lanes.copy_within(inputs[*input].clone(), to.start);
-                        true
-                    }
-                    Task::Do { .. } => false,
+        let known = self.runner.do_all(
+            &self.schedule.tasks,
+            (self.path, W),
+            &mut self.lanes,
+            |task, lanes| match task {
+                Task::Read { input, to, .. } => {
+                    lanes.copy_within(inputs[*input].clone(), to.start);
+                    true
                 }
-            });
+                Task::Do { .. } => false,
+            },
+        );
         if !known || self.parameter.as_ref().is_some_and(|parameter| parameter.missing) {
             (0..W).for_each(|row| self.complete(row));
         }

@@ -286,10 +286,6 @@ unsafe fn read_square<T: Element>(rows: *const T, size: usize) -> [__m512d; 8] {
             // SAFETY: as the caller promises.
             unsafe {
                 let (low, high) = (rows.add(i * size + 4 * half), rows.add((i + 2) * size + 4 * half));
-                if half == 0 {
-                    prefetch_ahead(low);
-                    prefetch_ahead(high);
-                }
                 let low = _mm512_castpd256_pd512(T::load_4(low));
                 r[place] = _mm512_insertf64x4::<1>(low, T::load_4(high));
             }

@@ -1,9 +1,9 @@
-//! Common products of factors with three or four components, whose terms are known at compile time.
+//! Common products of factors with one, three or four components, whose terms are known at compile time.
 //!
 //! A product is recognised by its terms, so one kernel serves several products and algebras.
 
-use crate::simd::short::{Numbers, Short};
-use crate::simd::{Element, Lane, Path, by_lanes};
+use crate::simd::short::{Short, WithShort};
+use crate::simd::{Lane, by_lanes};
 
 /// A term: the components of both factors and of the product, and the sign.
 type Known = (usize, usize, usize, i8);
@@ -48,30 +48,10 @@ macro_rules! fixed_terms {
                 None
             }
 
-            /// Multiplies the first rows in registers; returns their number.
-            pub fn in_registers<T: Element>(
-                self,
-                path: Path,
-                a: &[T],
-                b: &[T],
-                out: &mut [T],
-                streamed: bool,
-            ) -> usize {
+            /// Does something with the product as a short function.
+            pub fn short<U: WithShort>(self, user: U) -> U::Output {
                 match self {
-                    $(FixedTerms::$name => path.short::<$name, T, $a, $b, $out>(a, b, out, streamed),)*
-                }
-            }
-
-            /// Multiplies a block of whole rows in registers, as [`Path::short_block`].
-            pub fn block_in_registers<T: Element, const W: usize>(
-                self,
-                path: Path,
-                a: Numbers<T, W>,
-                b: Numbers<T, W>,
-                out: &mut [Lane<W>],
-            ) {
-                match self {
-                    $(FixedTerms::$name => path.short_block::<$name, T, $a, $b, $out, W>(a, b, out),)*
+                    $(FixedTerms::$name => user.with::<$name, $a, $b, $out>(),)*
                 }
             }
 
@@ -87,6 +67,20 @@ macro_rules! fixed_terms {
 }
 
 fixed_terms! {
+    /// Two numbers.
+    Numbers(1, 1) -> 1 [(0, 0, 0, 1)];
+    /// A number, or a pseudoscalar, times three components.
+    TimesThree(1, 3) -> 3 [(0, 0, 0, 1), (0, 1, 1, 1), (0, 2, 2, 1)];
+    /// Three components times a number or a pseudoscalar.
+    ThreeTimes(3, 1) -> 3 [(0, 0, 0, 1), (1, 0, 1, 1), (2, 0, 2, 1)];
+    /// A number times an even value.
+    TimesFour(1, 4) -> 4 [(0, 0, 0, 1), (0, 1, 1, 1), (0, 2, 2, 1), (0, 3, 3, 1)];
+    /// An even value times a number.
+    FourTimes(4, 1) -> 4 [(0, 0, 0, 1), (1, 0, 1, 1), (2, 0, 2, 1), (3, 0, 3, 1)];
+    /// `a·b` of vectors.
+    Dot(3, 3) -> 1 [(0, 0, 0, 1), (1, 1, 0, 1), (2, 2, 0, 1)];
+    /// `A·B` of bivectors.
+    MinusDot(3, 3) -> 1 [(0, 0, 0, -1), (1, 1, 0, -1), (2, 2, 0, -1)];
     /// `a∧b` of vectors.
     Cross(3, 3) -> 3 [(1, 2, 0, 1), (2, 1, 0, -1), (0, 2, 1, -1), (2, 0, 1, 1), (0, 1, 2, 1), (1, 0, 2, -1)];
     /// `A×B` of bivectors, `A·b` and `a·B`.

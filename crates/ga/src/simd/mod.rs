@@ -25,7 +25,6 @@ mod x86;
 
 use lanes::Work;
 use map::{BUILT_WITH_FMA, Map};
-use short::{Numbers, Short};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -323,75 +322,11 @@ impl Path {
         }
     }
 
-    /// Applies a function to the first rows, in registers, past the caches if `streamed`; returns their number, 0 where
-    /// the path cannot. A factor has one row for all, or as many as `out`.
-    pub fn short<K: Short<A, B, OUT>, T: Element, const A: usize, const B: usize, const OUT: usize>(
-        self,
-        a: &[T],
-        b: &[T],
-        out: &mut [T],
-        streamed: bool,
-    ) -> usize {
-        const { assert!(A / 5 + B / 5 + OUT / 5 == 0 && A > 2 && B > 2 && OUT > 2, "three or four numbers") };
-        let total = out.len() / OUT;
-        let one = [a.len() == A, b.len() == B];
-        assert!((one[0] || a.len() == total * A) && (one[1] || b.len() == total * B), "rows fit together");
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = streamed;
-        match self.0 {
-            // SAFETY: the instructions were detected, and the numbers of rows fit.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => unsafe { x86::avx2::short::<T, K, A, B, OUT>(a, b, one, out, streamed) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => unsafe { x86::avx512::short::<T, K, A, B, OUT>(a, b, one, out, streamed) },
-            _ => 0,
-        }
-    }
-
-    /// Whether the path has [`Path::short_block`].
-    pub fn has_short_blocks(self) -> bool {
-        match self.0 {
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 | Level::Avx512 => true,
-            _ => false,
-        }
-    }
-
-    /// Applies a function to a block of whole rows, in registers.
-    ///
-    /// # Panics
-    /// If the numbers do not fit the block, and where the path cannot.
-    pub fn short_block<
-        K: Short<A, B, OUT>,
-        T: Element,
-        const A: usize,
-        const B: usize,
-        const OUT: usize,
-        const W: usize,
-    >(
-        self,
-        a: Numbers<T, W>,
-        b: Numbers<T, W>,
-        out: &mut [Lane<W>],
-    ) {
-        const { assert!(A / 5 + B / 5 == 0 && A > 2 && B > 2, "three or four numbers") };
-        assert!(a.are_of(A) && b.are_of(B) && out.len() == OUT, "the numbers fit the block");
-        match self.0 {
-            // SAFETY: the instructions were detected, and the numbers fit.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => unsafe { x86::avx2::short_block::<T, K, A, B, OUT, W>(a, b, out) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => unsafe { x86::avx512::short_block::<T, K, A, B, OUT, W>(a, b, out) },
-            _ => panic!("this path has no short blocks"),
-        }
-    }
-
     /// Copies whole cache lines past the caches if the path can, faster for data that would be evicted before it is read.
     /// [`Path::fence`] completes it.
     pub fn stream<T: Element>(self, from: &[T], to: &mut [T]) {
-        assert!(from.len() == to.len() && to.len().is_multiple_of(in_line::<T>()) && to_next_line(to) == 0);
+        assert!(from.len() == to.len() && to.len().is_multiple_of(in_line::<T>()));
+        assert!(to.is_empty() || to_next_line(to) == 0);
         // Safe: the lengths and the alignment are asserted above.
         by_path!(self, stream(from, to), to.copy_from_slice(from));
     }

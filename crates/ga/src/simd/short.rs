@@ -1,8 +1,10 @@
 //! Functions of short rows in registers, where rows are transposed as they are read and written.
 
-use super::Lane;
+use super::{Element, Lane, Path};
+#[cfg(target_arch = "x86_64")]
+use super::{Level, x86};
 
-/// A function of two rows of three or four numbers each, the same bits as the kernel that it belongs to.
+/// A function of two rows of one, three or four numbers each, the same bits as the kernel that it belongs to.
 ///
 /// It is computed in registers, where rows are transposed as they are read and written: half the time of rows that go
 /// through lanes in memory.
@@ -25,6 +27,13 @@ pub(crate) trait Short<const A: usize, const B: usize, const OUT: usize> {
     }
 }
 
+/// What is done with a short function whose type is known where it is chosen.
+pub(crate) trait WithShort {
+    type Output;
+
+    fn with<K: Short<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(self) -> Self::Output;
+}
+
 /// The numbers of a block of `W` rows.
 #[derive(Clone, Copy)]
 pub(crate) enum Numbers<'a, T, const W: usize> {
@@ -40,6 +49,237 @@ impl<T, const W: usize> Numbers<'_, T, W> {
         match self {
             Numbers::Rows(rows) => rows.len() == W * size,
             Numbers::Lanes(lanes) => lanes.len() == size,
+        }
+    }
+}
+
+/// Rows in a group: two registers of the widest instructions, so that little is in use at a time.
+pub(crate) const GROUP: usize = 16;
+
+/// Where a link finds the numbers of its groups.
+#[derive(Clone, Copy)]
+pub(crate) enum Source<'a, T> {
+    /// Row by row.
+    Rows(&'a [T]),
+    /// In the lanes of the chain, from this one on.
+    Lanes(usize),
+}
+
+/// Applies the function of a link to a group of rows.
+///
+/// # Safety
+/// The link [fits](Link::fits) as many groups, and as many lanes as there are.
+pub(super) type Apply<T> = unsafe fn(&Link<T>, usize, *mut Lane<GROUP>);
+
+/// A short function within a chain: each group of rows goes through all links before the next one, so that the values
+/// between them stay in the first-level cache, and all inputs are read at the same pace.
+pub(crate) struct Link<'a, T> {
+    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code))]
+    pub(super) apply: Apply<T>,
+    pub(super) from: [Source<'a, T>; 2],
+    /// The first lane of the value.
+    pub(super) to: usize,
+    /// The numbers of both arguments and of the value.
+    pub(super) sizes: [usize; 3],
+}
+
+impl<T> Link<'_, T> {
+    /// Whether there are rows for so many groups, and the lanes that it needs.
+    pub(super) fn fits(&self, groups: usize, lanes: usize) -> bool {
+        let fits = |(source, size): (&Source<T>, usize)| match source {
+            Source::Rows(rows) => rows.len() >= groups * GROUP * size,
+            Source::Lanes(first) => first + size <= lanes,
+        };
+        self.from.iter().zip(self.sizes).all(fits) && self.to + self.sizes[2] <= lanes
+    }
+}
+
+/// A link from these sources to lanes from `to` on, for [`Path::link`].
+pub(crate) struct AsLink<'a, T> {
+    pub path: Path,
+    pub from: [Source<'a, T>; 2],
+    pub to: usize,
+}
+
+impl<'a, T: Element> WithShort for AsLink<'a, T> {
+    type Output = Option<Link<'a, T>>;
+
+    fn with<K: Short<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(self) -> Self::Output {
+        self.path.link::<K, T, A, B, OUT>(self.from, self.to)
+    }
+}
+
+/// The first rows, for [`Path::short`].
+pub(crate) struct FirstRows<'a, T> {
+    pub path: Path,
+    pub a: &'a [T],
+    pub b: &'a [T],
+    pub out: &'a mut [T],
+    pub streamed: bool,
+}
+
+impl<T: Element> WithShort for FirstRows<'_, T> {
+    type Output = usize;
+
+    fn with<K: Short<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(self) -> usize {
+        self.path.short::<K, T, A, B, OUT>(self.a, self.b, self.out, self.streamed)
+    }
+}
+
+/// A block of whole rows, for [`Path::short_block`].
+pub(crate) struct WholeBlock<'a, T, const W: usize> {
+    pub path: Path,
+    pub a: Numbers<'a, T, W>,
+    pub b: Numbers<'a, T, W>,
+    pub out: &'a mut [Lane<W>],
+}
+
+impl<T: Element, const W: usize> WithShort for WholeBlock<'_, T, W> {
+    type Output = ();
+
+    fn with<K: Short<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(self) {
+        self.path.short_block::<K, T, A, B, OUT, W>(self.a, self.b, self.out);
+    }
+}
+
+/// Whether rows of these sizes are transposed in registers.
+const fn are_short(mut sizes: &[usize]) -> bool {
+    while let [size, rest @ ..] = sizes {
+        if !matches!(size, 1 | 3 | 4) {
+            return false;
+        }
+        sizes = rest;
+    }
+    true
+}
+
+impl Path {
+    /// Applies a function to the first rows, in registers, past the caches if `streamed`; returns their number, 0 where
+    /// the path cannot. A factor has one row for all, or as many as `out`.
+    pub fn short<K: Short<A, B, OUT>, T: Element, const A: usize, const B: usize, const OUT: usize>(
+        self,
+        a: &[T],
+        b: &[T],
+        out: &mut [T],
+        streamed: bool,
+    ) -> usize {
+        const { assert!(are_short(&[A, B, OUT]), "one, three or four numbers") };
+        let total = out.len() / OUT;
+        let one = [a.len() == A, b.len() == B];
+        assert!((one[0] || a.len() == total * A) && (one[1] || b.len() == total * B), "rows fit together");
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = streamed;
+        match self.0 {
+            // SAFETY: the instructions were detected, and the numbers of rows fit.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::avx2::short::<T, K, A, B, OUT>(a, b, one, out, streamed) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::avx512::short::<T, K, A, B, OUT>(a, b, one, out, streamed) },
+            _ => 0,
+        }
+    }
+
+    /// Whether the path has [`Path::short_block`].
+    pub fn has_short_blocks(self) -> bool {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 | Level::Avx512 => true,
+            _ => false,
+        }
+    }
+
+    /// Applies a function to a block of whole rows, in registers.
+    ///
+    /// # Panics
+    /// If the numbers do not fit the block, and where the path cannot.
+    pub fn short_block<
+        K: Short<A, B, OUT>,
+        T: Element,
+        const A: usize,
+        const B: usize,
+        const OUT: usize,
+        const W: usize,
+    >(
+        self,
+        a: Numbers<T, W>,
+        b: Numbers<T, W>,
+        out: &mut [Lane<W>],
+    ) {
+        const { assert!(are_short(&[A, B, OUT]), "one, three or four numbers") };
+        assert!(a.are_of(A) && b.are_of(B) && out.len() == OUT, "the numbers fit the block");
+        match self.0 {
+            // SAFETY: the instructions were detected, and the numbers fit.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::avx2::short_block::<T, K, A, B, OUT, W>(a, b, out) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::avx512::short_block::<T, K, A, B, OUT, W>(a, b, out) },
+            _ => panic!("this path has no short blocks"),
+        }
+    }
+
+    /// A function at its place in a chain; `None` where the path has no chains.
+    pub fn link<'a, K: Short<A, B, OUT>, T: Element, const A: usize, const B: usize, const OUT: usize>(
+        self,
+        from: [Source<'a, T>; 2],
+        to: usize,
+    ) -> Option<Link<'a, T>> {
+        const { assert!(are_short(&[A, B, OUT]), "one, three or four numbers") };
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = (from, to);
+        #[cfg(target_arch = "x86_64")]
+        let sizes = [A, B, OUT];
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => Some(Link { apply: x86::avx2::link::<T, K, A, B, OUT>, from, to, sizes }),
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => Some(Link { apply: x86::avx512::link::<T, K, A, B, OUT>, from, to, sizes }),
+            _ => None,
+        }
+    }
+
+    /// Applies a chain to whole groups of rows and writes its values, `size` lanes from `first` on, to `out`, past the
+    /// caches if `streamed`. Returns the number of rows, 0 where the path cannot.
+    ///
+    /// # Panics
+    /// If the links do not fit the rows or the lanes.
+    pub fn chain<T: Element>(
+        self,
+        links: &[Link<T>],
+        lanes: &mut [Lane<GROUP>],
+        (first, size): (usize, usize),
+        out: &mut [T],
+        streamed: bool,
+    ) -> usize {
+        match size {
+            1 => self.chain_of::<T, 1>(links, lanes, first, out, streamed),
+            3 => self.chain_of::<T, 3>(links, lanes, first, out, streamed),
+            4 => self.chain_of::<T, 4>(links, lanes, first, out, streamed),
+            _ => 0,
+        }
+    }
+
+    fn chain_of<T: Element, const OUT: usize>(
+        self,
+        links: &[Link<T>],
+        lanes: &mut [Lane<GROUP>],
+        first: usize,
+        out: &mut [T],
+        streamed: bool,
+    ) -> usize {
+        let groups = out.len() / (GROUP * OUT);
+        assert!(first + OUT <= lanes.len() && links.iter().all(|link| link.fits(groups, lanes.len())));
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = streamed;
+        match self.0 {
+            // SAFETY: the instructions were detected, and all links fit the rows and the lanes.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::avx2::chain::<T, OUT>(links, lanes, first, out, streamed) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::avx512::chain::<T, OUT>(links, lanes, first, out, streamed) },
+            _ => 0,
         }
     }
 }

@@ -43,6 +43,11 @@ impl<'a, T: Element> Factor<'a, T> {
         Factor { data: self.rows(rows.start, rows.len()), ..self }
     }
 
+    /// All rows.
+    pub fn all(&self) -> &'a [T] {
+        self.data
+    }
+
     pub fn rows(&self, first: usize, count: usize) -> &'a [T] {
         if self.one { self.data } else { &self.data[first * self.size..(first + count) * self.size] }
     }

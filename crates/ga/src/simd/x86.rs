@@ -2,10 +2,14 @@
 
 use super::lanes::Work;
 use super::map::{self, Map};
-use super::short::{Numbers, Short};
+use super::short::{GROUP, Link, Numbers, Short, Source};
 use super::transpose::{self, squares};
 use super::{Element, Lane};
 use std::arch::x86_64::*;
+
+mod short;
+
+use short::short;
 
 /// A cache line. A local one aligns the stack frame to cache lines, so that no spilled register spans two.
 #[derive(Default)]
@@ -55,174 +59,6 @@ macro_rules! run_and_stream {
                 // SAFETY: a register from `8 i` on is within both, and aligned in `to`.
                 unsafe { $stream(to.add(i), $load(from.add(i))) };
             }
-        }
-    };
-}
-
-/// `Short` functions by groups of `$width` rows, read and written by `columns` and `rows_of` of the module.
-macro_rules! short {
-    ($feature:literal, $width:literal, $register:ty, $zero:ident, $all:ident, $load:ident, $store:ident) => {
-        /// The columns of `$width` rows of `SIZE` numbers.
-        ///
-        /// # Safety
-        /// The numbers are within one object.
-        #[inline]
-        #[target_feature(enable = $feature)]
-        unsafe fn read<T: Element, const SIZE: usize>(rows: *const T) -> [$register; SIZE] {
-            let mut registers = [$zero(); SIZE];
-            for r in 0..SIZE {
-                // SAFETY: as the caller promises.
-                registers[r] = unsafe { T::$load(rows.add(r * $width)) };
-            }
-            columns(registers)
-        }
-
-        /// One row for all, as columns.
-        #[target_feature(enable = $feature)]
-        fn filled<T: Element, const SIZE: usize>(row: &[T]) -> [$register; SIZE] {
-            let mut columns = [$zero(); SIZE];
-            for (column, &x) in columns.iter_mut().zip(row) {
-                *column = $all(x.into());
-            }
-            columns
-        }
-
-        /// Columns `$width number` and later of a block.
-        ///
-        /// # Safety
-        /// The numbers are those of a block, rows of `SIZE` numbers or `SIZE` lanes, which has these columns.
-        #[inline]
-        #[target_feature(enable = $feature)]
-        unsafe fn columns_of<T: Element, const SIZE: usize, const W: usize>(
-            numbers: Numbers<T, W>,
-            number: usize,
-        ) -> [$register; SIZE] {
-            match numbers {
-                // SAFETY: as the caller promises.
-                Numbers::Rows(rows) => unsafe { read(rows.as_ptr().add($width * SIZE * number)) },
-                Numbers::Lanes(lanes) => {
-                    let mut columns = [$zero(); SIZE];
-                    for k in 0..SIZE {
-                        // SAFETY: as the caller promises.
-                        columns[k] = unsafe { f64::$load(lanes[k].0.as_ptr().add($width * number)) };
-                    }
-                    columns
-                }
-            }
-        }
-
-        /// Applies a function to a block.
-        ///
-        /// # Safety
-        /// `a` and `b` are rows of `A` and `B` numbers or as many lanes, and there are `OUT` lanes for the values.
-        #[target_feature(enable = $feature)]
-        pub unsafe fn short_block<
-            T: Element,
-            K: Short<A, B, OUT>,
-            const A: usize,
-            const B: usize,
-            const OUT: usize,
-            const W: usize,
-        >(
-            a: Numbers<T, W>,
-            b: Numbers<T, W>,
-            out: &mut [Lane<W>],
-        ) {
-            for number in 0..W / $width {
-                // SAFETY: a block has `W` rows, and a register holds `$width` numbers.
-                let (x, y) = unsafe { (columns_of::<T, A, W>(a, number), columns_of::<T, B, W>(b, number)) };
-                let values = K::values::<$width>(numbers_of(x), numbers_of(y));
-                for k in 0..OUT {
-                    out[k].0.as_chunks_mut().0[number] = values[k];
-                }
-            }
-        }
-
-        /// The numbers of registers.
-        #[inline]
-        #[target_feature(enable = $feature)]
-        fn numbers_of<const SIZE: usize>(registers: [$register; SIZE]) -> [[f64; $width]; SIZE] {
-            let mut numbers = [[0.0; $width]; SIZE];
-            for k in 0..SIZE {
-                // SAFETY: a register holds `$width` numbers.
-                unsafe { f64::$store(numbers[k].as_mut_ptr(), registers[k]) };
-            }
-            numbers
-        }
-
-        /// Applies a function to groups of `$width` rows, and returns the number of rows.
-        ///
-        /// # Safety
-        /// `a` and `b` have as many rows as `out`, or one row where `one` says so.
-        #[target_feature(enable = $feature)]
-        pub unsafe fn short<
-            T: Element,
-            K: Short<A, B, OUT>,
-            const A: usize,
-            const B: usize,
-            const OUT: usize,
-        >(
-            a: &[T],
-            b: &[T],
-            one: [bool; 2],
-            out: &mut [T],
-            streamed: bool,
-        ) -> usize {
-            // SAFETY: passed on.
-            unsafe {
-                match (one == [false, false], streamed) {
-                    (true, false) => groups::<T, K, A, B, OUT, true, false>(a, b, one, out),
-                    (true, true) => groups::<T, K, A, B, OUT, true, true>(a, b, one, out),
-                    (false, false) => groups::<T, K, A, B, OUT, false, false>(a, b, one, out),
-                    (false, true) => groups::<T, K, A, B, OUT, false, true>(a, b, one, out),
-                }
-            }
-        }
-
-        /// `MANY`: neither factor has one row for all.
-        ///
-        /// # Safety
-        /// As for [`short`].
-        #[target_feature(enable = $feature)]
-        unsafe fn groups<
-            T: Element,
-            K: Short<A, B, OUT>,
-            const A: usize,
-            const B: usize,
-            const OUT: usize,
-            const MANY: bool,
-            const STREAMED: bool,
-        >(
-            a: &[T],
-            b: &[T],
-            one: [bool; 2],
-            out: &mut [T],
-        ) -> usize {
-            let count = out.len() / ($width * OUT);
-            let Some(mut writer) = Writer::<STREAMED>::new(out) else { return 0 };
-            let (one_a, one_b) = (filled::<T, A>(a), filled::<T, B>(b));
-            for number in 0..count {
-                let a = a.as_ptr().wrapping_add($width * A * number);
-                let b = b.as_ptr().wrapping_add($width * B * number);
-                // SAFETY: the rows are there.
-                let x = if MANY || !one[0] { unsafe { read::<T, A>(a) } } else { one_a };
-                // SAFETY: as above.
-                let y = if MANY || !one[1] { unsafe { read::<T, B>(b) } } else { one_b };
-                let values = K::values::<$width>(numbers_of(x), numbers_of(y));
-                let mut columns = [$zero(); OUT];
-                for k in 0..OUT {
-                    // SAFETY: a register holds `$width` numbers.
-                    columns[k] = unsafe { f64::$load(values[k].as_ptr()) };
-                }
-                let rows = rows_of(columns);
-                for r in 0..OUT {
-                    // SAFETY: there is room for `count` groups.
-                    unsafe { writer.write(out.as_mut_ptr().add($width * (OUT * number + r)), rows[r]) };
-                }
-            }
-            // SAFETY: it wrote `count` groups.
-            unsafe { writer.finish(out.as_mut_ptr().add($width * OUT * count)) };
-            count * $width
         }
     };
 }
@@ -280,7 +116,7 @@ pub(super) mod avx2 {
         unsafe fn finish<T: Element>(self, _: *mut T) {}
     }
 
-    /// Four rows of `SIZE` numbers, 3 or 4, fill `SIZE` registers without gaps. Of three, the numbers of a column have
+    /// Four rows of `SIZE` numbers, 1, 3 or 4, fill `SIZE` registers without gaps. Of three, the numbers of a column have
     /// different places: they are blended into one register and permuted.
     #[inline]
     #[target_feature(enable = "avx2")]
@@ -305,7 +141,8 @@ pub(super) mod avx2 {
             [ref mut r0, ref mut r1, ref mut r2, ref mut r3] => {
                 [*r0, *r1, *r2, *r3] = transpose([*r0, *r1, *r2, *r3]);
             }
-            _ => unreachable!("rows of three or four numbers"),
+            [_] => {}
+            _ => unreachable!("rows of one, three or four numbers"),
         }
         columns
     }
@@ -327,7 +164,8 @@ pub(super) mod avx2 {
             [ref mut c0, ref mut c1, ref mut c2, ref mut c3] => {
                 [*c0, *c1, *c2, *c3] = transpose([*c0, *c1, *c2, *c3]);
             }
-            _ => unreachable!("rows of three or four numbers"),
+            [_] => {}
+            _ => unreachable!("rows of one, three or four numbers"),
         }
         rows
     }

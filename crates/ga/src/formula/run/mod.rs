@@ -2,6 +2,7 @@
 
 pub(crate) mod general;
 pub(crate) mod schedule;
+pub(crate) mod short_steps;
 pub(crate) mod side_by_side;
 pub(crate) mod single;
 pub(crate) mod steps;
@@ -12,7 +13,7 @@ mod tests;
 use super::compile::program::Id;
 use crate::MathError;
 use crate::graded::{Graded, size};
-use crate::simd::short::Numbers;
+use crate::simd::short::{GROUP, Numbers};
 use crate::simd::threads::{Threads, for_each};
 use crate::simd::traverse::{Factor, SHARED, Target, by_blocks};
 use crate::simd::{Element, Lane, Path};
@@ -33,6 +34,10 @@ const STREAMED: usize = 8 << 20;
 /// From this many bytes on, more than the second-level cache keeps beside other data, blocks are smaller: reading takes
 /// longer, and small blocks interleave it more finely with arithmetic.
 const FAR: usize = 1 << 20;
+
+/// From this many lanes on, small blocks pay where results bypass the caches: less than all of the first-level cache is in
+/// use, so that what is read for the next block stays there.
+const SOME_LANES: usize = 9;
 
 /// This many lanes of 128 rows leave room in the first-level cache. Each step of a block has an overhead of some
 /// nanoseconds, so large blocks are faster.
@@ -118,6 +123,7 @@ impl Runner {
             0..=FEW_LANES if bytes < FAR && rows.len() > 64 => {
                 sweep.run::<T, 128>(threads, &factors, targets, rows.len())
             }
+            SOME_LANES..=MANY_LANES if streamed => sweep.run::<T, 32>(threads, &factors, targets, rows.len()),
             0..=MANY_LANES if rows.len() > 16 => sweep.run::<T, 64>(threads, &factors, targets, rows.len()),
             _ => sweep.run::<T, 16>(threads, &factors, targets, rows.len()),
         }
@@ -189,9 +195,19 @@ impl Sweep<'_> {
             let piece: Vec<_> = targets.iter_mut().map(|target| target.split_off(rows.len())).collect();
             (rows, piece)
         });
-        for_each(pieces, |(rows, mut targets)| {
-            let factors: Vec<_> = factors.iter().map(|factor| factor.piece(rows.clone())).collect();
-            if let Err(error) = self.piece::<T, W>(&factors, &mut targets, rows.len()) {
+        for_each(pieces, |(mut rows, mut targets)| {
+            let piece = |rows: &Range<usize>| -> Vec<Factor<T>> {
+                factors.iter().map(|factor| factor.piece(rows.clone())).collect()
+            };
+            let chained = self.chained(&piece(&rows), &mut targets);
+            rows.start += chained;
+            let (factors, count) = (piece(&rows), rows.len());
+            let done = if count < GROUP {
+                self.piece::<T, GROUP>(&factors, &mut targets, count)
+            } else {
+                self.piece::<T, W>(&factors, &mut targets, count)
+            };
+            if let Err(error) = done {
                 let error = RowError { row: rows.start + error.row, ..error };
                 let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
                 if failure.is_none_or(|earlier| error.row < earlier.row) {
@@ -199,6 +215,20 @@ impl Sweep<'_> {
                 }
             }
         });
+    }
+
+    /// The first rows of a piece as a chain, if the program is one; returns their number.
+    fn chained<T: Element>(&self, factors: &[Factor<T>], targets: &mut [Target<T>]) -> usize {
+        let [target] = targets else { return 0 };
+        if target.data.len() < GROUP * target.size {
+            return 0;
+        }
+        let Some(links) = self.runner.chain(self.path, self.schedule, factors) else { return 0 };
+        let mut lanes = self.schedule.filled::<GROUP>();
+        let place = (target.at, target.size);
+        let done = self.path.chain(&links, &mut lanes, place, target.data, self.streamed);
+        let _ = target.split_off(done);
+        done
     }
 
     /// All rows of a piece, up to the first that has no value.

@@ -11,8 +11,7 @@ use crate::rows::compose::Compose;
 use crate::rows::product::{Geometric, Turn, TurnBack};
 use crate::rows::rotor_functions::{self, Cos, Exp, Log, Power, Sin, Tan};
 use crate::simd::map::{self, Map};
-use crate::simd::short::Numbers;
-use crate::simd::{Element, Kernel, Lane, Path, by_eights};
+use crate::simd::{Kernel, Lane, Path, by_eights};
 use crate::table::G3;
 use std::borrow::Borrow;
 use std::f64::consts::PI;
@@ -207,36 +206,6 @@ impl Ready {
         };
         out.assign(&value);
         Ok(())
-    }
-
-    /// Whether [`Ready::in_registers`] can evaluate it.
-    pub fn is_short(&self) -> bool {
-        match &self.work {
-            Work::Turn | Work::TurnBack => Turn(self.grades).is_short(),
-            Work::Compose => true,
-            Work::Product(plan) => plan.fixed_terms.is_some(),
-            _ => false,
-        }
-    }
-
-    /// Evaluates the step for a block of whole rows, which need not be in lanes, as [`Path::short_block`].
-    ///
-    /// # Panics
-    /// If the step is not [short](Ready::is_short).
-    pub fn in_registers<T: Element, const W: usize>(
-        &self,
-        path: Path,
-        a: Numbers<T, W>,
-        b: Numbers<T, W>,
-        out: &mut [Lane<W>],
-    ) {
-        match &self.work {
-            Work::Turn => path.short_block::<Turn, T, 4, 3, 3, W>(a, b, out),
-            Work::TurnBack => path.short_block::<TurnBack, T, 4, 3, 3, W>(a, b, out),
-            Work::Compose => path.short_block::<Compose, T, 4, 4, 4, W>(a, b, out),
-            Work::Product(Plan { fixed_terms: Some(fixed), .. }) => fixed.block_in_registers(path, a, b, out),
-            _ => panic!("not a step of short values"),
-        }
     }
 
     /// Evaluates the step for a block of rows, `count` of which matter, within work of this path. False if some row may have

@@ -7,6 +7,7 @@ use crate::product::{Grades, Plan, Product};
 use crate::rows::{compose, product, rotor_functions};
 use crate::simd::Path;
 use crate::simd::threads::Threads;
+use crate::simd::traverse::Factor;
 use crate::table::{G3, Signature};
 use crate::{Graded, MathError, Multivector, Rotor};
 
@@ -179,6 +180,91 @@ fn blocks_equal_single_values() {
         }
     }
     assert!((5..100).contains(&failures), "{failures} programs have no value");
+}
+
+/// Steps on random earlier ones, all of which have a function of short rows.
+fn random_short_program(random: &mut Random) -> Program {
+    let bivector = Type::of(Grades::BIVECTOR);
+    let types = [Type::ROTOR, Type::SCALAR, Type::of(VECTOR), bivector, Type::of(Grades::EVEN)];
+    let mut steps: Vec<Step> = types.iter().enumerate().map(|(i, &ty)| step(Op::Input(i), ty)).collect();
+    for _ in 0..1 + random.below(12) {
+        let (a, b) = (random.below(steps.len()), random.below(steps.len()));
+        let (ga, gb) = (steps[a].ty.grades, steps[b].ty.grades);
+        let rotor = steps.iter().rposition(|s| s.ty.unit).unwrap();
+        let three =
+            steps.iter().rposition(|s| s.ty.grades == VECTOR || s.ty.grades == Grades::BIVECTOR).unwrap();
+        let product = Product::ALL[random.below(7)];
+        let plan = Plan::g3(product, ga, gb);
+        steps.push(match random.below(8) {
+            0 if ga == gb => step(Op::Add(a, b), Type::of(ga)),
+            1 if ga == gb => step(Op::Subtract(a, b), Type::of(ga)),
+            2 => step(Op::Negate(a), Type::of(ga)),
+            3 => step(Op::Compose(rotor, 0), Type::ROTOR),
+            4 => step(Op::Reverse(rotor), Type::ROTOR),
+            5 | 6 if plan.fixed_terms.is_some() => step(Op::Product(product, a, b), Type::of(plan.grades)),
+            _ => step(Op::Turn(rotor, three), steps[three].ty),
+        });
+    }
+    let last = steps.len() - 1;
+    program(&types.map(InputKind::Value), steps, vec![last])
+}
+
+/// Programs of short steps as chains, some inputs of one row: every path and any number of threads, with rows left over,
+/// within the caches and past them, wherever the rows begin, give the bits of single values.
+#[test]
+fn chains_equal_single_values() {
+    let mut random = Random(5);
+    for round in 0..120 {
+        let program = random_short_program(&mut random);
+        let runner = Runner::new(&program).unwrap();
+        let rows = [15, 16, 17, 40, 150][round % 5];
+        let fixed = if round % 3 == 0 { random.below(32) } else { 0 };
+        let count = |i: usize| if fixed >> i & 1 == 1 { 1 } else { rows };
+        let inputs = program.inputs.iter().enumerate();
+        let data: Vec<Vec<f64>> = inputs.map(|(i, input)| random.rows(input.kind, count(i))).collect();
+        let expected = one_by_one(&program, &runner, &data, rows).unwrap().remove(0);
+        let given: Vec<&[f64]> = data.iter().map(Vec::as_slice).collect();
+        let sizes = program.inputs.iter().map(|input| input.kind.size());
+        let factors: Vec<_> = given.iter().zip(sizes).map(|(x, size)| Factor::new(x, size, rows)).collect();
+        let schedule = runner.schedule(&[None; 5], false, &runner.whole()).unwrap();
+        for path in Path::available() {
+            assert_eq!(runner.chain(path, &schedule, &factors).is_some(), path.has_short_blocks());
+            for threads in [1, 3] {
+                let mut out = vec![0.5; expected.len()];
+                runner.run_on(path, Threads::new(threads), &given, &mut [&mut out], 0..rows).unwrap();
+                assert_same(&out, &expected, &format!("{path:?} {rows} rows {program:?}"));
+            }
+        }
+    }
+}
+
+/// A chain past the caches, from and to any place in a cache line, with rows left over.
+#[test]
+fn streamed_chains_equal_products() {
+    let mut random = Random(6);
+    let steps = vec![
+        step(Op::Input(0), Type::ROTOR),
+        step(Op::Input(1), Type::of(VECTOR)),
+        step(Op::Turn(0, 1), Type::of(VECTOR)),
+    ];
+    let kinds = [Type::ROTOR, Type::of(VECTOR)].map(InputKind::Value);
+    let runner = Runner::new(&program(&kinds, steps, vec![2])).unwrap();
+    let most = super::STREAMED / 8 / 10 + 24;
+    let [r, v] = kinds.map(|kind| random.rows(kind, most + 2));
+    for (number, rows) in (most - 17..most).enumerate() {
+        let (r, v) = (&r[number % 4..][..4 * rows], &v[number % 3..][..3 * rows]);
+        let mut expected = vec![0.0; 3 * rows];
+        product::turn(Threads::ONE, r, v, VECTOR, &mut expected);
+        for path in Path::available() {
+            let mut out = vec![0.5; 3 * rows + 8];
+            let threads = Threads::new(1 + number % 3);
+            runner
+                .run_on(path, threads, &[r, v], &mut [&mut out[number % 8..][..3 * rows]], 0..rows)
+                .unwrap();
+            assert_same(&out[number % 8..][..3 * rows], &expected, &format!("{path:?} {rows} rows"));
+            assert_eq!(out[3 * rows + number % 8..], [0.5; 8][number % 8..], "numbers after the result");
+        }
+    }
 }
 
 /// Random programs on lanes, filled twice, some inputs the same for all, one of them a parameter that is sometimes

@@ -5,7 +5,7 @@ use crate::g3::values::{Vector, geometric};
 use crate::product::{Engine, Grades, Plan, Term};
 pub use crate::simd::Element;
 use crate::simd::lanes::Lanes;
-use crate::simd::short::Short;
+use crate::simd::short::{FirstRows, Short};
 use crate::simd::threads::Threads;
 use crate::simd::traverse::{beyond_caches, sweep};
 use crate::simd::{ByRow, Kernel, LANES, Lane, Path, by_lanes};
@@ -21,7 +21,7 @@ impl ByRow for Plan {
     }
 
     fn in_registers<T: Element>(&self, path: Path, a: &[T], b: &[T], out: &mut [T], streamed: bool) -> usize {
-        self.fixed_terms.map_or(0, |fixed| fixed.in_registers(path, a, b, out, streamed))
+        self.fixed_terms.map_or(0, |fixed| fixed.short(FirstRows { path, a, b, out, streamed }))
     }
 }
 

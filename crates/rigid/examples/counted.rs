@@ -1,7 +1,7 @@
 //! Kernels for counting instructions: `counted` lists them with the rows that one run computes; `counted NAME RUNS`
 //! runs one. `benchmarks/instructions.py` compares two numbers of runs under valgrind.
 
-use polhode_ga::formula::Names;
+use polhode_ga::formula::{Meaning, Names, Runner, Space, Type, compile, parse};
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Plan, Product};
 use polhode_ga::rows::compose::compose;
@@ -96,6 +96,22 @@ fn stepped(name: &'static str, method: &'static str, laws: Vec<Torque>) -> Kerne
     (name, BODIES * STEPS, Box::new(run))
 }
 
+/// A formula of a rotor and vectors over many rows.
+fn over_rows(text: &'static str) -> Kernel {
+    let vector = Type::of(Grades(0b0010));
+    let types = [("R", Type::ROTOR), ("v", vector), ("a", vector), ("b", vector), ("c", vector)];
+    let names = Names::new(types.map(|(name, ty)| (name.into(), Meaning::Value(ty))));
+    let tree = parse(text, Space::g3(), &names).expect("a formula");
+    let runner =
+        Runner::new(&compile(&tree, Space::g3(), &names).expect("of known names")).expect("3-d space");
+    let (rotors, vectors, mut out) = (rotors(), numbers(3 * ROWS), vec![0.0; 3 * ROWS]);
+    let run = move || {
+        let inputs = [black_box(&rotors[..]), &vectors, &vectors, &vectors, &vectors];
+        runner.run(Threads::ONE, &inputs, &mut [&mut out], 0..ROWS).expect("it has values");
+    };
+    (text, ROWS, Box::new(run))
+}
+
 fn formula(text: &str) -> Vec<Torque> {
     let law = Formula::new(text, Purpose::Torque(Axes::Body), Names::new([]), |_| None);
     vec![Torque::Formula(law.expect("a bivector of known names"))]
@@ -128,6 +144,7 @@ fn kernels() -> Vec<Kernel> {
         of_rotors("log", 3, |r, out| rotor_functions::log(Threads::ONE, r, out).expect("finite")),
         of_motors("exp of a motor", Function::Exp),
         of_motors("log of a motor", Function::Log),
+        over_rows("R v ~R + (a∧b)·c"),
         exact(),
         stepped("free body, rk4", "rk4", vec![]),
         stepped("free body, kahan_li8", "kahan_li8", vec![]),

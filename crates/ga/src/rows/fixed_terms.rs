@@ -68,10 +68,10 @@ macro_rules! fixed_terms {
 
 fixed_terms! {
     /// Two numbers.
-    Numbers(1, 1) -> 1 [(0, 0, 0, 1)];
-    /// A number, or a pseudoscalar, times three components.
+    Scalars(1, 1) -> 1 [(0, 0, 0, 1)];
+    /// A number times three components, or `I a` of a vector.
     TimesThree(1, 3) -> 3 [(0, 0, 0, 1), (0, 1, 1, 1), (0, 2, 2, 1)];
-    /// Three components times a number or a pseudoscalar.
+    /// Three components times a number, or `a I` of a vector.
     ThreeTimes(3, 1) -> 3 [(0, 0, 0, 1), (1, 0, 1, 1), (2, 0, 2, 1)];
     /// A number times an even value.
     TimesFour(1, 4) -> 4 [(0, 0, 0, 1), (0, 1, 1, 1), (0, 2, 2, 1), (0, 3, 3, 1)];

@@ -3,6 +3,7 @@
 use super::{Element, Lane, Path};
 #[cfg(target_arch = "x86_64")]
 use super::{Level, x86};
+use std::ops::Range;
 
 /// A function of two rows of one, three or four numbers each, the same bits as the kernel that it belongs to.
 ///
@@ -65,10 +66,38 @@ pub(crate) enum Source<'a, T> {
     Lanes(usize),
 }
 
-/// Applies the function of a link to a group of rows.
+#[cfg(target_arch = "x86_64")]
+impl<'a, T> Source<'a, T> {
+    /// The numbers of a group, `size` in a row.
+    ///
+    /// # Safety
+    /// There are these rows; or these lanes, which nobody writes while the numbers are in use.
+    #[inline(always)]
+    pub(super) unsafe fn numbers(
+        self,
+        group: usize,
+        size: usize,
+        lanes: *const Lane<GROUP>,
+    ) -> Numbers<'a, T, GROUP> {
+        match self {
+            Source::Rows(rows) => {
+                let place = GROUP * size * group..GROUP * size * (group + 1);
+                // SAFETY: as the caller promises.
+                Numbers::Rows(unsafe { rows.get_unchecked(place) })
+            }
+            Source::Lanes(first) => {
+                // SAFETY: as the caller promises.
+                Numbers::Lanes(unsafe { std::slice::from_raw_parts(lanes.add(first), size) })
+            }
+        }
+    }
+}
+
+/// Applies the function of a link to the group of this number.
 ///
 /// # Safety
-/// The link [fits](Link::fits) as many groups, and as many lanes as there are.
+/// The machine has the instructions. The pointer is to `n` lanes, and the link [fits](Link::fits) them and more groups than
+/// the number.
 pub(super) type Apply<T> = unsafe fn(&Link<T>, usize, *mut Lane<GROUP>);
 
 /// A short function within a chain: each group of rows goes through all links before the next one, so that the values
@@ -80,32 +109,38 @@ pub(crate) struct Link<'a, T> {
     /// The first lane of the value.
     pub(super) to: usize,
     /// The numbers of both arguments and of the value.
-    pub(super) sizes: [usize; 3],
+    sizes: [usize; 3],
 }
 
 impl<T> Link<'_, T> {
-    /// Whether there are rows for so many groups, and the lanes that it needs.
+    /// Whether there are rows for so many groups, and the lanes that it needs, those of the value apart from the others.
     pub(super) fn fits(&self, groups: usize, lanes: usize) -> bool {
+        let value = self.to..self.to.saturating_add(self.sizes[2]);
         let fits = |(source, size): (&Source<T>, usize)| match source {
-            Source::Rows(rows) => rows.len() >= groups * GROUP * size,
-            Source::Lanes(first) => first + size <= lanes,
+            Source::Rows(rows) => rows.len() / (GROUP * size) >= groups,
+            Source::Lanes(first) => {
+                let end = first.saturating_add(size);
+                end <= lanes && (end <= value.start || value.end <= *first)
+            }
         };
-        self.from.iter().zip(self.sizes).all(fits) && self.to + self.sizes[2] <= lanes
+        self.from.iter().zip(self.sizes).all(fits) && value.end <= lanes
     }
 }
 
-/// A link from these sources to lanes from `to` on, for [`Path::link`].
+/// A link from sources of these sizes to lanes, for [`Path::link`].
 pub(crate) struct AsLink<'a, T> {
     pub path: Path,
-    pub from: [Source<'a, T>; 2],
-    pub to: usize,
+    pub from: [(Source<'a, T>, usize); 2],
+    pub to: Range<usize>,
 }
 
 impl<'a, T: Element> WithShort for AsLink<'a, T> {
     type Output = Option<Link<'a, T>>;
 
     fn with<K: Short<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(self) -> Self::Output {
-        self.path.link::<K, T, A, B, OUT>(self.from, self.to)
+        let [(a, size_a), (b, size_b)] = self.from;
+        assert_eq!([size_a, size_b, self.to.len()], [A, B, OUT], "the function is of these sizes");
+        self.path.link::<K, T, A, B, OUT>([a, b], self.to.start)
     }
 }
 

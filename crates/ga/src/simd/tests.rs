@@ -1,3 +1,4 @@
+use super::short::{GROUP, Short, Source};
 use super::*;
 
 fn round_trip<T: Element + PartialEq + std::fmt::Debug, const W: usize>() {
@@ -50,4 +51,82 @@ fn streamed<T: Element + PartialEq + std::fmt::Debug>() {
 fn streams_copy() {
     streamed::<f64>();
     streamed::<f32>();
+}
+
+/// `a − b`
+struct Difference;
+
+impl<const N: usize> Short<N, N, N> for Difference {
+    fn value(a: [f64; N], b: [f64; N]) -> [f64; N] {
+        std::array::from_fn(|k| a[k] - b[k])
+    }
+}
+
+/// `b − (a − b)` of rows as a chain, to a place `offset` after the beginning of a cache line.
+fn chained<T: Element + PartialEq + std::fmt::Debug, const N: usize>(
+    rows: usize,
+    offset: usize,
+    streamed: bool,
+) {
+    let [a, b] = [3, 5].map(|step| -> Vec<T> {
+        (0..rows * N).map(|i| T::nearest(f64::from((step * i as u32) % 101))).collect()
+    });
+    let whole = rows / GROUP * GROUP;
+    for path in Path::available() {
+        let mut lanes = vec![Lane::<GROUP>::filled(f64::NAN); 2 * N];
+        let (a_rows, b_rows) = (Source::Rows(&a[..]), Source::Rows(&b[..]));
+        let links = [
+            path.link::<Difference, T, N, N, N>([a_rows, b_rows], N),
+            path.link::<Difference, T, N, N, N>([b_rows, Source::Lanes(N)], 0),
+        ];
+        let Some(links) = links.into_iter().collect::<Option<Vec<_>>>() else {
+            assert!(!path.has_short_blocks());
+            continue;
+        };
+        let unchanged = T::nearest(0.5);
+        let mut all = vec![unchanged; rows * N + 32];
+        let first = to_next_line(&all) + offset;
+        let done = path.chain(&links, &mut lanes, (0, N), &mut all[first..first + rows * N], streamed);
+        assert!(done == whole || streamed && done == 0, "{path:?}");
+        for (i, &x) in all.iter().enumerate() {
+            let within = (first..first + done * N).contains(&i);
+            let k = i.wrapping_sub(first);
+            let expected = if within { T::nearest(2.0 * b[k].into() - a[k].into()) } else { unchanged };
+            assert_eq!(x, expected, "{path:?}, {rows} rows of {N}, number {k}");
+        }
+    }
+}
+
+#[test]
+fn chains_compute_whole_groups() {
+    for rows in [0, 15, 16, 17, 50] {
+        for (offset, streamed) in [(0, false), (3, false), (0, true), (5, true)] {
+            chained::<f64, 1>(rows, offset, streamed);
+            chained::<f64, 3>(rows, offset, streamed);
+            chained::<f64, 4>(rows, offset, streamed);
+            chained::<f32, 3>(rows, offset, streamed);
+        }
+    }
+}
+
+/// Links that would read or write past the rows or the lanes, or write the lanes that they read.
+#[test]
+fn links_that_do_not_fit_are_refused() {
+    let rows = [1.0; 3 * GROUP];
+    let refused = |from: [Source<f64>; 2], to: usize, groups: usize| {
+        let Some(link) = Path::best().link::<Difference, f64, 3, 3, 3>(from, to) else { return true };
+        !link.fits(groups, 6)
+    };
+    let (some, first) = (Source::Rows(&rows[..]), Source::Lanes(0));
+    for (from, to, groups) in [
+        ([some, some], 0, 2),
+        ([some, some], 4, 1),
+        ([some, first], 2, 1),
+        ([Source::Lanes(4), some], 0, 1),
+        ([some, Source::Lanes(usize::MAX)], 0, 1),
+        ([some, some], usize::MAX, 1),
+    ] {
+        assert!(refused(from, to, groups));
+    }
+    assert!(!Path::best().has_short_blocks() || !refused([some, first], 3, 1));
 }

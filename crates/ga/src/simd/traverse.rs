@@ -1,8 +1,8 @@
 //! Application of kernels to rows of numbers.
 //!
 //! Values are stored row by row, `(rows, components)`. A block of rows is transposed into lanes, the kernel works on the
-//! lanes, and the result is transposed back. Results of data beyond the caches bypass them. Nothing is prefetched: rows
-//! are read in order, which the hardware foresees, and requests further ahead evicted each other from the first-level cache.
+//! lanes, and the result is transposed back. Results of data beyond the caches bypass them. Rows are read in order, as the
+//! hardware foresees; software prefetches further ahead would evict lines of the first-level cache that are still in use.
 
 use super::threads::Threads;
 use super::{ByRow, Element, Kernel, Lane, Path, in_line, to_next_line};
@@ -41,6 +41,11 @@ impl<'a, T: Element> Factor<'a, T> {
     /// Those rows alone.
     pub fn piece(self, rows: Range<usize>) -> Factor<'a, T> {
         Factor { data: self.rows(rows.start, rows.len()), ..self }
+    }
+
+    /// The numbers in a row.
+    pub fn size(&self) -> usize {
+        self.size
     }
 
     /// All rows.

@@ -2,7 +2,7 @@
 
 use super::lanes::Work;
 use super::map::{self, Map};
-use super::short::{GROUP, Link, Numbers, Short, Source};
+use super::short::{GROUP, Link, Numbers, Short};
 use super::transpose::{self, squares};
 use super::{Element, Lane};
 use std::arch::x86_64::*;

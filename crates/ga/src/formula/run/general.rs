@@ -3,7 +3,7 @@
 //! Each step has the bits of the operator: a product adds the same terms in the same order, and full products of large
 //! algebras go through the same tiles. Values stay in lanes between the steps, so only inputs and results meet the memory.
 
-use super::SOME_LANES;
+use super::LANES_OF_32;
 use super::schedule::apart;
 use super::steps::{Divide, Selection, Sum};
 use super::tasks::Lanes;
@@ -23,9 +23,9 @@ const STREAMED: usize = 8 << 20;
 /// This many lanes of 64 rows fit in the first-level cache.
 const MANY_LANES: usize = 64;
 
-/// Up to this many, and from [`SOME_LANES`] on, small blocks pay where results bypass the caches; with more lanes the
-/// products take longer than their blocks wait.
-const HALF_LANES: usize = 40;
+/// Up to this many lanes, blocks of 32 rows pay where results bypass the caches (see [`LANES_OF_32`]). The products of more
+/// lanes take so long that reading matters less than the overhead of a block.
+const MOST_LANES_OF_32: usize = 40;
 
 /// A program over rows of float64.
 pub struct RowRunner {
@@ -144,7 +144,7 @@ impl RowRunner {
         };
         match lanes {
             _ if rows.len() <= 8 => sweep.run::<8>(threads, &factors, target, rows.len()),
-            SOME_LANES..=HALF_LANES if sweep.streamed => {
+            LANES_OF_32..=MOST_LANES_OF_32 if sweep.streamed => {
                 sweep.run::<32>(threads, &factors, target, rows.len());
             }
             0..=MANY_LANES => sweep.run::<64>(threads, &factors, target, rows.len()),

@@ -35,9 +35,9 @@ const STREAMED: usize = 8 << 20;
 /// longer, and small blocks interleave it more finely with arithmetic.
 const FAR: usize = 1 << 20;
 
-/// From this many lanes on, small blocks pay where results bypass the caches: less than all of the first-level cache is in
-/// use, so that what is read for the next block stays there.
-const SOME_LANES: usize = 9;
+/// From this many lanes on, blocks of 32 rows pay where results bypass the caches: they leave room in the first-level cache
+/// for what the hardware reads ahead. Of fewer lanes blocks of 64 rows do too, with less overhead.
+const LANES_OF_32: usize = 9;
 
 /// This many lanes of 128 rows leave room in the first-level cache. Each step of a block has an overhead of some
 /// nanoseconds, so large blocks are faster.
@@ -123,7 +123,9 @@ impl Runner {
             0..=FEW_LANES if bytes < FAR && rows.len() > 64 => {
                 sweep.run::<T, 128>(threads, &factors, targets, rows.len())
             }
-            SOME_LANES..=MANY_LANES if streamed => sweep.run::<T, 32>(threads, &factors, targets, rows.len()),
+            LANES_OF_32..=MANY_LANES if streamed => {
+                sweep.run::<T, 32>(threads, &factors, targets, rows.len())
+            }
             0..=MANY_LANES if rows.len() > 16 => sweep.run::<T, 64>(threads, &factors, targets, rows.len()),
             _ => sweep.run::<T, 16>(threads, &factors, targets, rows.len()),
         }
@@ -201,6 +203,9 @@ impl Sweep<'_> {
             };
             let chained = self.chained(&piece(&rows), &mut targets);
             rows.start += chained;
+            if rows.is_empty() {
+                return;
+            }
             let (factors, count) = (piece(&rows), rows.len());
             let done = if count < GROUP {
                 self.piece::<T, GROUP>(&factors, &mut targets, count)

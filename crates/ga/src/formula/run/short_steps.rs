@@ -20,7 +20,7 @@ impl<const MINUS: bool, const N: usize> Short<N, N, N> for Plus<MINUS> {
     }
 }
 
-/// The first row, negative where the bits of its components say so.
+/// The first row, with the components negated whose bits are set.
 struct Signs<const NEGATIVE: u8>;
 
 impl<const NEGATIVE: u8, const N: usize> Short<N, N, N> for Signs<NEGATIVE> {
@@ -30,10 +30,10 @@ impl<const NEGATIVE: u8, const N: usize> Short<N, N, N> for Signs<NEGATIVE> {
     }
 }
 
-/// Answers whether there is a short function.
-struct Known;
+/// Asks only whether there is a short function.
+struct Exists;
 
-impl WithShort for Known {
+impl WithShort for Exists {
     type Output = ();
 
     fn with<K: Short<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(self) {}
@@ -56,7 +56,7 @@ impl Ready {
 
     /// Whether [`Ready::in_registers`] can evaluate it.
     pub fn is_short(&self) -> bool {
-        self.short(Known).is_some()
+        self.short(Exists).is_some()
     }
 
     /// Evaluates the step for a block of whole rows, which need not be in lanes, as [`Path::short_block`].
@@ -123,13 +123,13 @@ impl Runner {
         schedule: &Schedule,
         factors: &[Factor<'a, T>],
     ) -> Option<Vec<Link<'a, T>>> {
-        let rows = |input: usize| Source::Rows(factors[input].all());
+        let rows = |input: usize| (Source::Rows(factors[input].all()), factors[input].size());
         let mut links = Vec::with_capacity(schedule.tasks.len());
         for task in &schedule.tasks {
             match task {
                 Task::Read { direct: true, .. } => {}
                 Task::Read { input, to, .. } => {
-                    let link = AsLink { path, from: [rows(*input); 2], to: to.start };
+                    let link = AsLink { path, from: [rows(*input); 2], to: to.clone() };
                     links.push(match to.len() {
                         1 => link.with::<Signs<0>, 1, 1, 1>()?,
                         3 => link.with::<Signs<0>, 3, 3, 3>()?,
@@ -139,13 +139,11 @@ impl Runner {
                 }
                 Task::Do { step, operands, rows: direct, to } => {
                     let step = &self.steps[*step];
-                    let source = |k: usize| direct[k].map_or(Source::Lanes(operands[k].start), rows);
+                    let in_lanes = |k: usize| (Source::Lanes(operands[k].start), operands[k].len());
+                    let source = |k: usize| direct[k].map_or(in_lanes(k), rows);
                     let second = if step.operands().len() == 1 { 0 } else { 1 };
-                    links.push(step.short(AsLink {
-                        path,
-                        from: [source(0), source(second)],
-                        to: to.start,
-                    })??);
+                    let from = [source(0), source(second)];
+                    links.push(step.short(AsLink { path, from, to: to.clone() })??);
                 }
             }
         }

@@ -13,11 +13,7 @@ macro_rules! short {
             let mut registers = [$zero(); SIZE];
             for r in 0..SIZE {
                 // SAFETY: as the caller promises.
-                unsafe {
-                    let from = rows.add(r * $width);
-
-                    registers[r] = T::$load(from);
-                }
+                registers[r] = unsafe { T::$load(rows.add(r * $width)) };
             }
             columns(registers)
         }
@@ -60,6 +56,7 @@ macro_rules! short {
         ///
         /// # Safety
         /// `a` and `b` are rows of `A` and `B` numbers or as many lanes, and there are `OUT` lanes for the values.
+        #[inline]
         #[target_feature(enable = $feature)]
         pub unsafe fn short_block<
             T: Element,
@@ -83,39 +80,10 @@ macro_rules! short {
             }
         }
 
-        /// Columns `$width number` and later of a group.
-        ///
-        /// # Safety
-        /// The group has these columns: the rows are there, or `SIZE` lanes.
-        #[inline]
-        #[target_feature(enable = $feature)]
-        unsafe fn columns_of_group<T: Element, const SIZE: usize>(
-            source: Source<T>,
-            (group, number): (usize, usize),
-            lanes: *const Lane<GROUP>,
-        ) -> [$register; SIZE] {
-            match source {
-                // SAFETY: as the caller promises.
-                Source::Rows(rows) => unsafe {
-                    read(rows.as_ptr().add((GROUP * group + $width * number) * SIZE))
-                },
-                Source::Lanes(first) => {
-                    let mut columns = [$zero(); SIZE];
-                    for k in 0..SIZE {
-                        // SAFETY: as the caller promises.
-                        let lane = unsafe { lanes.add(first + k).cast::<f64>() };
-                        // SAFETY: as the caller promises.
-                        columns[k] = unsafe { f64::$load(lane.add($width * number)) };
-                    }
-                    columns
-                }
-            }
-        }
-
         /// Applies the function of a link to a group of rows.
         ///
         /// # Safety
-        /// As for [`super::short::Apply`], and the link has these sizes.
+        /// As for [`Apply`](crate::simd::short::Apply), of a link with these sizes.
         #[target_feature(enable = $feature)]
         pub unsafe fn link<
             T: Element,
@@ -128,19 +96,13 @@ macro_rules! short {
             group: usize,
             lanes: *mut Lane<GROUP>,
         ) {
-            for number in 0..GROUP / $width {
-                // SAFETY: as the caller promises.
-                let x = unsafe { columns_of_group::<T, A>(link.from[0], (group, number), lanes) };
-                // SAFETY: as the caller promises.
-                let y = unsafe { columns_of_group::<T, B>(link.from[1], (group, number), lanes) };
-                let values = K::values::<$width>(numbers_of(x), numbers_of(y));
-                for k in 0..OUT {
-                    // SAFETY: as the caller promises; a register holds `$width` numbers.
-                    unsafe {
-                        let to = lanes.add(link.to + k).cast::<f64>().add($width * number);
-                        f64::$store(to, f64::$load(values[k].as_ptr()));
-                    }
-                }
+            // SAFETY: the link fits, so that it has the rows of the group, and the lanes, which differ from those of the
+            // value.
+            unsafe {
+                let a = link.from[0].numbers(group, A, lanes);
+                let b = link.from[1].numbers(group, B, lanes);
+                let out = std::slice::from_raw_parts_mut(lanes.add(link.to), OUT);
+                short_block::<T, K, A, B, OUT, GROUP>(a, b, out);
             }
         }
 
@@ -178,16 +140,16 @@ macro_rules! short {
         ) -> usize {
             let groups = out.len() / (GROUP * OUT);
             let Some(mut writer) = Writer::<STREAMED>::new(out) else { return 0 };
-            let (lanes, out) = (lanes.as_mut_ptr(), out.as_mut_ptr());
+            let out = out.as_mut_ptr();
             for group in 0..groups {
                 for link in links {
                     // SAFETY: as the caller promises.
-                    unsafe { (link.apply)(link, group, lanes) };
+                    unsafe { (link.apply)(link, group, lanes.as_mut_ptr()) };
                 }
+                let values = Numbers::<T, GROUP>::Lanes(&lanes[first..first + OUT]);
                 for number in 0..GROUP / $width {
-                    let values = Source::<T>::Lanes(first);
-                    // SAFETY: as the caller promises.
-                    let rows = rows_of(unsafe { columns_of_group::<T, OUT>(values, (group, number), lanes) });
+                    // SAFETY: the group has these columns.
+                    let rows = rows_of(unsafe { columns_of::<T, OUT, GROUP>(values, number) });
                     for r in 0..OUT {
                         let place = (GROUP * group + $width * number) * OUT + $width * r;
                         // SAFETY: there is room for so many groups.

@@ -9,6 +9,7 @@
 #![allow(unsafe_code)]
 
 pub mod double;
+mod in_registers;
 pub mod lanes;
 pub mod lookahead;
 pub(crate) mod map;

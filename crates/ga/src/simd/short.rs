@@ -69,7 +69,7 @@ impl<'a, T> Source<'a, T> {
     /// The numbers of a group, `size` in a row.
     ///
     /// # Safety
-    /// There are these rows; or these lanes, which nobody writes while the numbers are in use.
+    /// Rows: those of the group exist. Lanes: they exist, and nothing writes to them while the numbers are in use.
     #[inline(always)]
     pub(super) unsafe fn numbers(
         self,

@@ -198,15 +198,16 @@ impl Sweep<'_> {
             (rows, piece)
         });
         for_each(pieces, |(mut rows, mut targets)| {
-            let piece = |rows: &Range<usize>| -> Vec<Factor<T>> {
-                factors.iter().map(|factor| factor.piece(rows.clone())).collect()
-            };
-            let chained = self.chained(&piece(&rows), &mut targets);
-            rows.start += chained;
-            if rows.is_empty() {
+            let mut factors: Vec<_> = factors.iter().map(|factor| factor.piece(rows.clone())).collect();
+            let chained = self.chained(&factors, &mut targets);
+            let count = rows.len() - chained;
+            if count == 0 {
                 return;
             }
-            let (factors, count) = (piece(&rows), rows.len());
+            if chained > 0 {
+                factors.iter_mut().for_each(|factor| *factor = factor.piece(chained..rows.len()));
+                rows.start += chained;
+            }
             let done = if count < GROUP {
                 self.piece::<T, GROUP>(&factors, &mut targets, count)
             } else {

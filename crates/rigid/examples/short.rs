@@ -34,7 +34,7 @@ fn main() {
     let heavy = Torque::Heavy(Vector([0.1, 0.2, 0.3]));
     for (own, what) in [(false, "shared"), (true, "own")] {
         for (laws, law) in [(vec![], "free"), (vec![heavy.clone()], "heavy")] {
-            for method in ["rk4", "kahan_li8"] {
+            for method in ["rk4", "kahan_li8", "auto"] {
                 let name = format!("{law}, {what} moments, {method}");
                 if !name.contains(&only) {
                     continue;
@@ -46,8 +46,8 @@ fn main() {
                     masses: Rows::new(vec![1.0]),
                     forces: vec![],
                 };
-                let options =
-                    Options { method: Method::from_name(method), step: Some(0.01), ..Options::default() };
+                let step = (method != "auto").then_some(0.01);
+                let options = Options { method: Method::from_name(method), step, ..Options::default() };
                 let times = [0.01 * steps as f64];
                 let [mut a, mut b, mut c, mut d] = [4, 3, 3, 1].map(|n| vec![0.0; n * bodies]);
                 for threads in [1, 2] {

@@ -1,4 +1,4 @@
-//! Bodies of an ensemble in closed form.
+//! Bodies of an ensemble under torques in closed form.
 
 use super::member::{Member, Outcome};
 use super::scheduler::Scheduler;
@@ -26,19 +26,13 @@ impl<'a> Scheduler<'a> {
         if members.is_empty() {
             return;
         }
-        if members.len() == TOGETHER {
-            if let Some((_, ExactBody::Free(_))) = members.first() {
-                self.free(members.drain(..).map(|(member, _)| member).collect());
-            } else if let Some(tile) = ExactBody::tile(members.iter().map(|(_, body)| body)) {
-                self.under_torques(members, &tile);
-            }
+        if members.len() == TOGETHER
+            && let Some(tile) = ExactBody::tile(members.iter().map(|(_, body)| body))
+        {
+            self.under_torques(members, &tile);
         }
         for (member, body) in members.drain(..) {
-            if let ExactBody::Free(_) = body {
-                self.free_alone(member);
-            } else {
-                self.alone(member, &body, progress);
-            }
+            self.alone(member, &body, progress);
         }
         self.report(progress);
     }
@@ -101,7 +95,7 @@ impl<'a> Scheduler<'a> {
             own.write(index, (frame, &gyrostat, torques), &phase, &center);
         }
         let drifts = monitor.finish();
-        if let Err(error) = check_kept(&drifts) {
+        if let Err(error) = check_kept(drifts.iter().map(|(quantity, _, change)| (*quantity, *change))) {
             return self.fail(body, own, METHOD, error);
         }
         let certificate =

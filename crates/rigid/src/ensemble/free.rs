@@ -1,46 +1,80 @@
 //! Free bodies of an ensemble in closed form: side by side at few times, otherwise each with its times in lanes.
 
+use super::columns::Record;
 use super::exact::METHOD;
-use super::member::{Member, Outcome, of};
+use super::member::{Member, of};
 use super::monitor::{LaneMonitor, LaneStates};
 use super::observe::{LaneBodies, LanePhases};
 use super::scheduler::Scheduler;
 use crate::exact::free::{FreeBody, FreeMotions};
+use crate::exact::many::TIMES_IN_LANES;
 use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
-use crate::run::certificate::{Certificate, larger};
+use crate::run::Progress;
+use crate::run::certificate::larger;
 use crate::run::closed_form::{ElapsedTime, check_kept};
 use crate::state::checks::check_horizons;
 use crate::state::phase::Gyrostat;
 use polhode_ga::rows::curve::TOGETHER;
+use polhode_ga::simd::double::two_sum;
 use polhode_ga::simd::threads::Threads;
 use std::array::from_fn;
 use std::borrow::Cow;
 use std::slice;
 
 impl<'a> Scheduler<'a> {
-    /// Writes the motions of as many free bodies as there are lanes.
-    pub(super) fn free(&self, mut members: Vec<Member<'a>>) {
-        let bodies: [FreeBody; TOGETHER] = from_fn(|l| free_body(&members[l]));
+    /// Writes the motions of the unassigned bodies, none of which has a torque, until none is left.
+    pub(super) fn free_bodies(&self, threads: usize, progress: &mut dyn FnMut(Progress) -> bool) {
+        let together = if self.times.len() < TIMES_IN_LANES { TOGETHER } else { 1 };
         let mut motions = FreeMotions::default();
-        motions.set_up(&bodies);
-        let (mut checks, mut rows) = (Checks::new(&members), Rows::default());
+        let mut members = Vec::with_capacity(together);
+        while let Some(share) = self.next_bodies(threads, together) {
+            for (body, own) in share {
+                let member = self.member(body, own);
+                if !self.is_sound(&member) {
+                    // The error is reported as for a single body.
+                    self.run_single(body, member.own, progress);
+                    continue;
+                }
+                members.push(member);
+                if members.len() == together {
+                    self.free(&mut members, &mut motions);
+                }
+            }
+            self.report(progress);
+        }
+        if !self.is_stopped() {
+            self.free(&mut members, &mut motions);
+        }
+    }
+
+    /// Writes the motions of free bodies, at most as many as there are lanes, and leaves none.
+    fn free(&self, members: &mut Vec<Member<'a>>, motions: &mut FreeMotions<TOGETHER>) {
+        if members.len() <= 1 {
+            return members.drain(..).for_each(|member| self.free_alone(member));
+        }
+        motions.set_up(&from_fn(|l| free_body(of(members, l))));
+        let (mut checks, mut rows) = (Checks::new(members), Rows::default());
+        let starts: [f64; TOGETHER] = from_fn(|l| of(members, l).start.time);
         for (index, &time) in self.times.iter().enumerate() {
-            let elapsed = from_fn(|l| time - members[l].start.time);
-            motions.at(&elapsed, &mut rows.rotors, &mut rows.omegas);
-            checks.record(&[time; TOGETHER], TOGETHER, &mut rows);
+            motions.at(&starts.map(|start| time - start), &mut rows.rotors, &mut rows.omegas);
+            checks.record(&[time; TOGETHER], members.len(), &mut rows);
             for (l, Member { own, .. }) in members.iter_mut().enumerate() {
                 own.rotors.as_chunks_mut().0[index] = rows.rotors[l];
                 own.omegas.as_chunks_mut().0[index] = rows.omegas[l];
             }
         }
-        for (l, member) in members.into_iter().enumerate() {
-            self.finish_free(member, motions.horizon(l, &bodies[l]), checks.of_lane(l));
+        let method = self.columns.method(METHOD);
+        self.count(&mut 0, 1.0, members.len());
+        for (l, member) in members.iter_mut().enumerate() {
+            let (horizon, norm_drift) = (motions.horizons[l], checks.norm_drifts[l]);
+            self.finish_free(member, method, horizon, norm_drift, checks.monitor.finish(l));
         }
+        members.clear();
     }
 
     /// Writes the motion of a free body.
-    pub(super) fn free_alone(&self, mut member: Member<'a>) {
+    fn free_alone(&self, mut member: Member<'a>) {
         let (motion, start) = (free_body(&member).motion(), member.start.time);
         let mut checks = Checks::new(slice::from_ref(&member));
         let elapsed: Vec<f64> = self.times.iter().map(|time| time - start).collect();
@@ -57,15 +91,25 @@ impl<'a> Scheduler<'a> {
             rotors.copy_from_slice(&rows.rotors[..count]);
             omegas.copy_from_slice(&rows.omegas[..count]);
         }
-        self.finish_free(member, motion.horizon(), checks.of_all_lanes());
+        let (norm_drift, drifts) = checks.of_all_lanes();
+        self.count(&mut 0, 1.0, 1);
+        self.finish_free(&mut member, self.columns.method(METHOD), motion.horizon(), norm_drift, drifts);
     }
 
     /// Completes the motion of a free body, whose rotors and angular velocities are written: momentum and energy are those
     /// of the start.
-    fn finish_free(&self, mut member: Member<'a>, horizon: f64, certificate: Certificate) {
-        let Member { body, gyrostat, start, ref mut own, .. } = member;
+    fn finish_free(
+        &self,
+        member: &mut Member<'a>,
+        method: usize,
+        horizon: f64,
+        norm_drift: f64,
+        drifts: impl Iterator<Item = (Conserved, [f64; 2])> + Clone,
+    ) {
+        let Member { body, gyrostat, start, ref mut own, .. } = *member;
         let checked = check_horizons(start.time, self.times, [horizon; 2]);
-        if let Err(error) = checked.and_then(|()| check_kept(&certificate.drifts)) {
+        let changes = drifts.clone().map(|(quantity, [_, change])| (quantity, change));
+        if let Err(error) = checked.and_then(|()| check_kept(changes)) {
             return self.fail(body, own, METHOD, error);
         }
         let momentum = start.rotor.apply_bivector(start.momentum);
@@ -77,12 +121,14 @@ impl<'a> Scheduler<'a> {
                 own.place(index, &center.at(time));
             }
         }
-        self.count(&mut 0, 1.0, 1);
-        self.record([Outcome { body, certificate, failure: None }]);
+        let estimate = f64::NAN;
+        let record = Record { method, longest: 0.0, steps: 0, evaluations: 0, estimate, norm_drift };
+        self.columns.record(body, record);
+        drifts.for_each(|(quantity, numbers)| self.columns.drift(body, quantity, numbers));
     }
 }
 
-pub(super) fn free_body(Member { frame, gyrostat, start, omega, .. }: &Member<'_>) -> FreeBody {
+fn free_body(Member { frame, gyrostat, start, omega, .. }: &Member<'_>) -> FreeBody {
     FreeBody::in_frame(*frame, gyrostat.moments, start.rotor, *omega)
 }
 
@@ -101,41 +147,37 @@ impl Default for Rows {
 /// Measures states of free bodies in lanes, with the bits of a single body.
 struct Checks {
     bodies: LaneBodies<TOGETHER>,
-    gyrostats: Vec<Gyrostat>,
-    /// None.
-    torques: Vec<Cow<'static, [Torque]>>,
-    since: Vec<ElapsedTime<'static>>,
+    gyrostats: [Gyrostat; TOGETHER],
+    starts: [f64; TOGETHER],
     monitor: LaneMonitor<TOGETHER>,
     norm_drifts: [f64; TOGETHER],
 }
 
+/// The torques of the lanes: none.
+const NO_TORQUES: [Cow<'static, [Torque]>; TOGETHER] = [const { Cow::Borrowed(&[]) }; TOGETHER];
+
 impl Checks {
     /// Lanes beyond the members are of the first one.
     fn new(members: &[Member]) -> Checks {
-        let gyrostats: Vec<Gyrostat> = (0..TOGETHER).map(|l| of(members, l).gyrostat).collect();
-        let torques = vec![Cow::Borrowed(&[][..]); TOGETHER];
-        let since = |member: &Member| ElapsedTime::new(member.start.time, member.gyrostat, &[]);
+        let gyrostats = from_fn(|l| of(members, l).gyrostat);
         let bodies = LaneBodies::new(members);
         let starts = bodies.points(LanePhases::starts(members));
         Checks {
-            monitor: LaneMonitor::new(&LaneStates::new(starts, (&gyrostats, &torques), 0.0)),
-            since: (0..TOGETHER).map(|l| since(of(members, l))).collect(),
+            monitor: LaneMonitor::new(&LaneStates::new(&starts, (&gyrostats, &NO_TORQUES), 0.0)),
+            starts: from_fn(|l| of(members, l).start.time),
             norm_drifts: [0.0; TOGETHER],
             bodies,
             gyrostats,
-            torques,
         }
     }
 
     /// Measures the first lanes, with states at the rounded times since the start, and moves these to the exact times.
     fn record(&mut self, times: &[f64; TOGETHER], count: usize, rows: &mut Rows) {
         let mut phases = self.bodies.phases(&rows.rotors, &rows.omegas);
-        let mut moved = [false; TOGETHER];
-        for l in 0..count {
-            moved[l] = self.since[l].elapsed(times[l]).lo != 0.0;
-            if moved[l] {
-                phases.set(l, &self.since[l].at(phases.phase(l, times[l])));
-            }
+        let moved: [bool; TOGETHER] = from_fn(|l| two_sum(times[l], -self.starts[l]).1 != 0.0);
+        for l in (0..count).filter(|&l| moved[l]) {
+            let since = ElapsedTime::new(self.starts[l], self.gyrostats[l], &[]);
+            phases.set(l, &since.at(phases.phase(l, times[l])));
         }
         let points = self.bodies.points(phases);
         for l in (0..count).filter(|&l| moved[l]) {
@@ -145,26 +187,18 @@ impl Checks {
         for l in 0..count {
             self.norm_drifts[l] = self.norm_drifts[l].max(points.off_unit.0[l]);
         }
-        let states = LaneStates::new(points, (&self.gyrostats, &self.torques), 0.0);
+        let states = LaneStates::new(&points, (&self.gyrostats, &NO_TORQUES), 0.0);
         self.monitor.record(&states, &from_fn(|l| l >= count));
     }
 
-    /// The certificate of the body of a lane.
-    fn of_lane(&self, l: usize) -> Certificate {
-        let drifts = self.monitor.finish(l).map(|(quantity, [start, drift])| (quantity, start, drift));
-        let (drifts, norm_drift) = (drifts.collect(), self.norm_drifts[l]);
-        Certificate { method: METHOD, drifts, norm_drift, ..Certificate::default() }
-    }
-
-    /// The certificate of a body that has all lanes.
-    fn of_all_lanes(&self) -> Certificate {
-        let mut all = self.of_lane(0);
+    /// The largest change of the norm and the drifts of a body that has all lanes.
+    fn of_all_lanes(&self) -> (f64, impl Iterator<Item = (Conserved, [f64; 2])> + Clone) {
+        let mut drifts: Vec<_> = self.monitor.finish(0).collect();
         for l in 1..TOGETHER {
-            let one = self.of_lane(l);
-            all.norm_drift = all.norm_drift.max(one.norm_drift);
-            let pairs = all.drifts.iter_mut().zip(one.drifts);
-            pairs.for_each(|(all, one): (&mut (Conserved, f64, f64), _)| all.2 = larger(all.2, one.2));
+            for ((_, [_, drift]), (_, [_, own])) in drifts.iter_mut().zip(self.monitor.finish(l)) {
+                *drift = larger(*drift, own);
+            }
         }
-        all
+        (self.norm_drifts.iter().fold(0.0, |most, x| x.max(most)), drifts.into_iter())
     }
 }

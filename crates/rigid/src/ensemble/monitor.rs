@@ -15,7 +15,7 @@ pub(super) type Acted<'m> = (&'m [Gyrostat], &'m [Cow<'m, [Torque]>]);
 /// The bodies of the lanes at a time.
 pub(super) struct LaneStates<'m, const W: usize> {
     acted: Acted<'m>,
-    points: LanePoints<W>,
+    points: &'m LanePoints<W>,
     /// Kinetic and potential energies in J.
     pub energy: [f64; W],
     /// In s.
@@ -23,7 +23,7 @@ pub(super) struct LaneStates<'m, const W: usize> {
 }
 
 impl<'m, const W: usize> LaneStates<'m, W> {
-    pub fn new(points: LanePoints<W>, acted: Acted<'m>, time: f64) -> Self {
+    pub fn new(points: &'m LanePoints<W>, acted: Acted<'m>, time: f64) -> Self {
         let energy = points.kinetic.0;
         let mut states = LaneStates { acted, points, energy, time };
         for (l, (body, torques)) in acted.0.iter().zip(acted.1).enumerate() {
@@ -34,11 +34,6 @@ impl<'m, const W: usize> LaneStates<'m, W> {
             }
         }
         states
-    }
-
-    /// What is computed in lanes.
-    pub fn points(&self) -> &LanePoints<W> {
-        &self.points
     }
 
     fn phase(&self, l: usize) -> Phase {
@@ -135,7 +130,7 @@ impl<const W: usize> LaneMonitor<W> {
     }
 
     /// Each quantity of a lane with its value at the start and its largest relative change.
-    pub fn finish(&self, l: usize) -> impl Iterator<Item = (Conserved, [f64; 2])> {
+    pub fn finish(&self, l: usize) -> impl Iterator<Item = (Conserved, [f64; 2])> + Clone {
         let of = move |tracked: &Tracked<W>| Some((tracked.each[l]?, [tracked.start[l], tracked.drift[l]]));
         self.0.iter().filter_map(of)
     }

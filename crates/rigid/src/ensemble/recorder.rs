@@ -49,11 +49,11 @@ impl<'r, 'a, const W: usize> Recorder<'r, 'a, W> {
         let bodies = LaneBodies::new(&members);
         let moving = if members[0].own.centers.is_some() { &members[..] } else { &[] };
         let centers = moving.iter().map(|member| scheduler.center(member.body)).collect();
-        let at_start = LaneStates::new(bodies.points(LanePhases::starts(&members)), acted, plan.start);
+        let at_start = bodies.points(LanePhases::starts(&members));
         Recorder {
             are_moderate: moderate(bodies.numbers()),
-            monitor: LaneMonitor::new(&at_start),
-            squared_rates: at_start.points().squared_rates(),
+            monitor: LaneMonitor::new(&LaneStates::new(&at_start, acted, plan.start)),
+            squared_rates: at_start.squared_rates(),
             norm_drifts: [0.0; W],
             lost: [false; W],
             failures: [const { None }; W],
@@ -89,9 +89,9 @@ impl<'r, 'a, const W: usize> Recorder<'r, 'a, W> {
     /// Records the bodies at an output time.
     pub fn record(&mut self, phases: LanePhases<W>, index: usize) {
         let time = self.scheduler.times[index];
-        let states = LaneStates::new(self.bodies.points(phases), self.acted, time);
+        let points = self.bodies.points(phases);
+        let states = LaneStates::new(&points, self.acted, time);
         self.monitor.record(&states, &self.lost);
-        let points = states.points();
         let rates = points.squared_rates();
         (0..W).for_each(|l| self.squared_rates[l] = self.squared_rates[l].max(rates[l]));
         for (l, member) in self.members.iter_mut().enumerate() {

@@ -82,14 +82,14 @@ impl<'a> Scheduler<'a> {
         }
     }
 
-    /// The next unassigned bodies: those that fit into the lanes, or a part of the last ones, of which the others of
-    /// `threads` get as many.
-    pub fn next_bodies(&self, threads: usize) -> Option<Share<'a>> {
+    /// The next unassigned bodies: at most a number of them, or a part of the last ones, of which the others of `threads` get
+    /// as many.
+    pub fn next_bodies(&self, threads: usize, most: usize) -> Option<Share<'a>> {
         if self.is_stopped() {
             return None;
         }
         let mut queue = lock(&self.queue);
-        let count = queue.len().div_ceil(threads.max(1)).min(WIDE);
+        let count = queue.len().div_ceil(threads.max(1)).min(most);
         if count == 0 { None } else { Some(queue.take_first(count)) }
     }
 
@@ -174,7 +174,7 @@ impl<'a> Scheduler<'a> {
     fn strategy(&self, member: &Member) -> Strategy {
         let Member { gyrostat, torques, start, omega, .. } = member;
         let chosen = self.options.method.is_some() && !self.options.exact;
-        if check_body(gyrostat, *omega, torques).is_err() || !self.knows_center(member.body) {
+        if !self.is_sound(member) {
             // The error is reported as for a single body.
             Strategy::Single
         } else if chosen {
@@ -186,6 +186,16 @@ impl<'a> Scheduler<'a> {
                 None => Strategy::Single,
             }
         }
+    }
+
+    /// Whether the motion of a body is defined at all times.
+    pub fn is_sound(&self, Member { body, gyrostat, torques, omega, .. }: &Member) -> bool {
+        check_body(gyrostat, *omega, torques).is_ok() && self.knows_center(*body)
+    }
+
+    /// Whether the bodies turn without torques, and are solved in closed form.
+    pub fn is_free(&self) -> bool {
+        self.ensemble.laws.is_empty() && self.options.method.is_none() && self.ensemble.in_lanes(false)
     }
 
     /// The laws of a body in principal axes.

@@ -65,6 +65,7 @@ impl<'a> Scheduler<'a> {
             Some(step) => {
                 self.equal_steps(step.min(self.options.max_step.unwrap_or(step)), threads, progress)
             }
+            None if self.is_free() => self.free_bodies(threads, progress),
             None => fastest(AdaptedSteps { scheduler: self, progress }),
         }
     }
@@ -85,7 +86,7 @@ impl<'a> Scheduler<'a> {
     fn equal_steps(&self, step: f64, threads: usize, progress: &mut dyn FnMut(Progress) -> bool) {
         // Bodies wait for others with the same plan.
         let mut waiting: Vec<(Plan, Vec<Member<'a>>)> = Vec::new();
-        let shares = iter::from_fn(|| self.next_bodies(threads));
+        let shares = iter::from_fn(|| self.next_bodies(threads, WIDE));
         for (body, own) in shares.flatten().take_while(|_| !self.is_stopped()) {
             let member = self.member(body, own);
             let Some(plan) = self.plan(&member, step) else {

@@ -97,14 +97,10 @@ impl Tile {
         Tile::in_groups(bodies, |tile, bodies, count| {
             motions.set_up(bodies);
             let first = tile.horizons.len();
-            for (l, body) in bodies[..count].iter().enumerate() {
-                tile.horizons.push([motions.horizon(l, body); 2]);
-            }
+            tile.horizons.extend(motions.horizons[..count].iter().map(|&horizon| [horizon; 2]));
             let [circular, hyperbolic] = motions.lanes(count);
             tile.free_circular.add_lanes(first, &mut motions.circular, &circular);
-            if let Some(motions) = &mut motions.hyperbolic {
-                tile.free_hyperbolic.add_lanes(first, motions, &hyperbolic);
-            }
+            tile.free_hyperbolic.add_lanes(first, &mut motions.hyperbolic, &hyperbolic);
             Ok(())
         })
     }
@@ -121,15 +117,16 @@ impl Tile {
             motions.set_up(&bodies.map(|(body, _)| body));
             let (first, dampings) = (tile.horizons.len(), bodies.map(|(_, g)| g));
             for (l, (body, g)) in bodies[..count].iter().enumerate() {
-                let own = damped::own_horizon(body, motions.horizon(l, body))
+                let own = damped::own_horizon(body, motions.horizons[l])
                     .map_err(|error| (l, error.to_string().into()))?;
                 tile.horizons.push(damped::horizons(own, *g));
             }
             let [circular, hyperbolic] = motions.lanes(count);
             let circular_motions = &mut Damped::new(motions.circular, dampings);
             tile.damped_circular.add_lanes(first, circular_motions, &circular);
-            if let Some(motions) = motions.hyperbolic {
-                tile.damped_hyperbolic.add_lanes(first, &mut Damped::new(motions, dampings), &hyperbolic);
+            if !hyperbolic.is_empty() {
+                let hyperbolic_motions = &mut Damped::new(motions.hyperbolic, dampings);
+                tile.damped_hyperbolic.add_lanes(first, hyperbolic_motions, &hyperbolic);
             }
             Ok(())
         })
@@ -155,9 +152,7 @@ impl Tile {
                 }
             }
             tile.lagrange_circular.add_lanes(first, &mut motions.circular, &lanes[0]);
-            if let Some(motions) = &mut motions.hyperbolic {
-                tile.lagrange_hyperbolic.add_lanes(first, motions, &lanes[1]);
-            }
+            tile.lagrange_hyperbolic.add_lanes(first, &mut motions.hyperbolic, &lanes[1]);
             Ok(())
         })
     }
@@ -257,7 +252,11 @@ impl<K: Lanes<TOGETHER>> Blocks<K> {
         while !lanes.is_empty() {
             let block = self.open();
             let (some, more) = lanes.split_at(lanes.len().min(TOGETHER - block.count));
-            block.coefficients.put_from(block.count, motions, some);
+            if some.len() == TOGETHER {
+                block.coefficients = *motions;
+            } else {
+                block.coefficients.put_from(block.count, motions, some);
+            }
             for &l in some {
                 block.places[block.count] = (first + l) as u16;
                 block.count += 1;

@@ -131,8 +131,11 @@ pub(crate) fn mean<const W: usize>(mut g: [f64; W]) -> [f64; W] {
     a
 }
 
-/// Most steps of a mean. Convergence is quadratic: 13 steps from k' = 1e-300.
-const STEPS: usize = 32;
+/// Most steps of a mean: the exponent of k' halves with each until convergence is quadratic, 16 steps from k' = 1e-600.
+const STEPS: usize = 20;
+
+/// Most steps of a sum, in which the exponent of p halves with each too, but p to powers of two: 25 from p² = 1e12.
+const SUMMED: usize = 32;
 
 /// The steps of `M = AGM(1, k')` for positive k', in double-double precision: `K = π/2M`, and with the sum over them
 /// `Π(n) − K = (K/2) (n/(1 − n)) Σ Q_n`.
@@ -187,7 +190,7 @@ impl<const W: usize, const FMA: bool> Means<W, FMA> {
         let two = DoubleDoubles::all(2.0.into());
         let (mut p2, mut p) = (p2, p2.sqrt());
         let (mut term, mut sum) = (DoubleDoubles::all(DoubleDouble::ONE), zero);
-        for step in 0..STEPS {
+        for step in 0..SUMMED {
             sum = sum + term;
             let product = if step < self.count { self.products[step] } else { self.mean * self.mean };
             let whole = p2 + product;

@@ -223,7 +223,7 @@ impl Problem {
             }
         }
         let drifts = monitor.finish();
-        check_kept(&drifts)?;
+        check_kept(drifts.iter().map(|(quantity, _, change)| (*quantity, *change)))?;
         Ok(Sweep { states, drifts, ..Sweep::default() })
     }
 }

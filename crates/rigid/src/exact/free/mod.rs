@@ -111,6 +111,8 @@ pub struct FreeMotion {
     /// None for steady rotation.
     orbit: Option<Orbit>,
     pub(super) flow: Flow,
+    /// In s.
+    horizon: f64,
 }
 
 impl FreeMotion {
@@ -132,7 +134,7 @@ impl FreeMotion {
 
     /// How far in time, in s, the phase is accurate: 1e17 turns.
     pub fn horizon(&self) -> f64 {
-        horizon(self.orbit.as_ref(), self.scale, self.omega)
+        self.horizon
     }
 
     /// Rotor and body angular velocity at time `t` in s, the same bits as [`FreeMotion::at_many`].
@@ -149,11 +151,8 @@ impl FreeMotion {
     }
 }
 
-fn horizon(orbit: Option<&Orbit>, scale: f64, omega: Bivector) -> f64 {
-    let fastest = match orbit {
-        Some(orbit) => orbit.lambda.hi.max(orbit.precession.hi.abs()) * scale,
-        None => omega.norm(),
-    };
+/// The time, in s, of [`MOST_TURNS`] turns by the fastest angular velocity of a rotor.
+fn horizon(fastest: f64) -> f64 {
     MOST_TURNS * 4.0 * PI / fastest
 }
 

@@ -71,9 +71,13 @@ pub(super) fn is_steady(i: [f64; 3], w: [f64; 3]) -> bool {
 }
 
 /// Axes by ascending moments; those of equal moments in their order.
+#[inline(always)]
 fn ascending(i: [f64; 3]) -> [usize; 3] {
     let mut order = [0, 1, 2];
-    order.sort_by(|&x, &y| i[x].total_cmp(&i[y]));
+    for k in [0, 1, 0] {
+        let [x, y] = [order[k], order[k + 1]];
+        (order[k], order[k + 1]) = if i[x] > i[y] { (y, x) } else { (x, y) };
+    }
     order
 }
 
@@ -89,10 +93,15 @@ impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
                 (i[k][l], w[k][l]) = (moments[l][orders[l][k]], rates[l][orders[l][k]]);
             }
         }
-        let (mut i, mut w) = (i.map(Wides::from), w.map(Wides::from));
-        for k in 0..3 {
-            (i[k], w[k]) = (i[k].in_units(size), w[k].in_units(scale));
-        }
+        // Not mapped: a function without the target features of this one would be called for each.
+        let i = [
+            Wides::from(i[0]).in_units(size),
+            Wides::from(i[1]).in_units(size),
+            Wides::from(i[2]).in_units(size),
+        ];
+        let [x, y, z] = w;
+        let w =
+            [Wides::from(x).in_units(scale), Wides::from(y).in_units(scale), Wides::from(z).in_units(scale)];
         let d = differences(i, w);
         // Whether c is the axis of the largest moment.
         let (mut short, mut s, on_separatrix) = ([false; W], [0.0; W], d.zeros());
@@ -126,7 +135,7 @@ impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
         let (mut precession, mean) = inv.precession(&s, &k2, Wides::all(1.0).or(&on_separatrix, kc), lambda);
         precession = (inv.g2.sqrt() / inv.b).narrowed().or(&on_separatrix, precession);
         let [cn, sn] = [(wa / sizes[0]).signed(&signed[0]), (wb / sizes[1]).signed(&signed[1])];
-        let mut amplitudes = sizes.map(Wides::values);
+        let mut amplitudes = [sizes[0].values(), sizes[1].values(), sizes[2].values()];
         for k in 0..3 {
             for l in 0..W {
                 amplitudes[k][l] *= signed[k][l];
@@ -299,7 +308,7 @@ pub(crate) fn arguments<const W: usize, const FMA: bool>(
     }
     let (sin, cos) = (sn.abs().or(&near, cn.abs()).signed(&signs), cn.abs().or(&near, kc * sn.abs()));
     let size = (cos * cos + sin * sin).sqrt();
-    let [part, cosines, sines] = [kc * sin, cos, sin].map(|x| (x / size).values());
+    let [part, cosines, sines] = [(kc * sin / size).values(), (cos / size).values(), (sin / size).values()];
     let (mut cos2, mut delta2) = ([0.0; W], [0.0; W]);
     for l in 0..W {
         // Δ² = 1 − k² sin² = cos² + k'² sin², and cos² >= k'/2.

@@ -12,7 +12,12 @@
 
 use crate::exact::lanes::Coefficients;
 use crate::numerics::lanes::{exp_minus, half_period, horner_in_lane, in_lane, sin_cos_turns};
+use polhode_ga::simd::lanes::{Lanes, One};
+use std::array::from_fn;
 use std::f64::consts::PI;
+
+/// Numbers of `C` motions, computed as those of one.
+pub(crate) type Numbers<const C: usize> = Lanes<C, false>;
 
 /// Largest nome of the trigonometric series.
 pub(crate) const LARGEST_NOME: f64 = 0.2;
@@ -40,16 +45,22 @@ pub(crate) trait Series<const C: usize>: Coefficients<C, One = <Self as Series<C
 
 /// `Σ h_n p_n(x)` in powers of x, with `p_0 = 1` and the given `p_{−1}`.
 #[inline(always)]
-pub(crate) fn chebyshev<const N: usize>(h: [f64; N], before: [f64; 2]) -> [f64; N] {
-    let (mut previous, mut p, mut sum) = ([0.0; N], [0.0; N], [0.0; N]);
+pub(crate) fn chebyshev<const N: usize, const C: usize>(
+    h: &[Numbers<C>; N],
+    before: [f64; 2],
+) -> [Numbers<C>; N] {
+    let (mut previous, mut p, mut sum) = ([0.0; N], [0.0; N], [Numbers::ZERO; N]);
     previous[..2].copy_from_slice(&before);
     p[0] = 1.0;
-    for h in h {
-        for k in 0..N {
-            sum[k] += h * p[k];
+    for n in 0..N {
+        for k in 0..=n {
+            sum[k] += h[n] * Numbers::all(p[k]);
         }
-        let twice = |k: usize| if k == 0 { 0.0 } else { 2.0 * p[k - 1] };
-        (previous, p) = (p, std::array::from_fn(|k| twice(k) - previous[k]));
+        let mut next = [0.0; N];
+        for k in 0..N {
+            next[k] = if k == 0 { 0.0 } else { 2.0 * p[k - 1] } - previous[k];
+        }
+        (previous, p) = (p, next);
     }
     sum
 }
@@ -68,16 +79,29 @@ pub(crate) fn sign(n: usize) -> f64 {
 
 /// `xⁿ` by squares.
 #[inline(always)]
-pub(crate) fn power(x: f64, n: usize) -> f64 {
-    let (mut result, mut square) = (1.0, x);
+pub(crate) fn power<const C: usize>(x: Numbers<C>, n: usize) -> Numbers<C> {
+    let (mut result, mut square) = (Numbers::all(1.0), x);
     // Exponents are constants below 32, for which the loop is unrolled.
     for bit in 0..5 {
         if n >> bit & 1 == 1 {
-            result *= square;
+            result = result * square;
         }
-        square *= square;
+        square = square * square;
     }
     result
+}
+
+/// Coefficients, where those below a limit are 0: subnormal numbers are slow on many machines, and negligible.
+#[inline(always)]
+pub(crate) fn normal<const C: usize, const N: usize>(c: &[Numbers<C>; N], least: f64) -> [[f64; C]; N] {
+    let mut normal = [[0.0; C]; N];
+    for k in 0..N {
+        for l in 0..C {
+            let Lanes(c) = &c[k];
+            normal[k][l] = if c[l].abs() < least { 0.0 } else { c[l] };
+        }
+    }
+    normal
 }
 
 /// Series in the nome q.
@@ -89,69 +113,58 @@ pub(crate) struct Circular<const C: usize = 1> {
 }
 
 impl Circular {
-    /// From the nome, `ρ = exp(−π(K' − η)/2K)` and s. With `q^{1/2} e^{±y} = ρ, q/ρ` the coefficients of
-    /// `θ4(v − i s y | q²)` and `s θ1(v − i s y | q²)` are sums and differences of two positive numbers.
-    #[inline(always)]
-    fn one(q: f64, rho: f64, s: f64) -> Circular {
-        let other = if rho > 0.0 { q / rho } else { 0.0 };
-        let even = |n: usize, o: f64| {
-            let weight = sign(n) * power(q, 2 * n * n - n);
-            if n == 0 { 1.0 } else { weight * (power(rho, 2 * n) + o * power(other, 2 * n)) }
-        };
-        let odd = |n: usize, o: f64| {
-            let weight = sign(n) * power(q, 2 * n * n + n);
-            weight * (power(rho, 2 * n + 1) + o * power(other, 2 * n + 1))
-        };
-        let mut z = [
-            chebyshev::<4>(std::array::from_fn(|n| even(n, 1.0)), FIRST),
-            chebyshev::<4>(std::array::from_fn(|n| s * odd(n, 1.0)), FOURTH),
-            chebyshev::<4>(std::array::from_fn(|n| -odd(n, -1.0)), THIRD),
-            [0.0; 4],
-        ];
-        z[3][..3].copy_from_slice(&chebyshev::<3>(std::array::from_fn(|n| s * even(n + 1, -1.0)), SECOND));
-        let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * power(q, n * n) };
-        let pronics = |n: usize| power(q, n * n + n);
-        let functions = [
-            chebyshev(std::array::from_fn(pronics), THIRD),
-            chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
-            chebyshev(std::array::from_fn(squares), FIRST),
-        ];
-        let denominator = chebyshev(std::array::from_fn(|n| sign(n) * squares(n)), FIRST);
-        // Subnormal coefficients are slow on many machines and negligible.
-        let normal = |c: f64| [if c.abs() < 1e-100 { 0.0 } else { c }];
-        Circular {
-            z: z.map(|z| z.map(normal)),
-            functions: functions.map(|f| f.map(normal)),
-            denominator: denominator.map(normal),
-        }
-    }
-
     /// Steady rotation: nothing but precession.
     pub fn steady() -> Circular {
-        Circular::one(0.0, 0.0, 1.0)
+        let mut steady = Circular::empty();
+        steady.set(&[0.0], &[0.0], &[1.0]);
+        steady
     }
 }
 
 impl<const C: usize> Circular<C> {
-    /// From the nomes, `ρ = exp(−π(K' − η)/2K)` and s.
+    /// Takes the series of the nomes, of `ρ = exp(−π(K' − η)/2K)` and s. With `q^{1/2} e^{±y} = ρ, q/ρ` the coefficients of
+    /// `θ4(v − i s y | q²)` and `s θ1(v − i s y | q²)` are sums and differences of two positive numbers.
     #[inline(always)]
-    pub fn new(q: &[f64; C], rho: &[f64; C], s: &[f64; C]) -> Circular<C> {
-        let mut all = Circular::empty();
+    pub fn set(&mut self, q: &[f64; C], rho: &[f64; C], s: &[f64; C]) {
+        /// Coefficients below this are negligible.
+        const LEAST: f64 = 1e-100;
+        let [q, rho, s]: [Numbers<C>; 3] = [Lanes(*q), Lanes(*rho), Lanes(*s)];
+        let mut other = Numbers::ZERO;
         for l in 0..C {
-            let one = Circular::one(q[l], rho[l], s[l]);
-            for i in 0..4 {
-                for k in 0..4 {
-                    all.z[i][k][l] = one.z[i][k][0];
-                }
-            }
-            for k in 0..5 {
-                for i in 0..3 {
-                    all.functions[i][k][l] = one.functions[i][k][0];
-                }
-                all.denominator[k][l] = one.denominator[k][0];
-            }
+            other.0[l] = if rho.0[l] > 0.0 { q.0[l] / rho.0[l] } else { 0.0 };
         }
-        all
+        let one = Numbers::all(1.0);
+        let ([mut even, mut less_even], [mut odd, mut less_odd]) = ([[one; 4]; 2], [[one; 4]; 2]);
+        for n in 0..4 {
+            if n > 0 {
+                let weight = Numbers::all(sign(n)) * power(q, 2 * n * n - n);
+                let (a, b) = (power(rho, 2 * n), power(other, 2 * n));
+                (even[n], less_even[n - 1]) = (weight * (a + b), s * (weight * (a - b)));
+            }
+            let weight = Numbers::all(sign(n)) * power(q, 2 * n * n + n);
+            let (a, b) = (power(rho, 2 * n + 1), power(other, 2 * n + 1));
+            (odd[n], less_odd[n]) = (s * (weight * (a + b)), -(weight * (a - b)));
+        }
+        let [first, second, third, _] = less_even;
+        let [a, b, c] = chebyshev(&[first, second, third], SECOND);
+        self.z = [
+            normal(&chebyshev(&even, FIRST), LEAST),
+            normal(&chebyshev(&odd, FOURTH), LEAST),
+            normal(&chebyshev(&less_odd, THIRD), LEAST),
+            normal(&[a, b, c, Numbers::ZERO], LEAST),
+        ];
+        let [mut pronics, mut squares, mut other_pronics, mut other_squares] = [[one; 5]; 4];
+        for n in 1..5 {
+            let alternating = Numbers::all(sign(n));
+            (pronics[n], squares[n]) = (power(q, n * n + n), Numbers::all(2.0) * power(q, n * n));
+            (other_pronics[n], other_squares[n]) = (alternating * pronics[n], alternating * squares[n]);
+        }
+        self.functions = [
+            normal(&chebyshev(&pronics, THIRD), LEAST),
+            normal(&chebyshev(&other_pronics, FOURTH), LEAST),
+            normal(&chebyshev(&squares, FIRST), LEAST),
+        ];
+        self.denominator = normal(&chebyshev(&other_squares, FIRST), LEAST);
     }
 }
 
@@ -167,12 +180,12 @@ impl<const C: usize> Series<C> for Circular<C> {
             x[l] = 1.0 - 2.0 * (sin[l] * sin[l]);
         }
         let mut z = [[0.0; W]; 4];
+        let [even, alternating, odd, [rest @ .., _]] = &self.z;
         for l in 0..W {
-            z[0][l] = horner_in_lane(&self.z[0], l, x[l]);
-            z[1][l] = sin[l] * horner_in_lane(&self.z[1], l, x[l]);
-            z[2][l] = cos[l] * horner_in_lane(&self.z[2], l, x[l]);
-            let [c0, c1, c2, _] = self.z[3];
-            z[3][l] = (2.0 * sin[l] * cos[l]) * horner_in_lane(&[c0, c1, c2], l, x[l]);
+            z[0][l] = horner_in_lane(even, l, x[l]);
+            z[1][l] = sin[l] * horner_in_lane(alternating, l, x[l]);
+            z[2][l] = cos[l] * horner_in_lane(odd, l, x[l]);
+            z[3][l] = (2.0 * sin[l] * cos[l]) * horner_in_lane::<3, C>(rest, l, x[l]);
         }
         let (mut functions, mut denominator) = ([[0.0; W]; 3], [0.0; W]);
         for l in 0..W {
@@ -232,31 +245,30 @@ impl Hyperbolic {
     pub fn new(border: f64, gamma: f64, s: f64) -> Hyperbolic {
         let nome = (-4.0 * border).exp();
         let root = (-2.0 * border).exp();
-        let sin = |n: usize| ((2 * n + 1) as f64 * gamma).sin();
-        let cos = |n: usize| ((2 * n + 1) as f64 * gamma).cos();
-        let weight = |n: usize| power(root, n * n + n);
-        let pronics = |n: usize| power(nome, n * n + n);
+        let power = |x: f64, n: usize| power(Lanes([x]), n).0[0];
+        let series = |h: [f64; 4], before: [f64; 2]| chebyshev(&One::each(h), before).map(|Lanes(c)| c);
+        let sin: [f64; 4] = from_fn(|n| ((2 * n + 1) as f64 * gamma).sin());
+        let cos: [f64; 4] = from_fn(|n| ((2 * n + 1) as f64 * gamma).cos());
+        let weight: [f64; 4] = from_fn(|n| power(root, n * n + n));
+        let pronics: [f64; 4] = from_fn(|n| power(nome, n * n + n));
         let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * power(nome, n * n) };
         // θ4(2ix|q') without the factor that vanishes at ±X: 1 − 2q'³ cosh 4x and 1 − 2q'⁵ cosh 4x.
         let (third, fifth) = (2.0 * power(nome, 3), 2.0 * power(nome, 5));
-        let z: [[f64; 4]; 4] = [
-            chebyshev(std::array::from_fn(|n| weight(n) * cos(n)), THIRD),
-            chebyshev(std::array::from_fn(|n| s * sign(n) * weight(n) * cos(n)), FOURTH),
-            chebyshev(std::array::from_fn(|n| -sign(n) * weight(n) * sin(n)), THIRD),
-            chebyshev(std::array::from_fn(|n| -s * weight(n) * sin(n)), FOURTH),
-        ];
-        let functions: [[f64; 4]; 3] = [
-            [1.0, -(third + fifth), third * fifth, 0.0],
-            chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
-            chebyshev(std::array::from_fn(squares), FIRST),
-        ];
-        let denominator: [f64; 4] = chebyshev(std::array::from_fn(pronics), THIRD);
         Hyperbolic {
             border: [border],
             nome: [nome],
-            z: z.map(|z| z.map(|c| [c])),
-            functions: functions.map(|f| f.map(|c| [c])),
-            denominator: denominator.map(|c| [c]),
+            z: [
+                series(from_fn(|n| weight[n] * cos[n]), THIRD),
+                series(from_fn(|n| s * sign(n) * weight[n] * cos[n]), FOURTH),
+                series(from_fn(|n| -sign(n) * weight[n] * sin[n]), THIRD),
+                series(from_fn(|n| -s * weight[n] * sin[n]), FOURTH),
+            ],
+            functions: [
+                [[1.0], [-(third + fifth)], [third * fifth], [0.0]],
+                series(from_fn(|n| sign(n) * pronics[n]), FOURTH),
+                series(from_fn(squares), FIRST),
+            ],
+            denominator: series(pronics, THIRD),
             ahead: [s * gamma / PI],
         }
     }

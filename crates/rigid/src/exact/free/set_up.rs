@@ -1,7 +1,7 @@
 //! From bodies to their motions: orbits, series and frames, one body in each lane.
 
 use super::flow::Flow;
-use super::orbit::{Orbit, Orbits, is_steady};
+use super::orbit::{Orbits, is_steady};
 use super::series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
 use super::{FreeMotion, horizon, power_of_two};
 use crate::body::inertia::Inertia;
@@ -47,13 +47,14 @@ impl FreeBody {
         let FreeBody { moments, frame, omega, .. } = *self;
         let mut alone = FreeMotions::<1>::default();
         // One lane needs no wide instructions.
-        SetUp { bodies: &[*self], motions: &mut alone }.run::<false>();
-        let flow = match alone.hyperbolic {
-            Some(flow) => Form::FreeHyperbolic(flow),
-            None => Form::FreeCircular(alone.circular),
+        let ([steady], orbits) = alone.filled::<false>(&[*self]);
+        let (scale, flow) = if alone.is_circular[0] {
+            (alone.circular.scale[0], Form::FreeCircular(alone.circular))
+        } else {
+            (alone.hyperbolic.scale[0], Form::FreeHyperbolic(alone.hyperbolic))
         };
-        let ([orbit], [scale]) = (alone.orbits, alone.scales);
-        FreeMotion { moments, frame, omega, scale, orbit, flow: flow::Flow(flow) }
+        let (orbit, horizon) = ((!steady).then(|| orbits.lane(0)), alone.horizons[0]);
+        FreeMotion { moments, frame, omega, scale, orbit, flow: flow::Flow(flow), horizon }
     }
 }
 
@@ -62,33 +63,25 @@ impl FreeBody {
 pub(crate) struct FreeMotions<const W: usize> {
     /// Valid where [`FreeMotions::is_circular`].
     pub circular: Flow<Circular<W>, W>,
-    /// The others.
-    pub hyperbolic: Option<Flow<Hyperbolic<W>, W>>,
+    /// Valid elsewhere.
+    pub hyperbolic: Flow<Hyperbolic<W>, W>,
     pub is_circular: [bool; W],
-    /// None for steady rotation.
-    pub(super) orbits: [Option<Orbit>; W],
-    /// As in [`FreeMotion`].
-    pub(super) scales: [f64; W],
+    /// [`FreeMotion::horizon`] of each.
+    pub horizons: [f64; W],
 }
 
 impl<const W: usize> Default for FreeMotions<W> {
     fn default() -> FreeMotions<W> {
         FreeMotions {
             circular: Flow::empty(),
-            hyperbolic: None,
+            hyperbolic: Flow::empty(),
             is_circular: [true; W],
-            orbits: [None; W],
-            scales: [1.0; W],
+            horizons: [0.0; W],
         }
     }
 }
 
 impl<const W: usize> FreeMotions<W> {
-    /// [`FreeMotion::horizon`] of each.
-    pub fn horizon(&self, l: usize, body: &FreeBody) -> f64 {
-        horizon(self.orbits[l].as_ref(), self.scales[l], body.omega)
-    }
-
     /// The lanes of the first `count` motions: the circular and the hyperbolic ones.
     pub fn lanes(&self, count: usize) -> [Vec<usize>; 2] {
         let (circular, hyperbolic) = (0..count).partition(|&l| self.is_circular[l]);
@@ -99,46 +92,10 @@ impl<const W: usize> FreeMotions<W> {
     pub fn set_up(&mut self, bodies: &[FreeBody; W]) {
         fastest(SetUp { bodies, motions: self });
     }
-}
 
-impl FreeMotions<TOGETHER> {
-    /// States of all at times of their own: rows of four rotor components and of three of the angular velocity.
-    pub fn at(
-        &self,
-        times: &[f64; TOGETHER],
-        rotors: &mut [[f64; 4]; TOGETHER],
-        omegas: &mut [[f64; 3]; TOGETHER],
-    ) {
-        together(&self.circular, times, rotors, omegas);
-        if let Some(hyperbolic) = &self.hyperbolic {
-            let (mut r, mut w) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
-            together(hyperbolic, times, &mut r, &mut w);
-            for l in (0..TOGETHER).filter(|&l| !self.is_circular[l]) {
-                (rotors[l], omegas[l]) = (r[l], w[l]);
-            }
-        }
-    }
-}
-
-struct SetUp<'a, const W: usize> {
-    bodies: &'a [FreeBody; W],
-    motions: &'a mut FreeMotions<W>,
-}
-
-/// Bodies that do not turn steadily, in lanes.
-struct Tumbling<'a, const W: usize, const FMA: bool> {
-    bodies: &'a [FreeBody; W],
-    orbits: Orbits<W, FMA>,
-    scale: [f64; W],
-    phases: Phases<W>,
-}
-
-impl<const W: usize> Work for SetUp<'_, W> {
-    type Output = ();
-
+    /// The same; whether each turns steadily, and the orbits of the others.
     #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        let SetUp { bodies, motions } = self;
+    fn filled<const FMA: bool>(&mut self, bodies: &[FreeBody; W]) -> ([bool; W], Orbits<W, FMA>) {
         let (mut moments, mut rates) = ([[0.0; 3]; W], [[0.0; 3]; W]);
         let (mut size, mut scale, mut steady) = ([0.0; W], [0.0; W], [false; W]);
         for l in 0..W {
@@ -158,24 +115,65 @@ impl<const W: usize> Work for SetUp<'_, W> {
         let Orbits { lambda, mean, on_separatrix, start, .. } = &orbits;
         let (phases, nome) = phases_and_nomes(lambda, mean, on_separatrix, start, &other);
         for l in 0..W {
-            motions.is_circular[l] = nome[l] <= LARGEST_NOME;
+            self.is_circular[l] = nome[l] <= LARGEST_NOME;
+            let fastest = orbits.lambda.hi[l].max(orbits.precession.hi[l].abs());
+            self.horizons[l] = horizon(fastest * scale[l]);
         }
-        let tumbling = Tumbling { bodies, orbits, scale, phases };
-        motions.circular = tumbling.flows(tumbling.circular(&nome));
-        motions.hyperbolic = if motions.is_circular == [true; W] {
-            None
-        } else {
-            Some(tumbling.flows(tumbling.hyperbolic(&motions.is_circular, &other)))
-        };
+        let tumbling = Tumbling { bodies, orbits: &orbits, scale, phases };
+        tumbling.circular(&mut self.circular.series, &nome);
+        tumbling.fill(&mut self.circular);
+        if self.is_circular != [true; W] {
+            tumbling.hyperbolic(&mut self.hyperbolic.series, &self.is_circular, &other);
+            tumbling.fill(&mut self.hyperbolic);
+        }
         for l in 0..W {
-            motions.orbits[l] = (!steady[l]).then(|| tumbling.orbits.lane(l));
-            motions.scales[l] = tumbling.scale[l];
             if steady[l] {
-                let flow = bodies[l].steady();
-                motions.scales[l] = flow.scale[0];
-                motions.circular.put(l, &flow);
+                self.circular.put(l, &bodies[l].steady());
+                self.horizons[l] = horizon(bodies[l].omega.norm());
             }
         }
+        (steady, orbits)
+    }
+}
+
+impl FreeMotions<TOGETHER> {
+    /// States of all at times of their own: rows of four rotor components and of three of the angular velocity.
+    pub fn at(
+        &self,
+        times: &[f64; TOGETHER],
+        rotors: &mut [[f64; 4]; TOGETHER],
+        omegas: &mut [[f64; 3]; TOGETHER],
+    ) {
+        together(&self.circular, times, rotors, omegas);
+        if self.is_circular != [true; TOGETHER] {
+            let (mut r, mut w) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
+            together(&self.hyperbolic, times, &mut r, &mut w);
+            for l in (0..TOGETHER).filter(|&l| !self.is_circular[l]) {
+                (rotors[l], omegas[l]) = (r[l], w[l]);
+            }
+        }
+    }
+}
+
+struct SetUp<'a, const W: usize> {
+    bodies: &'a [FreeBody; W],
+    motions: &'a mut FreeMotions<W>,
+}
+
+/// Bodies that do not turn steadily, in lanes.
+struct Tumbling<'a, const W: usize, const FMA: bool> {
+    bodies: &'a [FreeBody; W],
+    orbits: &'a Orbits<W, FMA>,
+    scale: [f64; W],
+    phases: Phases<W>,
+}
+
+impl<const W: usize> Work for SetUp<'_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        self.motions.filled::<FMA>(self.bodies);
     }
 }
 
@@ -205,18 +203,18 @@ pub(crate) fn phases_and_nomes<const W: usize, const FMA: bool>(
 
 impl<const W: usize, const FMA: bool> Tumbling<'_, W, FMA> {
     #[inline(always)]
-    fn circular(&self, nome: &[f64; W]) -> Circular<W> {
+    fn circular(&self, series: &mut Circular<W>, nome: &[f64; W]) {
         let (rest, mut rho) = (self.orbits.rest_of_eta(), [0.0; W]);
         for l in 0..W {
             rho[l] = (-rest[l] * self.orbits.mean.hi[l]).exp();
         }
-        Circular::new(nome, &rho, &self.orbits.s)
+        series.set(nome, &rho, &self.orbits.s);
     }
 
-    /// Zeros for the circular motions.
+    /// Leaves the lanes of circular motions.
     #[inline(always)]
-    fn hyperbolic(&self, circular: &[bool; W], other: &[f64; W]) -> Hyperbolic<W> {
-        let (eta, mut series) = (self.orbits.eta(), Hyperbolic::<W>::empty());
+    fn hyperbolic(&self, series: &mut Hyperbolic<W>, circular: &[bool; W], other: &[f64; W]) {
+        let eta = self.orbits.eta();
         for l in 0..W {
             if circular[l] {
                 continue;
@@ -230,18 +228,17 @@ impl<const W: usize, const FMA: bool> Tumbling<'_, W, FMA> {
             };
             series.put(l, &one);
         }
-        series
     }
 
-    /// Phases, series and frames together.
+    /// Completes flows with the given series by phases and frames.
     #[inline(always)]
-    fn flows<S: Series<W>>(&self, series: S) -> Flow<S, W> {
+    fn fill<S: Series<W>>(&self, flow: &mut Flow<S, W>) {
         let Tumbling { bodies, orbits, scale, phases } = self;
         let half_a_turn = DoubleDoubles::all(DoubleDouble::OVER_TWO_PI * 0.5.into());
         let (rate, still) = (orbits.precession * half_a_turn, [0.0; W]);
         let frames = by_component(|l| bodies[l].frame.components());
         let rotors = by_component(|l| bodies[l].rotor.components());
-        let (factors, mut units, mut omega) = (series.normalizers(), [[[0.0; W]; 4]; 4], [[[0.0; W]; 3]; 3]);
+        let (factors, mut units) = (flow.series.normalizers(), [[[0.0; W]; 4]; 4]);
         units[0][0] = [1.0; W];
         for k in 0..3 {
             let mut column = [[0.0; W]; 3];
@@ -253,14 +250,12 @@ impl<const W: usize, const FMA: bool> Tumbling<'_, W, FMA> {
             }
             column = turned(&frames, &column);
             for i in 0..3 {
-                omega[i][k] = column[i];
+                flow.omega[i][k] = column[i];
             }
         }
-        let (scale, orbit) = (*scale, *phases);
-        let precession = Phases([rate.hi, rate.lo, still, still]);
-        let mut flow = Flow { scale, orbit, precession, series, rotor: [[[0.0; W]; 4]; 4], omega };
+        (flow.scale, flow.orbit) = (*scale, *phases);
+        flow.precession = Phases([rate.hi, rate.lo, still, still]);
         flow.set_frames::<FMA>(&rotors, &units, &frames);
-        flow
     }
 }
 

@@ -4,9 +4,10 @@
 //! ([`crate::exact::free::series`]) trigonometric functions serve up to a nome `q = exp(−πK'/K)` of 0.2, hyperbolic ones
 //! beyond, where `q' = exp(−πK/K')` is below 0.0022.
 
-use crate::exact::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev, power, sign};
+use crate::exact::free::series::{FIRST, FOURTH, NEVER, Numbers, THIRD, chebyshev, normal, power, sign};
 use crate::exact::lanes::Coefficients;
 use crate::numerics::lanes::{exp_minus, half_period, horner_in_lane, in_lane, sin_cos_turns};
+use polhode_ga::simd::lanes::Lanes;
 use std::f64::consts::PI;
 
 /// The zero of one of the three functions, at `v = i s y` or `π/2 + i s y`.
@@ -24,7 +25,6 @@ pub(crate) struct Zeros<const C: usize> {
 
 impl<const C: usize> Zeros<C> {
     /// That of lane l.
-    #[inline(always)]
     pub fn lane(&self, l: usize) -> Zero {
         Zeros { side: [self.side[l]], eta: [self.eta[l]], rest: [self.rest[l]] }
     }
@@ -57,66 +57,68 @@ pub(crate) struct Circular<const C: usize = 1> {
 }
 
 impl<const C: usize> Circular<C> {
-    /// From the nomes, `M = π/2K`, and the zeros.
+    /// Takes the series of the nomes, of `M = π/2K`, and of the zeros.
     #[inline(always)]
-    pub fn new(q: &[f64; C], mean: &[f64; C], zeros: &[Zeros<C>; 3]) -> Circular<C> {
-        let mut all = Circular::empty();
-        for l in 0..C {
-            let one = Circular::one(q[l], mean[l], zeros.each_ref().map(|zero| zero.lane(l)));
-            for k in 0..5 {
-                for i in 0..3 {
-                    for j in 0..2 {
-                        all.z[i][j][k][l] = one.z[i][j][k][0];
-                    }
-                }
-                all.denominator[k][l] = one.denominator[k][0];
-            }
+    pub fn set(&mut self, q: &[f64; C], mean: &[f64; C], zeros: &[Zeros<C>; 3]) {
+        let q: Numbers<C> = Lanes(*q);
+        let [mut powers, mut alternating] = [[Numbers::all(1.0); 5]; 2];
+        for n in 1..5 {
+            powers[n] = power(q, n * n);
+            alternating[n] = Numbers::all(2.0 * sign(n)) * powers[n];
         }
-        all
+        for k in 0..3 {
+            let [sums, differences] = coefficients(&powers, mean, &zeros[k], k == 0);
+            // θ1 has odd harmonics with alternating signs.
+            let brackets = if k == 0 {
+                [chebyshev(&sums, FOURTH), chebyshev(&differences, THIRD)]
+            } else {
+                [chebyshev(&sums, THIRD), chebyshev(&differences, FOURTH)]
+            };
+            self.z[k] = [normal(&brackets[0], LEAST), normal(&brackets[1], LEAST)];
+        }
+        self.denominator = normal(&chebyshev(&alternating, FIRST), LEAST);
     }
 }
 
-impl Circular {
-    #[inline(always)]
-    fn one(q: f64, mean: f64, zeros: [Zero; 3]) -> Circular {
-        // q^{n²} ρ^{2n} (1 ± e^{−2(2n+1)y}) with ρ = q^½ e^y; the difference keeps its digits.
-        let coefficients = |Zeros { side: [side], eta: [eta], rest: [rest] }: Zero| {
-            let rho = (-rest * mean).exp();
-            let size = |n: usize| power(q, n * n) * power(rho, 2 * n);
-            let less = powers_less_one((-2.0 * (eta * mean)).exp_m1());
-            let sums: [f64; 5] = std::array::from_fn(|n| size(n) * (2.0 + less[n]));
-            let differences: [f64; 5] = std::array::from_fn(|n| -side * size(n) * less[n]);
-            (sums, differences)
-        };
-        let alternating = |c: [f64; 5]| std::array::from_fn(|n| sign(n) * c[n]);
-        let odd = |zero: Zero| {
-            let (sums, differences) = coefficients(zero);
-            let minus = alternating(differences).map(|c: f64| -c);
-            [chebyshev::<5>(alternating(sums), FOURTH), chebyshev::<5>(minus, THIRD)]
-        };
-        let even = |zero: Zero| {
-            let (sums, differences) = coefficients(zero);
-            [chebyshev::<5>(sums, THIRD), chebyshev::<5>(differences, FOURTH)]
-        };
-        let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * sign(n) * power(q, n * n) };
-        // Subnormal coefficients are slow on many machines and negligible.
-        let normal = |c: f64| [if c.abs() < 1e-200 { 0.0 } else { c }];
-        let z = [odd(zeros[0]), even(zeros[1]), even(zeros[2])];
-        Circular {
-            z: z.map(|brackets| brackets.map(|c| c.map(normal))),
-            denominator: chebyshev::<5>(std::array::from_fn(squares), FIRST).map(normal),
+/// Coefficients below this are negligible.
+const LEAST: f64 = 1e-200;
+
+/// `q^{n²} ρ^{2n} (1 ± e^{−2(2n+1)y})` with `ρ = q^½ e^y`, from the powers of the nomes: the difference keeps its digits,
+/// and has the sign −s. With alternating signs, the sign of differences is s (−1)ⁿ.
+#[inline(always)]
+fn coefficients<const C: usize>(
+    powers: &[Numbers<C>; 5],
+    mean: &[f64; C],
+    zeros: &Zeros<C>,
+    alternating: bool,
+) -> [[Numbers<C>; 5]; 2] {
+    let (mut rho, mut less) = (Numbers::<C>::ZERO, Numbers::<C>::ZERO);
+    for l in 0..C {
+        rho.0[l] = (-zeros.rest[l] * mean[l]).exp();
+        less.0[l] = (-2.0 * (zeros.eta[l] * mean[l])).exp_m1();
+    }
+    let less = powers_less_one(less);
+    let side: Numbers<C> = Lanes(zeros.side);
+    let [mut sums, mut differences] = [[Numbers::ZERO; 5]; 2];
+    for n in 0..5 {
+        let size = powers[n] * power(rho, 2 * n);
+        (sums[n], differences[n]) = (size * (Numbers::all(2.0) + less[n]), -side * size * less[n]);
+        if alternating {
+            let sign = Numbers::all(sign(n));
+            (sums[n], differences[n]) = (sign * sums[n], -(sign * differences[n]));
         }
     }
+    [sums, differences]
 }
 
 /// `x^{2n+1} − 1` from `x − 1`, in (−1, 0], without cancellation: `ab − 1 = (a − 1) + (b − 1) + (a − 1)(b − 1)`.
 #[inline(always)]
-fn powers_less_one(first: f64) -> [f64; 5] {
-    let square = first * (2.0 + first);
-    let (mut powers, mut last) = ([0.0; 5], first);
+fn powers_less_one<const C: usize>(first: Numbers<C>) -> [Numbers<C>; 5] {
+    let square = first * (Numbers::all(2.0) + first);
+    let (mut powers, mut last) = ([Numbers::ZERO; 5], first);
     for n in 0..5 {
         powers[n] = last;
-        last = last + square * (1.0 + last);
+        last = last + square * (Numbers::all(1.0) + last);
     }
     powers
 }

@@ -41,9 +41,10 @@ impl HeavyTop {
         if !tops.resolved[0] {
             return Err(SimulateError::Unresolved);
         }
-        let flow = Flow(match tops.hyperbolic {
-            Some(flow) => Form::LagrangeHyperbolic(flow),
-            None => Form::LagrangeCircular(tops.circular),
+        let flow = Flow(if tops.is_circular[0] {
+            Form::LagrangeCircular(tops.circular)
+        } else {
+            Form::LagrangeHyperbolic(tops.hyperbolic)
         });
         Ok(LagrangeTop { axes, start, orbit: Some(orbits.lane(0)), flow, horizon: tops.horizons[0] })
     }
@@ -54,8 +55,8 @@ impl HeavyTop {
 pub(in crate::exact) struct LagrangeTops<const W: usize> {
     /// Valid where [`LagrangeTops::is_circular`].
     pub circular: LagrangeFlow<Circular<W>, W>,
-    /// The others.
-    pub hyperbolic: Option<LagrangeFlow<Hyperbolic<W>, W>>,
+    /// Valid elsewhere.
+    pub hyperbolic: LagrangeFlow<Hyperbolic<W>, W>,
     pub is_circular: [bool; W],
     /// Tops without a torque, whose motions are of free bodies.
     pub steady: [bool; W],
@@ -69,7 +70,7 @@ impl<const W: usize> Default for LagrangeTops<W> {
     fn default() -> LagrangeTops<W> {
         LagrangeTops {
             circular: LagrangeFlow::empty(),
-            hyperbolic: None,
+            hyperbolic: LagrangeFlow::empty(),
             is_circular: [true; W],
             steady: [false; W],
             resolved: [true; W],
@@ -106,18 +107,17 @@ impl<const W: usize> LagrangeTops<W> {
         }
         self.steady = starts.steady;
         let nutating = Nutating { starts: &starts, orbits: &orbits, frames, rotors, omegas, phases };
-        let series = Circular::new(&nome, &orbits.mean.hi, &orbits.zeros);
-        self.circular = nutating.flow(series);
+        self.circular.series.set(&nome, &orbits.mean.hi, &orbits.zeros);
+        nutating.fill(&mut self.circular);
         self.horizons = nutating.horizons(&self.circular);
         self.resolved = nutating.resolved(&self.circular);
-        self.hyperbolic = None;
         if self.is_circular != [true; W] {
-            let flow = nutating.flow(nutating.hyperbolic(&self.is_circular, &other));
-            let resolved = nutating.resolved(&flow);
+            nutating.hyperbolic(&mut self.hyperbolic.series, &self.is_circular, &other);
+            nutating.fill(&mut self.hyperbolic);
+            let resolved = nutating.resolved(&self.hyperbolic);
             for l in 0..W {
                 self.resolved[l] = if self.is_circular[l] { self.resolved[l] } else { resolved[l] };
             }
-            self.hyperbolic = Some(flow);
         }
         for l in 0..W {
             self.resolved[l] &= orbits.resolved[l];
@@ -153,10 +153,10 @@ struct Nutating<'a, const W: usize, const FMA: bool> {
 }
 
 impl<const W: usize, const FMA: bool> Nutating<'_, W, FMA> {
-    /// Zeros for the circular motions.
+    /// Leaves the lanes of circular motions.
     #[inline(always)]
-    fn hyperbolic(&self, circular: &[bool; W], other: &[f64; W]) -> Hyperbolic<W> {
-        let (orbits, mut series) = (self.orbits, Hyperbolic::<W>::empty());
+    fn hyperbolic(&self, series: &mut Hyperbolic<W>, circular: &[bool; W], other: &[f64; W]) {
+        let orbits = self.orbits;
         for l in 0..W {
             if circular[l] {
                 continue;
@@ -172,26 +172,23 @@ impl<const W: usize, const FMA: bool> Nutating<'_, W, FMA> {
             };
             series.put(l, &one);
         }
-        series
     }
 
-    /// Phases, series and frames together.
+    /// Completes flows with the given series by phases and frames.
     #[inline(always)]
-    fn flow<S: Series<W>>(&self, series: S) -> LagrangeFlow<S, W> {
+    fn fill<S: Series<W>>(&self, flow: &mut LagrangeFlow<S, W>) {
         let Nutating { starts, orbits, frames, phases, .. } = self;
         let (none, one, minus) = ([0.0; W], [1.0; W], [-1.0; W]);
         // The uniform turn about the axis adds to ψ.
         let excess = starts.excess.narrowed();
         let half = excess * DoubleDoubles::all(0.5.into());
         let [alpha, beta, across] = orbits.rates;
-        let mut uniform = [Phases::STILL; 3];
-        for (phase, rate) in uniform.iter_mut().zip([alpha + half, beta - half, across - excess]) {
+        for (phase, rate) in flow.phases.iter_mut().zip([alpha + half, beta - half, across - excess]) {
             let rate = rate * DoubleDoubles::all(DoubleDouble::OVER_TWO_PI);
             *phase = Phases([rate.hi, rate.lo, none, none]);
         }
         // Rotors for the real and imaginary parts of α and β, and axes for w and 1.
         let back = reverse(frames);
-        let (mut rotor, mut omega) = ([[none; 4]; 4], [[none; 3]; 3]);
         let units = [
             [one, none, none, none],
             [none, none, none, minus],
@@ -201,7 +198,7 @@ impl<const W: usize, const FMA: bool> Nutating<'_, W, FMA> {
         for k in 0..4 {
             let column = product(&units[k], &back);
             for i in 0..4 {
-                rotor[i][k] = column[i];
+                flow.rotor[i][k] = column[i];
             }
         }
         for (k, size) in [starts.scale, starts.scale, starts.omega3].into_iter().enumerate() {
@@ -209,14 +206,11 @@ impl<const W: usize, const FMA: bool> Nutating<'_, W, FMA> {
             axis[k] = size;
             let column = turned(frames, &axis);
             for i in 0..3 {
-                omega[i][k] = column[i];
+                flow.omega[i][k] = column[i];
             }
         }
-        let factors = [[one, none]; 3];
-        let (scale, orbit) = (starts.scale, *phases);
-        let mut flow = LagrangeFlow { scale, orbit, phases: uniform, series, factors, rotor, omega };
-        flow.factors = self.factors(&flow);
-        flow
+        (flow.scale, flow.orbit) = (starts.scale, *phases);
+        flow.factors = self.factors(flow);
     }
 
     /// The constants A, B and C: their sizes from the bounds, their phases from the two of α, β and w that are relatively

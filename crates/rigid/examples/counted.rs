@@ -10,10 +10,12 @@ use polhode_ga::rows::product::turn;
 use polhode_ga::rows::rotor_functions;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::{Algebra, Signature};
-use polhode_ga::{Bivector, Rotor};
+use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start};
-use polhode_rigid::exact::free::FreeMotion;
+use polhode_rigid::exact::free::{FreeBody, FreeMotion};
+use polhode_rigid::exact::lagrange::HeavyTop;
+use polhode_rigid::exact::many::Tile;
 use polhode_rigid::laws::formula::{Formula, Purpose};
 use polhode_rigid::laws::torque::{Axes, Gains, Orbit, Torque};
 use polhode_rigid::methods::Method;
@@ -66,6 +68,12 @@ fn of_motors(name: &'static str, f: Function) -> Kernel {
 
 /// Equal steps of bodies in lanes.
 fn stepped(name: &'static str, method: &'static str, laws: Vec<Torque>) -> Kernel {
+    let options = Options { method: Method::from_name(method), step: Some(0.01), ..Options::default() };
+    ensemble(name, BODIES * STEPS, options, laws)
+}
+
+/// A run of an ensemble, whose results have this number of rows to count.
+fn ensemble(name: &'static str, rows: usize, options: Options, laws: Vec<Torque>) -> Kernel {
     let start = |i: usize| Start {
         time: 0.0,
         rotor: Rotor::IDENTITY,
@@ -79,7 +87,6 @@ fn stepped(name: &'static str, method: &'static str, laws: Vec<Torque>) -> Kerne
         masses: Rows::new(vec![1.0]),
         forces: vec![],
     };
-    let options = Options { method: Method::from_name(method), step: Some(0.01), ..Options::default() };
     let times = [0.01 * STEPS as f64];
     let run = move || {
         let [mut rotors, mut omegas, mut momenta, mut energies] = [4, 3, 3, 1].map(|n| vec![0.0; n * BODIES]);
@@ -93,7 +100,7 @@ fn stepped(name: &'static str, method: &'static str, laws: Vec<Torque>) -> Kerne
         let summary = ensemble.run(&times, &options, Threads::ONE, outputs, &mut |_| true);
         assert!(summary.is_ok_and(|summary| summary.failures.is_empty()));
     };
-    (name, BODIES * STEPS, Box::new(run))
+    (name, rows, Box::new(run))
 }
 
 /// A formula of a rotor and vectors over many rows.
@@ -131,6 +138,35 @@ fn exact() -> Kernel {
     ("exact states of a free body", ROWS, Box::new(run))
 }
 
+/// The set-up of tumbling bodies in closed form.
+fn free_set_up() -> Kernel {
+    let moments = Inertia::from_principal_moments([1.0, 2.0, 3.0]).expect("a body's");
+    let body =
+        move |w: &[f64; 3]| FreeBody::new(&moments, Rotor::IDENTITY, Bivector([0.5 + w[0], w[1], w[2]]));
+    let starts = numbers(3 * ROWS);
+    let run = move || {
+        let bodies = black_box(&starts).as_chunks().0.iter().map(body);
+        black_box(Tile::free(bodies).expect("positive moments"));
+    };
+    ("set-up of a free body", ROWS, Box::new(run))
+}
+
+/// The set-up of heavy tops in closed form.
+fn heavy_set_up() -> Kernel {
+    let moments = Inertia::from_principal_moments([1.0, 1.0, 0.5]).expect("a body's");
+    let tilted = Rotor::exp(Bivector([-0.25, 0.0, 0.0]));
+    let top = move |w: &[f64; 3]| {
+        let omega = Bivector([0.1 * w[0], 0.1 * w[1], 4.0 + w[2]]);
+        HeavyTop::new(&moments, tilted, omega, Vector([0.0, 0.0, 2.0])).map_err(|error| error.to_string())
+    };
+    let starts = numbers(3 * ROWS);
+    let run = move || {
+        let tops = black_box(&starts).as_chunks().0.iter().map(top);
+        black_box(Tile::lagrange(tops).expect("symmetric tops"));
+    };
+    ("set-up of a heavy top", ROWS, Box::new(run))
+}
+
 fn kernels() -> Vec<Kernel> {
     let (planes, vectors) = (numbers(3 * ROWS), numbers(3 * ROWS));
     let gradient = || vec![Torque::GravityGradient(Orbit::circular(0.1))];
@@ -146,6 +182,9 @@ fn kernels() -> Vec<Kernel> {
         of_motors("log of a motor", Function::Log),
         over_rows("R v ~R + (a∧b)·c"),
         exact(),
+        free_set_up(),
+        heavy_set_up(),
+        ensemble("a free body in closed form at one time", BODIES, Options::default(), vec![]),
         stepped("free body, rk4", "rk4", vec![]),
         stepped("free body, kahan_li8", "kahan_li8", vec![]),
         stepped("gravity gradient, rk4", "rk4", gradient()),

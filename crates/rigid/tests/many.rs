@@ -122,39 +122,81 @@ fn many_bodies_give_the_bits_of_single_ones() {
     check_bits(&spheres());
 }
 
+const NUMBER: usize = TILE - 3;
+
+/// A tile of this many motions has the bits of these.
+fn same(tile: Tile, alone: &[impl ExactMotion]) {
+    let times = [0.0, 3.75, -100.0];
+    let (mut rotors, mut omegas) = (vec![0.0; 12 * NUMBER], vec![0.0; 9 * NUMBER]);
+    let tiles = [tile];
+    at_each(Threads::ONE, &tiles, Times::Common(&times), 0..3 * NUMBER, &mut rotors, &mut omegas);
+    for (k, motion) in alone.iter().take(NUMBER).enumerate() {
+        assert_eq!(tiles[0].horizons()[k], motion.horizons(), "body {k}");
+        for (j, &t) in times.iter().enumerate() {
+            let ((rotor, omega), row) = (motion.at(t), 3 * k + j);
+            assert_eq!(rotor.components(), rotors[4 * row..4 * row + 4], "body {k} at {t}");
+            assert_eq!(omega.0, omegas[3 * row..3 * row + 3], "body {k} at {t}");
+        }
+    }
+}
+
 /// Motions that are set up together, in groups of which the last is not full, have the bits that they have alone.
 #[test]
 fn motions_set_up_in_lanes_are_those_set_up_alone() {
-    let number = TILE - 3;
-    let same = |tile: Tile, alone: &[&dyn ExactMotion]| {
-        let times = [0.0, 3.75, -100.0];
-        let (mut rotors, mut omegas) = (vec![0.0; 12 * number], vec![0.0; 9 * number]);
-        let tiles = [tile];
-        at_each(Threads::ONE, &tiles, Times::Common(&times), 0..3 * number, &mut rotors, &mut omegas);
-        for (k, motion) in alone.iter().take(number).enumerate() {
-            assert_eq!(tiles[0].horizons()[k], motion.horizons(), "body {k}");
-            for (j, &t) in times.iter().enumerate() {
-                let ((rotor, omega), row) = (motion.at(t), 3 * k + j);
-                assert_eq!(rotor.components(), rotors[4 * row..4 * row + 4], "body {k} at {t}");
-                assert_eq!(omega.0, omegas[3 * row..3 * row + 3], "body {k} at {t}");
-            }
-        }
-    };
-    fn each<M: ExactMotion>(motions: &[M]) -> Vec<&dyn ExactMotion> {
-        motions.iter().map(|motion| motion as &dyn ExactMotion).collect()
-    }
-
-    let starts = damped_starts().into_iter().take(number);
+    let starts = damped_starts().into_iter().take(NUMBER);
     let free = starts.clone().map(|(i, r, w, _)| FreeBody::new(&i, r, w));
     let alone: Vec<FreeMotion> = free.clone().map(|body| body.unwrap().motion()).collect();
-    same(Tile::free(free).unwrap(), &each(&alone));
+    same(Tile::free(free).unwrap(), &alone);
     let bodies = starts.map(|(i, r, w, g)| {
         DampedTop::body(&i, r, w, g).map(|body| (body, g)).map_err(|error| error.to_string())
     });
-    same(Tile::damped(bodies).unwrap(), &each(&damped()));
-    let tops = heavy_starts().into_iter().take(number);
+    same(Tile::damped(bodies).unwrap(), &damped());
+    let tops = heavy_starts().into_iter().take(NUMBER);
     let tops = tops.map(|(i, r, w, c)| HeavyTop::new(&i, r, w, c).map_err(|error| error.to_string()));
-    same(Tile::lagrange(tops).unwrap(), &each(&heavy()));
+    same(Tile::lagrange(tops).unwrap(), &heavy());
+}
+
+/// A number that varies irregularly with k: 0, or of either sign and of a size down to 10 to a negative power.
+fn irregular(k: usize, least: i32) -> f64 {
+    let part = (k as f64 * 0.618_033_988_749_894_8).fract();
+    let size = 10f64.powf(f64::from(least) * (part * 37.0).fract()) * (0.5 + part);
+    if k % 7 == 3 {
+        0.0
+    } else if k % 2 == 0 {
+        size
+    } else {
+        -size
+    }
+}
+
+/// The same where all bodies of a group have invariants in the range of floats, up to its ends and beyond: in some groups
+/// rates and tilts down to 1e-14 and moments that are equal or nearly so, in others rates down to 1e-40.
+#[test]
+fn sets_up_by_floats_what_it_sets_up_alone_beyond_their_range() {
+    let least = |k: usize| if k / 16 % 3 == 2 { -40 } else { -14 };
+    let rates = |k: usize| [0, 1, 2].map(|j| irregular(3 * k + j, least(k)));
+    let bodies = (0..NUMBER).map(|k| {
+        let x = [0.0, 3.0 * f64::EPSILON, 1e-9, 0.25][k % 4];
+        let i = if k % 5 == 0 { [1.0, 1.0 + x, 1.0] } else { [1.0 + x, 1.5, 1.5 - x] };
+        FreeBody::new(&moments(i.map(|i| i * 1e20)), start(), Bivector(rates(k).map(|w| w * 1e-30)))
+    });
+    let alone: Vec<FreeMotion> = bodies.clone().map(|body| body.unwrap().motion()).collect();
+    same(Tile::free(bodies).unwrap(), &alone);
+
+    let tops: Vec<HeavyTop> = (0..NUMBER)
+        .map(|k| {
+            let tilt = [1.0, irregular(k, least(k)), irregular(k + 1, least(k)), 0.25];
+            let rotor = Rotor::from_components(if k % 3 == 0 { tilt } else { [tilt[1], 1.0, 0.25, tilt[2]] });
+            let c = Vector([0.0, 0.0, irregular(k + 2, least(k)) * 1e10]);
+            let i = moments([1e4, 1e4, 1e4 * [0.25, 1.0, 1.5][k % 3]]);
+            HeavyTop::new(&i, rotor.unwrap(), Bivector(rates(k).map(|w| w * 1e3)), c).unwrap()
+        })
+        .filter(|top| top.motion().is_ok())
+        .collect();
+    assert!(tops.len() > NUMBER - 40, "only {} of {NUMBER} are resolved", tops.len());
+    let tops: Vec<HeavyTop> = tops.iter().copied().cycle().take(NUMBER).collect();
+    let alone: Vec<LagrangeTop> = tops.iter().map(|top| top.motion().unwrap()).collect();
+    same(Tile::lagrange(tops.into_iter().map(Ok::<_, String>)).unwrap(), &alone);
 }
 
 /// A tile takes the first motions, and reports the first error.

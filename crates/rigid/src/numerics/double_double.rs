@@ -184,6 +184,13 @@ impl<const W: usize, const FMA: bool> DoubleDoubles<W, FMA> {
     }
 }
 
+impl<const W: usize, const FMA: bool> From<[f64; W]> for DoubleDoubles<W, FMA> {
+    #[inline(always)]
+    fn from(hi: [f64; W]) -> Self {
+        DoubleDoubles { hi, lo: [0.0; W] }
+    }
+}
+
 /// An operator in each lane, by a function of pairs.
 macro_rules! lane_operators {
     ($($operator:ident $name:ident $function:expr;)*) => { $(

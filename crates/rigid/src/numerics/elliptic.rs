@@ -7,7 +7,7 @@
 //! it has alone.
 
 use super::double_double::{DoubleDouble, DoubleDoubles};
-use super::wide::Wides;
+use super::precise::Precise;
 
 /// The series' next term is below rounding once the arguments agree to this relative spread.
 const SPREAD: f64 = 1.2e-3;
@@ -150,7 +150,7 @@ pub(crate) struct Means<const W: usize, const FMA: bool> {
 
 impl<const W: usize, const FMA: bool> Means<W, FMA> {
     #[inline(always)]
-    pub fn new(kc: Wides<W, FMA>) -> Self {
+    pub fn new(kc: impl Precise<W, FMA>) -> Self {
         // The root of any k' is in the range of floats.
         let (mut a, mut g) = (DoubleDoubles::all(DoubleDouble::ONE), kc.narrowed());
         let mut root = kc.sqrt().narrowed();

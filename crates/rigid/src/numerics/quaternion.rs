@@ -1,6 +1,7 @@
 //! Rotors in double-double precision, as quaternions, in lanes.
 
-use super::wide::{Wide, Wides};
+use super::precise::Precise;
+use super::wide::Wide;
 use polhode_ga::Rotor;
 
 /// Quaternion units are the negatives of the planes.
@@ -11,16 +12,15 @@ pub(crate) fn quaternion(rotor: Rotor) -> [Wide; 4] {
 
 /// Those of many rotors, one in each lane.
 #[inline(always)]
-pub(crate) fn quaternions<const W: usize, const FMA: bool>(rotors: &[[f64; W]; 4]) -> [Wides<W, FMA>; 4] {
+pub(crate) fn quaternions<N: Precise<W, FMA>, const W: usize, const FMA: bool>(
+    rotors: &[[f64; W]; 4],
+) -> [N; 4] {
     let [s, x, y, z] = rotors;
-    [Wides::from(*s), -Wides::from(*x), -Wides::from(*y), -Wides::from(*z)]
+    [N::from(*s), -N::from(*x), -N::from(*y), -N::from(*z)]
 }
 
 #[inline(always)]
-pub(crate) fn product<const W: usize, const FMA: bool>(
-    p: [Wides<W, FMA>; 4],
-    q: [Wides<W, FMA>; 4],
-) -> [Wides<W, FMA>; 4] {
+pub(crate) fn product<N: Precise<W, FMA>, const W: usize, const FMA: bool>(p: [N; 4], q: [N; 4]) -> [N; 4] {
     [
         p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
         p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
@@ -31,12 +31,12 @@ pub(crate) fn product<const W: usize, const FMA: bool>(
 
 /// The components of an axial vector in axes turned by q: `~q v q/|q|²`.
 #[inline(always)]
-pub(crate) fn turned_back<const W: usize, const FMA: bool>(
-    q: [Wides<W, FMA>; 4],
-    v: [Wides<W, FMA>; 3],
-) -> [Wides<W, FMA>; 3] {
+pub(crate) fn turned_back<N: Precise<W, FMA>, const W: usize, const FMA: bool>(
+    q: [N; 4],
+    v: [N; 3],
+) -> [N; 3] {
     let back = [q[0], -q[1], -q[2], -q[3]];
-    let [_, x, y, z] = product(product(back, [Wides::all(0.0), v[0], v[1], v[2]]), q);
+    let [_, x, y, z] = product(product(back, [N::all(0.0), v[0], v[1], v[2]]), q);
     let [norm, ..] = product(back, q);
     [x / norm, y / norm, z / norm]
 }

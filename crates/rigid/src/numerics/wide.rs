@@ -6,8 +6,9 @@ use super::double_double::{DoubleDouble, DoubleDoubles};
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Beyond this many bits the smaller of two terms is below the last digit of the larger one.
-const DIGITS: i64 = 128;
+/// Beyond this many bits the smaller of two terms is left out; up to it, sums are those of [`DoubleDoubles`] in the range of
+/// floats.
+const APART: i64 = 900;
 
 /// `x · 2^exponent` in each lane, with `1 <= |x| < 2`, or 0 with the exponent 0.
 #[derive(Clone, Copy, Debug)]
@@ -46,12 +47,6 @@ impl<const W: usize, const FMA: bool> Wides<W, FMA> {
         Wides { x, exponent: exponents }
     }
 
-    /// The same number in each lane.
-    #[inline(always)]
-    pub fn all(x: f64) -> Self {
-        Wides::from([x; W])
-    }
-
     /// That of lane l.
     #[inline(always)]
     pub fn lane(&self, l: usize) -> Wide {
@@ -67,58 +62,6 @@ impl<const W: usize, const FMA: bool> Wides<W, FMA> {
     #[inline(always)]
     pub fn signs(&self) -> &[f64; W] {
         &self.x.hi
-    }
-
-    /// Whether each is 0.
-    #[inline(always)]
-    pub fn zeros(&self) -> [bool; W] {
-        let mut zeros = [false; W];
-        for l in 0..W {
-            zeros[l] = self.x.hi[l] == 0.0;
-        }
-        zeros
-    }
-
-    /// Whether each is positive.
-    #[inline(always)]
-    pub fn positive(&self) -> [bool; W] {
-        let mut positive = [false; W];
-        for l in 0..W {
-            positive[l] = self.x.hi[l] > 0.0;
-        }
-        positive
-    }
-
-    /// Whether each is negative.
-    #[inline(always)]
-    pub fn negative(&self) -> [bool; W] {
-        (-*self).positive()
-    }
-
-    /// −1 for negative numbers, else 1.
-    #[inline(always)]
-    pub fn unit_signs(&self) -> [f64; W] {
-        let mut signs = [1.0; W];
-        for l in 0..W {
-            signs[l] = if self.x.hi[l] < 0.0 { -1.0 } else { 1.0 };
-        }
-        signs
-    }
-
-    /// Whether each is more than the other.
-    #[inline(always)]
-    pub fn exceeds(self, o: Self) -> [bool; W] {
-        (self - o).positive()
-    }
-
-    /// Whether each is at most the other.
-    #[inline(always)]
-    pub fn at_most(self, o: Self) -> [bool; W] {
-        let (difference, mut result) = (self - o, [false; W]);
-        for l in 0..W {
-            result[l] = difference.x.hi[l] <= 0.0;
-        }
-        result
     }
 
     /// `self` where the mask says so, else `other`.
@@ -147,18 +90,6 @@ impl<const W: usize, const FMA: bool> Wides<W, FMA> {
         self
     }
 
-    /// Magnitudes.
-    #[inline(always)]
-    pub fn abs(self) -> Self {
-        self.signed(&self.unit_signs())
-    }
-
-    /// Halves.
-    #[inline(always)]
-    pub fn half(self) -> Self {
-        self * Wides::all(0.5)
-    }
-
     /// 0 for a negative number.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
@@ -185,16 +116,6 @@ impl<const W: usize, const FMA: bool> Wides<W, FMA> {
             x.lo[l] = if x.hi[l].abs() < f64::INFINITY { x.lo[l] } else { 0.0 };
         }
         x
-    }
-
-    /// Rounded to the range of floating point.
-    #[inline(always)]
-    pub fn values(self) -> [f64; W] {
-        let (x, mut values) = (self.narrowed(), [0.0; W]);
-        for l in 0..W {
-            values[l] = x.hi[l] + x.lo[l];
-        }
-        values
     }
 }
 
@@ -239,7 +160,7 @@ impl Wide {
     /// Rounded to the range of floating point.
     #[inline]
     pub fn value(self) -> f64 {
-        self.values()[0]
+        self.narrow().value()
     }
 }
 
@@ -315,7 +236,7 @@ impl<const W: usize, const FMA: bool> Add for Wides<W, FMA> {
             large.hi[l] = if swap { small.hi[l] } else { hi };
             large.lo[l] = if swap { small.lo[l] } else { lo };
             // A 0 may be apart by a negative number.
-            let power = if (0..=DIGITS).contains(&apart) { exp2(-apart) } else { 0.0 };
+            let power = if (0..=APART).contains(&apart) { exp2(-apart) } else { 0.0 };
             small.hi[l] = power * if swap { hi } else { small.hi[l] };
             small.lo[l] = power * if swap { lo } else { small.lo[l] };
         }

@@ -3,7 +3,8 @@
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::{Means, first_kind, r_f};
 use crate::numerics::exact_sum::Exact;
-use crate::numerics::wide::{Wide, Wides, exp2};
+use crate::numerics::precise::Precise;
+use crate::numerics::wide::{Wide, exp2};
 
 /// A motion that is not steady, in principal axes.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +29,7 @@ pub(super) struct Orbit {
 
 /// Motions that are not steady: the numbers of [`Orbit`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Orbits<const W: usize, const FMA: bool> {
+pub(super) struct Orbits<N, const W: usize, const FMA: bool> {
     pub axes: [[usize; 3]; W],
     pub s: [f64; W],
     /// e1, e2 and d along the axes a, b and c: their signs.
@@ -36,7 +37,7 @@ pub(super) struct Orbits<const W: usize, const FMA: bool> {
     pub amplitudes: [[f64; W]; 3],
     pub lambda: DoubleDoubles<W, FMA>,
     pub k2: [f64; W],
-    pub kc: Wides<W, FMA>,
+    pub kc: N,
     pub precession: DoubleDoubles<W, FMA>,
     /// Arbitrary on the separatrix.
     pub mean: DoubleDoubles<W, FMA>,
@@ -48,18 +49,18 @@ pub(super) struct Orbits<const W: usize, const FMA: bool> {
 
 /// Positive moments and invariants in double-double precision. Those of a needle or a nearly steady rotation are beyond
 /// the range of floats.
-pub(super) struct Invariants<const W: usize, const FMA: bool> {
-    pub a: Wides<W, FMA>,
-    pub b: Wides<W, FMA>,
-    pub c: Wides<W, FMA>,
+pub(super) struct Invariants<N, const W: usize, const FMA: bool> {
+    pub a: N,
+    pub b: N,
+    pub c: N,
     /// |b − a|, |c − a| and |c − b|.
-    pub ab: Wides<W, FMA>,
-    pub ac: Wides<W, FMA>,
-    pub bc: Wides<W, FMA>,
-    pub p: Wides<W, FMA>,
-    pub q: Wides<W, FMA>,
+    pub ab: N,
+    pub ac: N,
+    pub bc: N,
+    pub p: N,
+    pub q: N,
     /// G².
-    pub g2: Wides<W, FMA>,
+    pub g2: N,
 }
 
 /// Whether a body with these principal moments and rates about its axes turns steadily, `I(Ω)` parallel to Ω.
@@ -81,7 +82,7 @@ fn ascending(i: [f64; 3]) -> [usize; 3] {
     order
 }
 
-impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
+impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Orbits<N, W, FMA> {
     /// From principal moments and rates about their axes, in units of two powers of two, of bodies that do not turn
     /// steadily.
     #[inline(always)]
@@ -94,14 +95,9 @@ impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
             }
         }
         // Not mapped: a function without the target features of this one would be called for each.
-        let i = [
-            Wides::from(i[0]).in_units(size),
-            Wides::from(i[1]).in_units(size),
-            Wides::from(i[2]).in_units(size),
-        ];
+        let i = [N::from(i[0]).in_units(size), N::from(i[1]).in_units(size), N::from(i[2]).in_units(size)];
         let [x, y, z] = w;
-        let w =
-            [Wides::from(x).in_units(scale), Wides::from(y).in_units(scale), Wides::from(z).in_units(scale)];
+        let w = [N::from(x).in_units(scale), N::from(y).in_units(scale), N::from(z).in_units(scale)];
         let d = differences(i, w);
         // Whether c is the axis of the largest moment.
         let (mut short, mut s, on_separatrix) = ([false; W], [0.0; W], d.zeros());
@@ -132,7 +128,7 @@ impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
             (signed[0][l], signed[1][l], signed[2][l]) = (signs[0][l], signs[1][l] * s[l], sigma);
         }
         let sizes = inv.amplitudes();
-        let (mut precession, mean) = inv.precession(&s, &k2, Wides::all(1.0).or(&on_separatrix, kc), lambda);
+        let (mut precession, mean) = inv.precession(&s, &k2, N::all(1.0).or(&on_separatrix, kc), lambda);
         precession = (inv.g2.sqrt() / inv.b).narrowed().or(&on_separatrix, precession);
         let [cn, sn] = [(wa / sizes[0]).signed(&signed[0]), (wb / sizes[1]).signed(&signed[1])];
         let mut amplitudes = [sizes[0].values(), sizes[1].values(), sizes[2].values()];
@@ -187,10 +183,10 @@ impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
     }
 }
 
-impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
+impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Invariants<N, W, FMA> {
     /// From the moments a, b, c and the rates about their axes.
     #[inline(always)]
-    pub fn new([a, b, c]: [Wides<W, FMA>; 3], [wa, wb, wc]: [Wides<W, FMA>; 3]) -> Self {
+    pub fn new([a, b, c]: [N; 3], [wa, wb, wc]: [N; 3]) -> Self {
         let (wa, wb, wc) = (wa * wa, wb * wb, wc * wc);
         let (ab, ac, bc) = ((b - a).abs(), (c - a).abs(), (c - b).abs());
         let (p, q) = (a * ac * wa + b * bc * wb, b * ab * wb + c * ac * wc);
@@ -199,7 +195,7 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
 
     /// Sizes of A_a, A_b and A_c.
     #[inline(always)]
-    fn amplitudes(&self) -> [Wides<W, FMA>; 3] {
+    fn amplitudes(&self) -> [N; 3] {
         let Invariants { a, b, c, ac, bc, p, q, .. } = *self;
         [(p / (a * ac)).sqrt(), (p / (b * bc)).sqrt(), (q / (c * ac)).sqrt()]
     }
@@ -210,13 +206,13 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
         &self,
         s: &[f64; W],
         k2: &[f64; W],
-        kc: Wides<W, FMA>,
+        kc: N,
         lambda: DoubleDoubles<W, FMA>,
     ) -> (DoubleDoubles<W, FMA>, DoubleDoubles<W, FMA>) {
         let Invariants { a, b, c, ab, ac, bc, p, q, g2 } = *self;
         let g = g2.sqrt();
         let minus_n = c * ab / (a * bc);
-        let by_n = (minus_n * minus_n).at_most(Wides::from(*k2));
+        let by_n = (minus_n * minus_n).at_most(N::from(*k2));
         // 1 − n = b(c−a)/(a(c−b)), and 1 − k²/n = |c−a| G²/(cQ).
         let p2 = (b * ac).or(&by_n, ac * g2) / (a * bc).or(&by_n, c * q);
         let means = Means::new(kc);
@@ -246,17 +242,17 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
 
 /// D, rounded once if its two terms nearly cancel, from moments in ascending order.
 #[inline(always)]
-fn differences<const W: usize, const FMA: bool>(
-    [small, b, large]: [Wides<W, FMA>; 3],
-    [w_small, _, w_large]: [Wides<W, FMA>; 3],
-) -> Wides<W, FMA> {
+fn differences<N: Precise<W, FMA>, const W: usize, const FMA: bool>(
+    [small, b, large]: [N; 3],
+    [w_small, _, w_large]: [N; 3],
+) -> N {
     /// The terms cancel if their difference is at most this times them.
     const CANCELLED: f64 = 1e-2;
     // i_x (i_x − i_b) ω_x²
     let high = large * (large - b) * w_large * w_large;
     let low = small * (small - b) * w_small * w_small;
     let mut d = high + low;
-    let cancelled = d.abs().at_most((high - low) * Wides::all(CANCELLED));
+    let cancelled = d.abs().at_most((high - low) * N::all(CANCELLED));
     for l in 0..W {
         if cancelled[l] {
             let [i_large, i_b, i_small] = [large, b, small].map(|each| each.lane(l));
@@ -285,10 +281,10 @@ fn difference([large, b, small]: [Wide; 3], [w_large, w_small]: [Wide; 2]) -> Wi
 /// The u in [−2K, 2K] with given cn u and sn u, up to a factor, as a multiple of K and a rest of at most K/2. On the
 /// separatrix, `k' = 0`, only the rest is nonzero.
 #[inline(always)]
-pub(crate) fn arguments<const W: usize, const FMA: bool>(
-    cn: Wides<W, FMA>,
-    sn: Wides<W, FMA>,
-    kc: Wides<W, FMA>,
+pub(crate) fn arguments<N: Precise<W, FMA>, const W: usize, const FMA: bool>(
+    cn: N,
+    sn: N,
+    kc: N,
 ) -> [[f64; W]; 2] {
     // Beyond K/2 tan am(u − K) = −cn u / (k' sn u).
     let near = (kc * (sn * sn)).at_most(cn * cn);

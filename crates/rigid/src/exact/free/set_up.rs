@@ -11,6 +11,8 @@ use crate::exact::lanes::{Coefficients, Phases, by_component, product, reverse, 
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
 use crate::numerics::lanes::Phase;
+use crate::numerics::precise::Precise;
+use crate::numerics::wide::Wides;
 use crate::state::checks::check_moments;
 use polhode_ga::rows::curve::{TOGETHER, together};
 use polhode_ga::simd::lanes::{Work, fastest};
@@ -47,7 +49,7 @@ impl FreeBody {
         let FreeBody { moments, frame, omega, .. } = *self;
         let mut alone = FreeMotions::<1>::default();
         // One lane needs no wide instructions.
-        let ([steady], orbits) = alone.filled::<false>(&[*self]);
+        let ([steady], orbits) = alone.filled::<Wides<1, false>, false>(&[*self]);
         let (scale, flow) = if alone.is_circular[0] {
             (alone.circular.scale[0], Form::FreeCircular(alone.circular))
         } else {
@@ -90,12 +92,19 @@ impl<const W: usize> FreeMotions<W> {
 
     /// Replaces the motions by those of other bodies. Each has the bits that it has alone.
     pub fn set_up(&mut self, bodies: &[FreeBody; W]) {
-        fastest(SetUp { bodies, motions: self });
+        if are_moderate(bodies) {
+            fastest(SetUp::<W, false> { bodies, motions: self });
+        } else {
+            fastest(SetUp::<W, true> { bodies, motions: self });
+        }
     }
 
     /// The same; whether each turns steadily, and the orbits of the others.
     #[inline(always)]
-    fn filled<const FMA: bool>(&mut self, bodies: &[FreeBody; W]) -> ([bool; W], Orbits<W, FMA>) {
+    fn filled<N: Precise<W, FMA>, const FMA: bool>(
+        &mut self,
+        bodies: &[FreeBody; W],
+    ) -> ([bool; W], Orbits<N, W, FMA>) {
         let (mut moments, mut rates) = ([[0.0; 3]; W], [[0.0; 3]; W]);
         let (mut size, mut scale, mut steady) = ([0.0; W], [0.0; W], [false; W]);
         for l in 0..W {
@@ -105,7 +114,7 @@ impl<const W: usize> FreeMotions<W> {
             (moments[l], rates[l]) = if steady[l] { ([1.0, 2.0, 3.0], [1.0; 3]) } else { (i, w) };
             (size[l], scale[l]) = (power_of_two(moments[l]), power_of_two(rates[l]));
         }
-        let orbits = Orbits::<W, FMA>::new(&moments, &rates, [&size, &scale]);
+        let orbits = Orbits::<N, W, FMA>::new(&moments, &rates, [&size, &scale]);
         let mut root = [0.0; W];
         for l in 0..W {
             root[l] = orbits.k2[l].sqrt();
@@ -155,26 +164,54 @@ impl FreeMotions<TOGETHER> {
     }
 }
 
-struct SetUp<'a, const W: usize> {
+/// With numbers beyond the range of floats where they are `WIDE`.
+struct SetUp<'a, const W: usize, const WIDE: bool> {
     bodies: &'a [FreeBody; W],
     motions: &'a mut FreeMotions<W>,
 }
 
 /// Bodies that do not turn steadily, in lanes.
-struct Tumbling<'a, const W: usize, const FMA: bool> {
+struct Tumbling<'a, N, const W: usize, const FMA: bool> {
     bodies: &'a [FreeBody; W],
-    orbits: &'a Orbits<W, FMA>,
+    orbits: &'a Orbits<N, W, FMA>,
     scale: [f64; W],
     phases: Phases<W>,
 }
 
-impl<const W: usize> Work for SetUp<'_, W> {
+impl<const W: usize, const WIDE: bool> Work for SetUp<'_, W, WIDE> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        self.motions.filled::<FMA>(self.bodies);
+        if WIDE {
+            self.motions.filled::<Wides<W, FMA>, FMA>(self.bodies);
+        } else {
+            self.motions.filled::<DoubleDoubles<W, FMA>, FMA>(self.bodies);
+        }
     }
+}
+
+/// Whether all invariants of the orbits, with their last digits, are in the range of floats. In the browser the same code
+/// serves all bodies, since code for both would make the page larger.
+fn are_moderate<const W: usize>(bodies: &[FreeBody; W]) -> bool {
+    // Invariants are products of at most four moments, three differences of moments, of 2⁻⁵² of them or more, and six rates,
+    // in units of the largest.
+    let mut moderate = cfg!(not(target_family = "wasm"));
+    for FreeBody { moments, omega, .. } in bodies {
+        moderate &= are_within(moments, 1e-6 * power_of_two(*moments), 4.0 * power_of_two(*moments));
+        moderate &= are_within(&omega.0, 1e-15 * power_of_two(omega.0), 4.0 * power_of_two(omega.0));
+    }
+    moderate
+}
+
+/// Whether the sizes of numbers are 0 or within bounds.
+#[inline(always)]
+pub(in crate::exact) fn are_within(numbers: &[f64], least: f64, most: f64) -> bool {
+    let mut are_within = true;
+    for x in numbers {
+        are_within &= (*x == 0.0) | ((x.abs() >= least) & (x.abs() <= most));
+    }
+    are_within
 }
 
 /// The phases v/2π, and the nomes of the trigonometric series, infinite on the separatrix: from λ, AGM(1, k'), u at time 0, and
@@ -201,7 +238,7 @@ pub(crate) fn phases_and_nomes<const W: usize, const FMA: bool>(
     (Phases([rate.hi, rate.lo, start[0], start[1]]), nome)
 }
 
-impl<const W: usize, const FMA: bool> Tumbling<'_, W, FMA> {
+impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Tumbling<'_, N, W, FMA> {
     #[inline(always)]
     fn circular(&self, series: &mut Circular<W>, nome: &[f64; W]) {
         let (rest, mut rho) = (self.orbits.rest_of_eta(), [0.0; W]);

@@ -5,6 +5,7 @@ use super::series::Zeros;
 use crate::exact::regime::regimes;
 use crate::facts;
 use crate::facts::Facts;
+use crate::numerics::precise::Precise;
 use crate::numerics::wide::Wide;
 use crate::state::phase::Gyrostat;
 use std::f64::consts::PI;

@@ -1,6 +1,6 @@
 //! Orbits of heavy tops, one in each lane: roots, periods, rates and phases.
 //!
-//! Near the vertical the roots differ from ±1, and from each other, by squares of the tilt. They are [`Wides`], and no
+//! Near the vertical the roots differ from ±1, and from each other, by squares of the tilt. They are in double-double precision, and no
 //! distance is a difference of larger ones.
 
 use super::roots::{Cubic, factors};
@@ -9,7 +9,8 @@ use super::start::{Starts, square, times_conjugate};
 use crate::exact::free::orbit::arguments;
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::{Means, first_kind};
-use crate::numerics::wide::{Wide, Wides};
+use crate::numerics::precise::Precise;
+use crate::numerics::wide::Wide;
 
 /// A motion in which the tilt is defined by the cubic, in units of the start's scale.
 #[derive(Clone, Copy, Debug)]
@@ -35,10 +36,10 @@ pub(super) struct Orbit {
 
 /// The numbers of [`Orbit`], and what the series need besides.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Orbits<const W: usize, const FMA: bool> {
+pub(super) struct Orbits<N, const W: usize, const FMA: bool> {
     pub lambda: DoubleDoubles<W, FMA>,
     pub k2: [f64; W],
-    pub kc: Wides<W, FMA>,
+    pub kc: N,
     /// Arbitrary on the separatrix.
     pub mean: DoubleDoubles<W, FMA>,
     pub on_separatrix: [bool; W],
@@ -50,63 +51,63 @@ pub(super) struct Orbits<const W: usize, const FMA: bool> {
     pub sizes: [[f64; W]; 3],
     /// The sign κ between the three phases.
     pub kappa: [f64; W],
-    pub below: [Wides<W, FMA>; 2],
-    pub above: [Wides<W, FMA>; 2],
-    pub delta: Wides<W, FMA>,
-    pub sigma: Wides<W, FMA>,
-    pub surplus: Wides<W, FMA>,
+    pub below: [N; 2],
+    pub above: [N; 2],
+    pub delta: N,
+    pub sigma: N,
+    pub surplus: N,
     /// Whether the roots are resolved; without them nothing is valid.
     pub resolved: [bool; W],
 }
 
 /// Distances of a point p between r2 and r3 from the roots, up to a factor.
-struct Point<const W: usize, const FMA: bool> {
-    to: [Wides<W, FMA>; 3],
+struct Point<N, const W: usize, const FMA: bool> {
+    to: [N; 3],
     /// `(p − r2)/(p − r1)` and `(r2 − r1)/(p − r1)`, without the factor, which may vanish.
-    ratio: Wides<W, FMA>,
-    rest: Wides<W, FMA>,
+    ratio: N,
+    rest: N,
     /// `N(p) = b − ℓp`, times the same factor.
-    n: Wides<W, FMA>,
+    n: N,
 }
 
 /// λ, k', k² and the distances of the roots from each other.
-struct Modulus<const W: usize, const FMA: bool> {
-    kc: Wides<W, FMA>,
+struct Modulus<N, const W: usize, const FMA: bool> {
+    kc: N,
     k2: [f64; W],
     lambda: DoubleDoubles<W, FMA>,
     /// r2 − r1, r3 − r1 and r3 − r2 times 2ĉ.
-    gaps: [Wides<W, FMA>; 3],
+    gaps: [N; 3],
 }
 
 /// Roots by their distances.
-struct Roots<const W: usize, const FMA: bool> {
+struct Roots<N, const W: usize, const FMA: bool> {
     /// From u at the start to r1 and r2.
-    x: [Wides<W, FMA>; 2],
+    x: [N; 2],
     /// 1 − r1 and 1 − r2; 2ĉ(r3 − 1).
-    w: [Wides<W, FMA>; 2],
-    v: Wides<W, FMA>,
+    w: [N; 2],
+    v: N,
     /// 1 + r1, 1 + r2; 2ĉ(r3 + 1).
-    z: [Wides<W, FMA>; 3],
+    z: [N; 3],
     /// r2 − r1.
-    gap: Wides<W, FMA>,
+    gap: N,
 }
 
 /// What all numbers follow from, in units of the scale.
-struct Invariants<const W: usize, const FMA: bool> {
-    cubic: Cubic<Wides<W, FMA>>,
+struct Invariants<N, const W: usize, const FMA: bool> {
+    cubic: Cubic<N>,
     /// b + ℓ.
-    sigma: Wides<W, FMA>,
+    sigma: N,
     /// `w g* = h + i u'`.
-    h: Wides<W, FMA>,
-    rise: Wides<W, FMA>,
+    h: N,
+    rise: N,
     /// |w|² and |g|².
-    w_w: Wides<W, FMA>,
-    g_g: Wides<W, FMA>,
+    w_w: N,
+    g_g: N,
 }
 
-impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
+impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Invariants<N, W, FMA> {
     #[inline(always)]
-    fn new(start: &Starts<W, FMA>) -> Self {
+    fn new(start: &Starts<N, W, FMA>) -> Self {
         let Starts { gravity, spin, below, above, g, w, .. } = *start;
         let [h, rise] = times_conjugate(w, g);
         let (delta, sigma, w_w) = (h - spin * below, h + spin * above, square(w));
@@ -116,19 +117,19 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
     }
 
     #[inline(always)]
-    fn roots(&self, start: &Starts<W, FMA>) -> Roots<W, FMA> {
+    fn roots(&self, start: &Starts<N, W, FMA>) -> Roots<N, W, FMA> {
         let (w0, z0) = (start.below, start.above);
         let Cubic { gravity, spin, delta, surplus } = self.cubic;
-        let two = Wides::all(2.0);
+        let two = N::all(2.0);
         let highest = surplus + spin * spin + two * gravity;
-        let v = self.cubic.largest_root::<true>(highest, &[true; W]);
+        let v = self.cubic.largest_root::<true, W, FMA>(highest, &[true; W]);
         let x3 = gravity * w0 + v;
-        let second = two * spin * self.h - gravity * self.g_g - two * (z0 - Wides::all(1.0)) * self.w_w;
+        let second = two * spin * self.h - gravity * self.g_g - two * (z0 - N::all(1.0)) * self.w_w;
         let [x1, x2] = self.other_distances(second, x3);
         let far = (gravity * (x1 + x2)).exceeds(x3 - gravity * x2);
         let mut w1 = w0 + x1;
         if far != [false; W] {
-            w1 = self.cubic.largest_root::<false>(two, &far).or(&far, w1);
+            w1 = self.cubic.largest_root::<false, W, FMA>(two, &far).or(&far, w1);
         }
         // 1 − r2 and 2ĉ(r3 − 1), given 1 − r1.
         let product = delta * delta / w1;
@@ -146,14 +147,14 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
 
     /// Distances of u0 from r1 and r2, given that from r3 times 2ĉ.
     #[inline(always)]
-    fn other_distances(&self, second: Wides<W, FMA>, x3: Wides<W, FMA>) -> [Wides<W, FMA>; 2] {
+    fn other_distances(&self, second: N, x3: N) -> [N; 2] {
         let product = self.rise * self.rise / x3;
         factors(product, (second + self.cubic.gravity * product) / x3)
     }
 
     /// The upright, u = 1.
     #[inline(always)]
-    fn up(&self, roots: &Roots<W, FMA>) -> Point<W, FMA> {
+    fn up(&self, roots: &Roots<N, W, FMA>) -> Point<N, W, FMA> {
         let Roots { w: [w1, w2], v, gap, .. } = *roots;
         let Cubic { gravity, delta, .. } = self.cubic;
         let to = [gravity * w1, gravity * w2, v];
@@ -162,7 +163,7 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
 
     /// u = e.
     #[inline(always)]
-    fn across(&self, roots: &Roots<W, FMA>) -> Point<W, FMA> {
+    fn across(&self, roots: &Roots<N, W, FMA>) -> Point<N, W, FMA> {
         /// A difference cancels if it is at most this times the sum of its terms.
         const CANCELLED: f64 = 1e-2;
         let Roots { x: [_, x2], v, z: [_, z2, _], .. } = *roots;
@@ -172,14 +173,14 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
         let less = gravity * x2;
         let direct = self.w_w - less;
         let (turning, both) = (self.numerator(w2, z2), w2 * z2);
-        let cancelled = direct.at_most((self.w_w + less) * Wides::all(CANCELLED));
+        let cancelled = direct.at_most((self.w_w + less) * N::all(CANCELLED));
         let by_turning = both_of(&cancelled, &both.positive());
         let to2 = (turning * turning / both).or(&by_turning, direct);
         let apart = gravity * roots.gap;
         let to1 = to2 + apart;
         let n = gravity * self.h - spin * self.w_w;
         let direct = v - surplus;
-        let cancelled = direct.at_most((v + surplus.abs()) * Wides::all(CANCELLED));
+        let cancelled = direct.at_most((v + surplus.abs()) * N::all(CANCELLED));
         let by_product = both_of(&cancelled, &to2.positive());
         let to3 = (n * n / (to1 * to2)).or(&by_product, direct);
         Point { to: [to1, to2, to3], ratio: to2 / to1, rest: apart / to1, n }
@@ -187,9 +188,9 @@ impl<const W: usize, const FMA: bool> Invariants<W, FMA> {
 
     /// `b − ℓu`, from 1 − u and 1 + u.
     #[inline(always)]
-    fn numerator(&self, below: Wides<W, FMA>, above: Wides<W, FMA>) -> Wides<W, FMA> {
+    fn numerator(&self, below: N, above: N) -> N {
         let Cubic { spin, delta, .. } = self.cubic;
-        let upper = Wides::all(1.0).exceeds(below);
+        let upper = N::all(1.0).exceeds(below);
         (delta + spin * below).or(&upper, self.sigma - spin * above)
     }
 }
@@ -203,10 +204,10 @@ fn both_of<const W: usize>(a: &[bool; W], b: &[bool; W]) -> [bool; W] {
     both
 }
 
-impl<const W: usize, const FMA: bool> Modulus<W, FMA> {
+impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Modulus<N, W, FMA> {
     /// And whether the roots are resolved.
     #[inline(always)]
-    fn new(gravity: Wides<W, FMA>, roots: &Roots<W, FMA>) -> (Self, [bool; W]) {
+    fn new(gravity: N, roots: &Roots<N, W, FMA>) -> (Self, [bool; W]) {
         let [w1, w2] = roots.w;
         let gaps = [gravity * roots.gap, gravity * w1 + roots.v, gravity * w2 + roots.v];
         let (mut k2, mut resolved) = ((gaps[0] / gaps[1]).values(), [false; W]);
@@ -224,29 +225,29 @@ impl<const W: usize, const FMA: bool> Modulus<W, FMA> {
     fn rate_below(
         &self,
         means: &Means<W, FMA>,
-        [z1, z2, z3]: [Wides<W, FMA>; 3],
-        gap: Wides<W, FMA>,
-        n: Wides<W, FMA>,
-        gravity: Wides<W, FMA>,
+        [z1, z2, z3]: [N; 3],
+        gap: N,
+        n: N,
+        gravity: N,
     ) -> DoubleDoubles<W, FMA> {
         /// Beyond this `1 − n` the means take long to meet.
         const FAR: f64 = 1e12;
         let p2 = z3 / self.gaps[1];
-        let near = p2.at_most(Wides::all(FAR));
+        let near = p2.at_most(N::all(FAR));
         let sum = means.sum(p2.or(&near, z2 / z1).narrowed());
-        let direct = (gravity * n * Wides::from(sum) / (z3 * Wides::all(4.0))).narrowed();
-        let whole = (n / (z1 * Wides::all(2.0))).narrowed();
+        let direct = (gravity * n * N::from(sum) / (z3 * N::all(4.0))).narrowed();
+        let whole = (n / (z1 * N::all(2.0))).narrowed();
         let other = self.complement(means, n, whole, (gap / z2).narrowed() * sum);
         direct.or(&near, other)
     }
 
     /// μ(p) for p between r2 and r3, by whichever of the two parameters is smaller.
     #[inline(always)]
-    fn rate_above(&self, means: &Means<W, FMA>, p: &Point<W, FMA>) -> DoubleDoubles<W, FMA> {
+    fn rate_above(&self, means: &Means<W, FMA>, p: &Point<N, W, FMA>) -> DoubleDoubles<W, FMA> {
         let half = DoubleDoubles::all(0.5.into());
         let [_, to2, to3] = p.to;
         let [_, whole, long] = self.gaps;
-        let by_n = (to2 * to2).at_most(to3 * to3 * Wides::from(self.k2));
+        let by_n = (to2 * to2).at_most(to3 * to3 * N::from(self.k2));
         let p2 = ((to2 + to3) / to3).or(&by_n, long / whole / p.ratio);
         let sum = means.sum(p2.narrowed());
         let slope = (p.n / to3.or(&by_n, to2)).narrowed() * half;
@@ -259,7 +260,7 @@ impl<const W: usize, const FMA: bool> Modulus<W, FMA> {
     fn complement(
         &self,
         means: &Means<W, FMA>,
-        n: Wides<W, FMA>,
+        n: N,
         whole: DoubleDoubles<W, FMA>,
         less: DoubleDoubles<W, FMA>,
     ) -> DoubleDoubles<W, FMA> {
@@ -270,40 +271,34 @@ impl<const W: usize, const FMA: bool> Modulus<W, FMA> {
 
     /// η and K' − η for p = −1.
     #[inline(always)]
-    fn zeros_below(
-        &self,
-        side: [f64; W],
-        [z1, z2, z3]: [Wides<W, FMA>; 3],
-        gap: Wides<W, FMA>,
-        gravity: Wides<W, FMA>,
-    ) -> Zeros<W> {
+    fn zeros_below(&self, side: [f64; W], [z1, z2, z3]: [N; 3], gap: N, gravity: N) -> Zeros<W> {
         let eta = [z1 / z2, gap / z2];
         self.zeros(side, [eta, [self.gaps[1] / z3, gravity * z1 / z3]])
     }
 
     /// The same for p between r2 and r3; arbitrary if r2 = r3.
     #[inline(always)]
-    fn zeros_above(&self, side: [f64; W], p: &Point<W, FMA>) -> Zeros<W> {
+    fn zeros_above(&self, side: [f64; W], p: &Point<N, W, FMA>) -> Zeros<W> {
         let [_, to2, to3] = p.to;
         let [_, whole, long] = self.gaps;
         let none = long.zeros();
-        let (zero, one) = (Wides::all(0.0), Wides::all(1.0));
+        let (zero, one) = (N::all(0.0), N::all(1.0));
         let eta = [zero.or(&none, p.ratio * whole / long), one.or(&none, p.rest * to3 / long)];
         self.zeros(side, [eta, [zero.or(&none, to3 / long), one.or(&none, to2 / long)]])
     }
 
     /// From the squared sines and cosines of the amplitudes.
     #[inline(always)]
-    fn zeros(&self, side: [f64; W], [eta, rest]: [[Wides<W, FMA>; 2]; 2]) -> Zeros<W> {
+    fn zeros(&self, side: [f64; W], [eta, rest]: [[N; 2]; 2]) -> Zeros<W> {
         let eta = first_kind([eta[0].values(), eta[1].values()], &self.k2);
         let rest = first_kind([rest[0].values(), rest[1].values()], &self.k2);
         Zeros { side, eta, rest }
     }
 }
 
-impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
+impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Orbits<N, W, FMA> {
     #[inline(always)]
-    pub fn new(start: &Starts<W, FMA>) -> Self {
+    pub fn new(start: &Starts<N, W, FMA>) -> Self {
         let of = Invariants::new(start);
         let Cubic { gravity, spin, delta, surplus } = of.cubic;
         let roots = of.roots(start);
@@ -312,7 +307,7 @@ impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
 
         let on_separatrix = modulus.gaps[2].zeros();
         // Any means, which are not used there.
-        let means = Means::new(Wides::all(1.0).or(&on_separatrix, modulus.kc));
+        let means = Means::new(N::all(1.0).or(&on_separatrix, modulus.kc));
         let axial = DoubleDoubles::all(0.5.into()) * spin.narrowed();
         let zero = DoubleDoubles::all(DoubleDouble::ZERO);
         let alpha = modulus.rate_below(&means, roots.z, roots.gap, of.sigma, gravity);
@@ -333,8 +328,8 @@ impl<const W: usize, const FMA: bool> Orbits<W, FMA> {
         ];
         let moves = roots.gap.positive();
         let part = [roots.x[0] / roots.gap, roots.x[1] / roots.gap];
-        let sn = part[0].sqrt().or(&moves, Wides::all(0.0)).signed(&of.rise.unit_signs());
-        let cn = part[1].sqrt().or(&moves, Wides::all(1.0));
+        let sn = part[0].sqrt().or(&moves, N::all(0.0)).signed(&of.rise.unit_signs());
+        let cn = part[1].sqrt().or(&moves, N::all(1.0));
         let [z1, z2, _] = roots.z;
         Orbits {
             lambda: modulus.lambda,

@@ -1,28 +1,7 @@
 //! Roots of the cubic of heavy tops, one top in each lane.
 
-use crate::numerics::wide::Wides;
+use crate::numerics::precise::{Precise, Real};
 use polhode_ga::simd::lanes::Lanes;
-use std::ops::{Add, Mul, Sub};
-
-/// Numbers in which roots are computed.
-pub(super) trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    /// The same number in each lane.
-    fn all(x: f64) -> Self;
-}
-
-impl<const W: usize, const FMA: bool> Real for Lanes<W, FMA> {
-    #[inline(always)]
-    fn all(x: f64) -> Self {
-        Lanes::all(x)
-    }
-}
-
-impl<const W: usize, const FMA: bool> Real for Wides<W, FMA> {
-    #[inline(always)]
-    fn all(x: f64) -> Self {
-        Wides::all(x)
-    }
-}
 
 /// The numbers of the start on which the roots depend.
 #[derive(Clone, Copy)]
@@ -67,21 +46,28 @@ impl<T: Real> Cubic<T> {
     }
 }
 
-impl<const W: usize, const FMA: bool> Cubic<Wides<W, FMA>> {
+impl<N> Cubic<N> {
     /// The largest roots by Newton's method from starts above them, where `wanted`; the other roots are all >= 0 or all
     /// <= 0. While value and derivatives have the sign of the leading coefficient, there is no root above (Budan). The
     /// method begins beside the root that floats find, if that is above the root.
     #[inline(always)]
-    pub fn largest_root<const ABOVE: bool>(self, start: Wides<W, FMA>, wanted: &[bool; W]) -> Wides<W, FMA> {
+    pub fn largest_root<const ABOVE: bool, const W: usize, const FMA: bool>(
+        self,
+        start: N,
+        wanted: &[bool; W],
+    ) -> N
+    where
+        N: Precise<W, FMA>,
+    {
         const STRIDE: f64 = 1.0 / (1u64 << 32) as f64;
-        /// Above the rounding of the root of floats, and below the root of the rounding of [`Wides`].
+        /// Above the rounding of the root of floats, and below the root of the rounding of double-double numbers.
         const MARGIN: f64 = 1e-12;
         let (mut near, mut begun) = self.floats().root::<ABOVE>(start.values(), wanted);
         for l in 0..W {
             near[l] *= 1.0 + MARGIN;
         }
-        let near = Wides::from(near);
-        let is_above = self.has_no_root_above::<ABOVE>(near);
+        let near = N::from(near);
+        let is_above = self.has_no_root_above::<ABOVE, W, FMA>(near);
         let mut open = [false; W];
         for l in 0..W {
             begun[l] &= is_above[l];
@@ -92,8 +78,8 @@ impl<const W: usize, const FMA: bool> Cubic<Wides<W, FMA>> {
             if open == [false; W] {
                 break;
             }
-            let next = x * Wides::all(STRIDE);
-            let is_above = self.has_no_root_above::<ABOVE>(next);
+            let next = x * N::all(STRIDE);
+            let is_above = self.has_no_root_above::<ABOVE, W, FMA>(next);
             for l in 0..W {
                 open[l] &= is_above[l];
             }
@@ -103,7 +89,7 @@ impl<const W: usize, const FMA: bool> Cubic<Wides<W, FMA>> {
         for _ in 0..200 {
             let [value, slope, _] = self.at::<ABOVE>(x);
             let (step, flat) = (value / slope, slope.zeros());
-            let small = step.at_most(x * Wides::all(1e-31));
+            let small = step.at_most(x * N::all(1e-31));
             for l in 0..W {
                 open[l] &= !flat[l] & !small[l] & step.signs()[l].is_finite();
             }
@@ -116,7 +102,10 @@ impl<const W: usize, const FMA: bool> Cubic<Wides<W, FMA>> {
     }
 
     #[inline(always)]
-    fn has_no_root_above<const ABOVE: bool>(self, x: Wides<W, FMA>) -> [bool; W] {
+    fn has_no_root_above<const ABOVE: bool, const W: usize, const FMA: bool>(self, x: N) -> [bool; W]
+    where
+        N: Precise<W, FMA>,
+    {
         let leading = if ABOVE { 1.0 } else { -1.0 };
         let values = self.at::<ABOVE>(x);
         let mut found = [true; W];
@@ -129,7 +118,10 @@ impl<const W: usize, const FMA: bool> Cubic<Wides<W, FMA>> {
     }
 
     #[inline(always)]
-    fn floats(self) -> Cubic<Lanes<W, FMA>> {
+    fn floats<const W: usize, const FMA: bool>(self) -> Cubic<Lanes<W, FMA>>
+    where
+        N: Precise<W, FMA>,
+    {
         let Cubic { gravity, spin, delta, surplus } = self;
         Cubic {
             gravity: Lanes(gravity.values()),
@@ -166,13 +158,13 @@ impl<const W: usize, const FMA: bool> Cubic<Lanes<W, FMA>> {
 
 /// The positive x and y with given `x y` and `y − x`.
 #[inline(always)]
-pub(super) fn factors<const W: usize, const FMA: bool>(
-    product: Wides<W, FMA>,
-    difference: Wides<W, FMA>,
-) -> [Wides<W, FMA>; 2] {
-    let root = (difference * difference + product * Wides::all(4.0)).sqrt();
+pub(super) fn factors<N: Precise<W, FMA>, const W: usize, const FMA: bool>(
+    product: N,
+    difference: N,
+) -> [N; 2] {
+    let root = (difference * difference + product * N::all(4.0)).sqrt();
     let large = (root + difference.abs()).half();
-    let small = (product / large).or(&large.positive(), Wides::all(0.0));
+    let small = (product / large).or(&large.positive(), N::all(0.0));
     let negative = difference.negative();
     [large.or(&negative, small), small.or(&negative, large)]
 }

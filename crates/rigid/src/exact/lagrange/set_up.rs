@@ -7,11 +7,12 @@ use super::start::{HeavyTop, Starts, square};
 use super::{FreeMotion, LagrangeTop, MOST_TURNS};
 use crate::error::SimulateError;
 use crate::exact::flow::{Flow, Form};
-use crate::exact::free::phases_and_nomes;
 use crate::exact::free::series::LARGEST_NOME;
+use crate::exact::free::{are_within, phases_and_nomes};
 use crate::exact::lanes::{Coefficients, Phases, by_component, product, reverse, turned};
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
+use crate::numerics::precise::Precise;
 use crate::numerics::wide::Wides;
 use polhode_ga::Bivector;
 use polhode_ga::rows::curve::Curve;
@@ -29,7 +30,7 @@ impl HeavyTop {
     pub fn motion(&self) -> Result<LagrangeTop, SimulateError> {
         let mut tops = LagrangeTops::<1>::default();
         // One lane needs no wide instructions.
-        let (starts, orbits) = tops.filled::<false>(&[*self]);
+        let (starts, orbits) = tops.filled::<Wides<1, false>, false>(&[*self]);
         let (axes, start) = (self.axes, starts.lane(0));
         if tops.steady[0] {
             let moments = [axes.i1, axes.i1, axes.i3];
@@ -82,15 +83,22 @@ impl<const W: usize> Default for LagrangeTops<W> {
 impl<const W: usize> LagrangeTops<W> {
     /// Replaces the motions by those of other tops. Each has the bits that it has alone.
     pub fn set_up(&mut self, tops: &[HeavyTop; W]) {
-        fastest(SetUp { tops, motions: self });
+        if are_moderate(tops) {
+            fastest(SetUp::<W, false> { tops, motions: self });
+        } else {
+            fastest(SetUp::<W, true> { tops, motions: self });
+        }
     }
 
     #[inline(always)]
-    fn filled<const FMA: bool>(&mut self, tops: &[HeavyTop; W]) -> (Starts<W, FMA>, Orbits<W, FMA>) {
+    fn filled<N: Precise<W, FMA>, const FMA: bool>(
+        &mut self,
+        tops: &[HeavyTop; W],
+    ) -> (Starts<N, W, FMA>, Orbits<N, W, FMA>) {
         let frames = by_component(|l| tops[l].axes.frame.components());
         let rotors = by_component(|l| tops[l].rotor.components());
         let omegas = by_component(|l| tops[l].omega.0);
-        let starts = Starts::<W, FMA>::new(tops, &frames, &rotors, &omegas);
+        let starts = Starts::<N, W, FMA>::new(tops, &frames, &rotors, &omegas);
         let orbits = Orbits::new(&starts);
         let mut root = [0.0; W];
         for l in 0..W {
@@ -126,24 +134,43 @@ impl<const W: usize> LagrangeTops<W> {
     }
 }
 
-struct SetUp<'a, const W: usize> {
+/// With numbers beyond the range of floats where they are `WIDE`.
+struct SetUp<'a, const W: usize, const WIDE: bool> {
     tops: &'a [HeavyTop; W],
     motions: &'a mut LagrangeTops<W>,
 }
 
-impl<const W: usize> Work for SetUp<'_, W> {
+impl<const W: usize, const WIDE: bool> Work for SetUp<'_, W, WIDE> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        self.motions.filled::<FMA>(self.tops);
+        if WIDE {
+            self.motions.filled::<Wides<W, FMA>, FMA>(self.tops);
+        } else {
+            self.motions.filled::<DoubleDoubles<W, FMA>, FMA>(self.tops);
+        }
     }
 }
 
+/// Whether all invariants of the orbits, with their last digits, are in the range of floats. In the browser the same code
+/// serves all tops, since code for both would make the page larger.
+fn are_moderate<const W: usize>(tops: &[HeavyTop; W]) -> bool {
+    // Invariants are products of at most eight rates, in units of the largest, and tilts.
+    let mut moderate = cfg!(not(target_family = "wasm"));
+    for HeavyTop { axes, rotor, omega, scale } in tops {
+        let gravity = axes.c / axes.i1 / scale / scale;
+        moderate &= are_within(&[axes.i1, axes.i3, axes.c], 1e-100, 1e100) & (axes.i3 >= 1e-6 * axes.i1);
+        moderate &= are_within(&[gravity], 1e-15, 4.0) & are_within(&omega.0, 1e-15 * scale, 4.0 * scale);
+        moderate &= are_within(&rotor.components(), 1e-15, 4.0);
+    }
+    moderate
+}
+
 /// Tops with their orbits, in lanes.
-struct Nutating<'a, const W: usize, const FMA: bool> {
-    starts: &'a Starts<W, FMA>,
-    orbits: &'a Orbits<W, FMA>,
+struct Nutating<'a, N, const W: usize, const FMA: bool> {
+    starts: &'a Starts<N, W, FMA>,
+    orbits: &'a Orbits<N, W, FMA>,
     /// From the tops' axes to those of the body, and from these to space.
     frames: [[f64; W]; 4],
     rotors: [[f64; W]; 4],
@@ -152,7 +179,7 @@ struct Nutating<'a, const W: usize, const FMA: bool> {
     phases: Phases<W>,
 }
 
-impl<const W: usize, const FMA: bool> Nutating<'_, W, FMA> {
+impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Nutating<'_, N, W, FMA> {
     /// Leaves the lanes of circular motions.
     #[inline(always)]
     fn hyperbolic(&self, series: &mut Hyperbolic<W>, circular: &[bool; W], other: &[f64; W]) {
@@ -332,15 +359,15 @@ impl<const W: usize, const FMA: bool> Nutating<'_, W, FMA> {
         }
         let (rotors, omegas) = flow.values::<W, FMA>(&times);
         let [x, y, _] = turned(&reverse(&self.frames), &omegas);
-        let (x, y) = (Wides::from(x).in_units(&starts.scale), Wides::from(y).in_units(&starts.scale));
+        let (x, y) = (N::from(x).in_units(&starts.scale), N::from(y).in_units(&starts.scale));
         let [a, b, c, d] = product(&rotors, &self.frames);
-        let [a, b, c, d] = [Wides::from(a), Wides::from(b), Wides::from(c), Wides::from(d)];
+        let [a, b, c, d] = [N::from(a), N::from(b), N::from(c), N::from(d)];
         // u relative to that of the start, from the nearer pole.
-        let (two, upper) = (Wides::all(2.0), Wides::all(1.0).exceeds(starts.below));
+        let (two, upper) = (N::all(2.0), N::all(1.0).exceeds(starts.below));
         let rise = (starts.below - (b * b + c * c) * two).or(&upper, (a * a + d * d) * two - starts.above);
         let change = x * x + y * y - square(starts.w) + starts.gravity * rise;
-        let (largest, spin) = (Wides::from(orbits.sizes[2]), Wides::from(rounding));
-        change.abs().at_most((largest * largest) * Wides::all(MOST) + (largest + spin) * spin)
+        let (largest, spin) = (N::from(orbits.sizes[2]), N::from(rounding));
+        change.abs().at_most((largest * largest) * N::all(MOST) + (largest + spin) * spin)
     }
 }
 

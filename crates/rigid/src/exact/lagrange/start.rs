@@ -3,8 +3,9 @@
 use crate::body::inertia::{Inertia, apart, equal};
 use crate::error::SimulateError;
 use crate::exact::free::power_of_two;
+use crate::numerics::precise::Precise;
 use crate::numerics::quaternion::{product, quaternions, turned_back};
-use crate::numerics::wide::{Wide, Wides};
+use crate::numerics::wide::Wide;
 use crate::state::checks::check_moments;
 use polhode_ga::{Bivector, Rotor, Vector};
 
@@ -15,19 +16,19 @@ const ASIDE: f64 = 64.0 * f64::EPSILON;
 const NONE: f64 = 1e-250;
 
 /// Complex numbers of twice the precision.
-pub(super) type Complex<const W: usize, const FMA: bool> = [Wides<W, FMA>; 2];
+pub(super) type Complex<N> = [N; 2];
 
 /// `a b*`.
 #[inline(always)]
-pub(super) fn times_conjugate<const W: usize, const FMA: bool>(
-    a: Complex<W, FMA>,
-    b: Complex<W, FMA>,
-) -> Complex<W, FMA> {
+pub(super) fn times_conjugate<N: Precise<W, FMA>, const W: usize, const FMA: bool>(
+    a: Complex<N>,
+    b: Complex<N>,
+) -> Complex<N> {
     [a[0] * b[0] + a[1] * b[1], a[1] * b[0] - a[0] * b[1]]
 }
 
 #[inline(always)]
-pub(super) fn square<const W: usize, const FMA: bool>(a: Complex<W, FMA>) -> Wides<W, FMA> {
+pub(super) fn square<N: Precise<W, FMA>, const W: usize, const FMA: bool>(a: Complex<N>) -> N {
     a[0] * a[0] + a[1] * a[1]
 }
 
@@ -137,25 +138,25 @@ fn axis_to(axis: usize, opposite: bool) -> Rotor {
 
 /// States at the start, rates in units of each `scale`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Starts<const W: usize, const FMA: bool> {
+pub(super) struct Starts<N, const W: usize, const FMA: bool> {
     pub scale: [f64; W],
     /// 2c/i1.
-    pub gravity: Wides<W, FMA>,
+    pub gravity: N,
     /// ℓ = L3/i1.
-    pub spin: Wides<W, FMA>,
+    pub spin: N,
     /// The rate about the axis less ℓ.
-    pub excess: Wides<W, FMA>,
+    pub excess: N,
     /// The rate about the axis, in rad/s.
     pub omega3: [f64; W],
     /// The Cayley–Klein parameters, with their norm.
-    pub alpha: Complex<W, FMA>,
-    pub beta: Complex<W, FMA>,
+    pub alpha: Complex<N>,
+    pub beta: Complex<N>,
     /// 1 − u and 1 + u.
-    pub below: Wides<W, FMA>,
-    pub above: Wides<W, FMA>,
+    pub below: N,
+    pub above: N,
     /// g = γ1 + iγ2 and w = ω1 + iω2.
-    pub g: Complex<W, FMA>,
-    pub w: Complex<W, FMA>,
+    pub g: Complex<N>,
+    pub w: Complex<N>,
     /// Whether the top turns steadily about its axis without a torque.
     pub steady: [bool; W],
 }
@@ -174,7 +175,7 @@ pub(super) struct Start {
     pub w: [Wide; 2],
 }
 
-impl<const W: usize, const FMA: bool> Starts<W, FMA> {
+impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Starts<N, W, FMA> {
     /// From the tops, with the rotors of their axes and their own, and their angular velocities.
     #[inline(always)]
     pub fn new(
@@ -189,26 +190,26 @@ impl<const W: usize, const FMA: bool> Starts<W, FMA> {
             scale[l] = *one;
             (constants[0][l], constants[1][l], constants[2][l]) = (axes.i1, axes.i3, axes.c);
         }
-        let [i1, i3, c] = [Wides::from(constants[0]), Wides::from(constants[1]), Wides::from(constants[2])];
-        let frame = quaternions(frames);
+        let [i1, i3, c] = [N::from(constants[0]), N::from(constants[1]), N::from(constants[2])];
+        let frame: [N; 4] = quaternions(frames);
         let [s, x, y, z] = product(quaternions(rotors), frame);
         let norm = s * s + x * x + y * y + z * z;
         let (alpha, beta) = ([s, z], [y, -x]);
         let [g, g_im] = times_conjugate(beta, alpha);
         let g = [-((g + g) / norm), -((g_im + g_im) / norm)];
-        let mut rates = [Wides::all(0.0); 3];
+        let mut rates = [N::all(0.0); 3];
         for k in 0..3 {
-            rates[k] = Wides::from(omegas[k]).in_units(&scale);
+            rates[k] = N::from(omegas[k]).in_units(&scale);
         }
         let [w1, w2, w3] = turned_back(frame, rates);
         let spin = w3 * i3 / i1;
-        let gravity = (Wides::all(2.0) * c / i1).in_units(&scale).in_units(&scale);
+        let gravity = (N::all(2.0) * c / i1).in_units(&scale).in_units(&scale);
         // A torque this small has no effect up to any horizon.
         let (gravity_values, mut acts) = (gravity.values(), [false; W]);
         for l in 0..W {
             acts[l] = gravity_values[l] >= NONE;
         }
-        let gravity = gravity.or(&acts, Wides::all(0.0));
+        let gravity = gravity.or(&acts, N::all(0.0));
         let (below, above, w) = (square(beta), square(alpha), [w1, w2]);
         let (below, above) = ((below + below) / norm, (above + above) / norm);
         let (mut omega3, mut steady) = (w3.values(), [false; W]);

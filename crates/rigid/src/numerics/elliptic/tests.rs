@@ -1,5 +1,5 @@
 use super::*;
-use crate::numerics::wide::Wide;
+use crate::numerics::wide::{Wide, Wides};
 use std::f64::consts::FRAC_PI_2;
 
 fn complete_k(kc: f64) -> f64 {

@@ -184,7 +184,7 @@ fn kernels() -> Vec<Kernel> {
         exact(),
         free_set_up(),
         heavy_set_up(),
-        ensemble("a free body in closed form at one time", BODIES, Options::default(), vec![]),
+        ensemble("short run of a free body", BODIES, Options::default(), vec![]),
         stepped("free body, rk4", "rk4", vec![]),
         stepped("free body, kahan_li8", "kahan_li8", vec![]),
         stepped("gravity gradient, rk4", "rk4", gradient()),

@@ -21,7 +21,7 @@ pub(super) const METHOD: &str = "exact";
 type Members<'a> = Vec<(Member<'a>, ExactBody)>;
 
 impl<'a> Scheduler<'a> {
-    /// Writes the motions of bodies in closed form, at most as many as there are lanes, and leaves none.
+    /// Writes the motions of bodies under torques, at most as many as there are lanes, and leaves none.
     pub fn exact(&self, members: &mut Members<'a>, progress: &mut dyn FnMut(Progress) -> bool) {
         if members.is_empty() {
             return;

@@ -162,7 +162,7 @@ fn irregular(k: usize, least: i32) -> f64 {
     let size = 10f64.powf(f64::from(least) * (part * 37.0).fract()) * (0.5 + part);
     if k % 7 == 3 {
         0.0
-    } else if k % 2 == 0 {
+    } else if k.is_multiple_of(2) {
         size
     } else {
         -size

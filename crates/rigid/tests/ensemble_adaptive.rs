@@ -296,6 +296,21 @@ fn a_run_can_be_stopped() {
     assert!(seen.is_sorted() && seen.iter().all(|x| (0.0..1.0).contains(x)), "{seen:?}");
 }
 
+/// Free bodies, in full groups and in others, at few and at more times.
+#[test]
+fn progress_of_free_bodies_ends_at_1() {
+    for (number, count) in [(1, 2), (3, 40), (8, 2), (40, 2), (40, 100)] {
+        let times: Vec<f64> = (0..count).map(|k| 0.25 * f64::from(k)).collect();
+        let mut seen = Vec::new();
+        let mut keep = |at: Progress| {
+            seen.push(at.fraction);
+            true
+        };
+        run_with(&bodies(number, vec![]), &times, &Options::default(), 1, &mut keep).unwrap();
+        assert!(seen.is_sorted() && seen.last() == Some(&1.0), "{number} bodies: {seen:?}");
+    }
+}
+
 /// Other methods, user functions and other forces than linear ones run body by body.
 #[test]
 fn unsupported_laws_run_body_by_body() {

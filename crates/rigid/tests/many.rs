@@ -169,32 +169,59 @@ fn irregular(k: usize, least: i32) -> f64 {
     }
 }
 
-/// The same where all bodies of a group have invariants in the range of floats, up to its ends and beyond: in some groups
-/// rates and tilts down to 1e-14 and moments that are equal or nearly so, in others rates down to 1e-40.
+/// The same where all bodies of a group have invariants in the range of floats, and beyond it: in some groups rates and tilts
+/// down to 1e-14 and moments that are equal, nearly so or far apart, in others rates down to 1e-40.
 #[test]
 fn sets_up_by_floats_what_it_sets_up_alone_beyond_their_range() {
     let least = |k: usize| if k / 16 % 3 == 2 { -40 } else { -14 };
     let rates = |k: usize| [0, 1, 2].map(|j| irregular(3 * k + j, least(k)));
     let bodies = (0..NUMBER).map(|k| {
         let x = [0.0, 3.0 * f64::EPSILON, 1e-9, 0.25][k % 4];
-        let i = if k % 5 == 0 { [1.0, 1.0 + x, 1.0] } else { [1.0 + x, 1.5, 1.5 - x] };
+        let i = match k % 5 {
+            0 => [1.0, 1.0 + x, 1.0],
+            1 => [2e-6, 1.0, 1.0 + 1e-6 * x],
+            _ => [1.0 + x, 1.5, 1.5 - x],
+        };
         FreeBody::new(&moments(i.map(|i| i * 1e20)), start(), Bivector(rates(k).map(|w| w * 1e-30)))
     });
     let alone: Vec<FreeMotion> = bodies.clone().map(|body| body.unwrap().motion()).collect();
     same(Tile::free(bodies).unwrap(), &alone);
 
-    let tops: Vec<HeavyTop> = (0..NUMBER)
-        .map(|k| {
-            let tilt = [1.0, irregular(k, least(k)), irregular(k + 1, least(k)), 0.25];
-            let rotor = Rotor::from_components(if k % 3 == 0 { tilt } else { [tilt[1], 1.0, 0.25, tilt[2]] });
-            let c = Vector([0.0, 0.0, irregular(k + 2, least(k)) * 1e10]);
-            let i = moments([1e4, 1e4, 1e4 * [0.25, 1.0, 1.5][k % 3]]);
-            HeavyTop::new(&i, rotor.unwrap(), Bivector(rates(k).map(|w| w * 1e3)), c).unwrap()
-        })
-        .filter(|top| top.motion().is_ok())
-        .collect();
-    assert!(tops.len() > NUMBER - 40, "only {} of {NUMBER} are resolved", tops.len());
-    let tops: Vec<HeavyTop> = tops.iter().copied().cycle().take(NUMBER).collect();
+    let turned = Rotor::from_components([1.0, 1e-77, -3e-75, 0.0]).unwrap();
+    let top = |k: usize| {
+        let tilt = [1.0, irregular(k, least(k)), irregular(k + 1, least(k)), 0.25];
+        let rotor = Rotor::from_components(if k % 3 == 0 { tilt } else { [tilt[1], 1.0, 0.25, tilt[2]] });
+        let c = Vector([0.0, 0.0, irregular(k + 2, least(k)) * 1e10]);
+        let i = moments([1e4, 1e4, 1e4 * [0.25, 1.0, 1.5][k % 3]]);
+        HeavyTop::new(&i, rotor.unwrap(), Bivector(rates(k).map(|w| w * 1e3)), c).unwrap()
+    };
+    // Tops about axes that are nearly those of the body, and spheres with the centre of mass nearly on an axis.
+    let upright = |k: usize| {
+        let w = Bivector([0.0, 0.0, 1.0 + k as f64]);
+        HeavyTop::new(&moments([1.0, 1.0, 0.5]).rotated(turned), Rotor::IDENTITY, w, Vector([0.0, 0.0, 2.0]))
+    };
+    let sphere = |k: usize| {
+        let (w, c) = (Bivector([0.0, 0.5, 1.0 + k as f64]), Vector([0.5, 1e-170, 2.0]));
+        HeavyTop::new(&moments([1.0; 3]), Rotor::IDENTITY, w, c)
+    };
+    let all = (0..NUMBER)
+        .map(top)
+        .chain((0..64).map(|k| upright(k).unwrap()))
+        .chain((0..64).map(|k| sphere(k).unwrap()));
+    let resolved: Vec<HeavyTop> = all.filter(|top| top.motion().is_ok()).collect();
+    assert!(resolved.len() > NUMBER + 88, "only {} are resolved", resolved.len());
+    for tops in [&resolved[..NUMBER], &resolved[resolved.len() - NUMBER..]] {
+        let alone: Vec<LagrangeTop> = tops.iter().map(|top| top.motion().unwrap()).collect();
+        same(Tile::lagrange(tops.iter().copied().map(Ok::<_, String>)).unwrap(), &alone);
+    }
+}
+
+/// Tops in special motions, none of which has a tilt beyond the range of floats.
+#[test]
+fn sets_up_special_motions_of_tops_by_floats() {
+    let kinds = heavy_starts().into_iter().enumerate().filter(|(k, _)| k % 11 != 2).map(|(_, start)| start);
+    let tops: Vec<HeavyTop> =
+        kinds.cycle().take(NUMBER).map(|(i, r, w, c)| HeavyTop::new(&i, r, w, c).unwrap()).collect();
     let alone: Vec<LagrangeTop> = tops.iter().map(|top| top.motion().unwrap()).collect();
     same(Tile::lagrange(tops.into_iter().map(Ok::<_, String>)).unwrap(), &alone);
 }

@@ -43,14 +43,17 @@ impl<'a> Scheduler<'a> {
             }
             self.report(progress);
         }
-        if !self.is_stopped() {
+        if !members.is_empty() && !self.is_stopped() {
             self.free(&mut members, &mut motions);
+            self.report(progress);
         }
     }
 
     /// Writes the motions of free bodies, at most as many as there are lanes, and leaves none.
     fn free(&self, members: &mut Vec<Member<'a>>, motions: &mut FreeMotions<TOGETHER>) {
-        if members.len() <= 1 {
+        // The lanes hold all bodies at a time, or the times of one body.
+        let alone = members.len() * self.times.len().div_ceil(TOGETHER);
+        if alone <= self.times.len() / 2 || members.len() == 1 {
             return members.drain(..).for_each(|member| self.free_alone(member));
         }
         motions.set_up(&from_fn(|l| free_body(of(members, l))));

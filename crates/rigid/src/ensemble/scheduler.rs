@@ -195,7 +195,8 @@ impl<'a> Scheduler<'a> {
 
     /// Whether the bodies turn without torques, and are solved in closed form.
     pub fn is_free(&self) -> bool {
-        self.ensemble.laws.is_empty() && self.options.method.is_none() && self.ensemble.in_lanes(false)
+        let exact = self.options.method.is_none_or(|method| self.options.exact && method == METHOD);
+        self.ensemble.laws.is_empty() && exact && self.ensemble.in_lanes(false)
     }
 
     /// The laws of a body in principal axes.

@@ -253,6 +253,7 @@ impl<K: Lanes<TOGETHER>> Blocks<K> {
             let block = self.open();
             let (some, more) = lanes.split_at(lanes.len().min(TOGETHER - block.count));
             if some.len() == TOGETHER {
+                // All lanes, in their order.
                 block.coefficients = *motions;
             } else {
                 block.coefficients.put_from(block.count, motions, some);

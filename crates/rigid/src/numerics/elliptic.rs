@@ -134,8 +134,9 @@ pub(crate) fn mean<const W: usize>(mut g: [f64; W]) -> [f64; W] {
 /// Most steps of a mean: the exponent of k' halves with each until convergence is quadratic, 16 steps from k' = 1e-600.
 const STEPS: usize = 20;
 
-/// Most steps of a sum, in which the exponent of p halves with each too, but p to powers of two: 25 from p² = 1e12.
-const SUMMED: usize = 32;
+/// Most steps of a sum: p halves with each until it is near the mean, then convergence is quadratic. 35 steps from p² = 1e12
+/// and k' = 1e-600.
+const SUMMED: usize = 40;
 
 /// The steps of `M = AGM(1, k')` for positive k', in double-double precision: `K = π/2M`, and with the sum over them
 /// `Π(n) − K = (K/2) (n/(1 − n)) Σ Q_n`.

@@ -1,7 +1,7 @@
 //! Double-double numbers in lanes, in the range of floats or beyond it: kernels are written once for both.
 //!
 //! In the range of floats, [`DoubleDoubles`] take a third of the instructions of [`Wides`] and have the same bits: powers of
-//! two commute with all operations here.
+//! two commute with all operations here, as long as no number or low part leaves the range.
 
 use super::double_double::{DoubleDouble, DoubleDoubles};
 use super::wide::{Wide, Wides};

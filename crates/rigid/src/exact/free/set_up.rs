@@ -191,11 +191,11 @@ impl<const W: usize, const WIDE: bool> Work for SetUp<'_, W, WIDE> {
     }
 }
 
-/// Whether all invariants of the orbits, with their last digits, are in the range of floats. In the browser the same code
+/// Whether all invariants of the orbits, with their low parts, are in the range of floats. In the browser the same code
 /// serves all bodies, since code for both would make the page larger.
 fn are_moderate<const W: usize>(bodies: &[FreeBody; W]) -> bool {
-    // Invariants are products of at most four moments, three differences of moments, of 2⁻⁵² of them or more, and six rates,
-    // in units of the largest.
+    // Invariants are products of at most four moments, three differences of moments, each 0 or at least 2⁻⁵² of the moments,
+    // and six rates, in units of the largest.
     let mut moderate = cfg!(not(target_family = "wasm"));
     for FreeBody { moments, omega, .. } in bodies {
         moderate &= are_within(moments, 1e-6 * power_of_two(*moments), 4.0 * power_of_two(*moments));

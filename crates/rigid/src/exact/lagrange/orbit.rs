@@ -1,7 +1,7 @@
 //! Orbits of heavy tops, one in each lane: roots, periods, rates and phases.
 //!
-//! Near the vertical the roots differ from ±1, and from each other, by squares of the tilt. They are in double-double precision, and no
-//! distance is a difference of larger ones.
+//! Near the vertical the roots differ from ±1, and from each other, by squares of the tilt. They are in double-double
+//! precision, and no distance is a difference of larger ones.
 
 use super::roots::{Cubic, factors};
 use super::series::{Zero, Zeros};

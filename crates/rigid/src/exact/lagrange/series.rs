@@ -84,7 +84,7 @@ impl<const C: usize> Circular<C> {
 const LEAST: f64 = 1e-200;
 
 /// `q^{n²} ρ^{2n} (1 ± e^{−2(2n+1)y})` with `ρ = q^½ e^y`, from the powers of the nomes: the difference keeps its digits,
-/// and has the sign −s. With alternating signs, the sign of differences is s (−1)ⁿ.
+/// and has the sign s; with alternating signs, −s (−1)ⁿ.
 #[inline(always)]
 fn coefficients<const C: usize>(
     powers: &[Numbers<C>; 5],

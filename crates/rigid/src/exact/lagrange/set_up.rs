@@ -153,16 +153,17 @@ impl<const W: usize, const WIDE: bool> Work for SetUp<'_, W, WIDE> {
     }
 }
 
-/// Whether all invariants of the orbits, with their last digits, are in the range of floats. In the browser the same code
+/// Whether all invariants of the orbits, with their low parts, are in the range of floats. In the browser the same code
 /// serves all tops, since code for both would make the page larger.
 fn are_moderate<const W: usize>(tops: &[HeavyTop; W]) -> bool {
-    // Invariants are products of at most eight rates, in units of the largest, and tilts.
+    // Invariants are products of up to four squares of tilts, rates in units of the largest, and cancelled differences of them.
     let mut moderate = cfg!(not(target_family = "wasm"));
     for HeavyTop { axes, rotor, omega, scale } in tops {
         let gravity = axes.c / axes.i1 / scale / scale;
         moderate &= are_within(&[axes.i1, axes.i3, axes.c], 1e-100, 1e100) & (axes.i3 >= 1e-6 * axes.i1);
         moderate &= are_within(&[gravity], 1e-15, 4.0) & are_within(&omega.0, 1e-15 * scale, 4.0 * scale);
         moderate &= are_within(&rotor.components(), 1e-15, 4.0);
+        moderate &= are_within(&axes.frame.components(), 1e-15, 4.0);
     }
     moderate
 }

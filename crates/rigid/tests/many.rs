@@ -190,7 +190,8 @@ fn sets_up_by_floats_what_it_sets_up_alone_beyond_their_range() {
     let turned = Rotor::from_components([1.0, 1e-77, -3e-75, 0.0]).unwrap();
     let top = |k: usize| {
         let tilt = [1.0, irregular(k, least(k)), irregular(k + 1, least(k)), 0.25];
-        let rotor = Rotor::from_components(if k % 3 == 0 { tilt } else { [tilt[1], 1.0, 0.25, tilt[2]] });
+        let rotor =
+            Rotor::from_components(if k.is_multiple_of(3) { tilt } else { [tilt[1], 1.0, 0.25, tilt[2]] });
         let c = Vector([0.0, 0.0, irregular(k + 2, least(k)) * 1e10]);
         let i = moments([1e4, 1e4, 1e4 * [0.25, 1.0, 1.5][k % 3]]);
         HeavyTop::new(&i, rotor.unwrap(), Bivector(rates(k).map(|w| w * 1e3)), c).unwrap()

@@ -16,7 +16,6 @@ use crate::run::closed_form::{ElapsedTime, check_kept};
 use crate::state::checks::check_horizons;
 use crate::state::phase::Gyrostat;
 use polhode_ga::rows::curve::TOGETHER;
-use polhode_ga::simd::double::two_sum;
 use polhode_ga::simd::threads::Threads;
 use std::array::from_fn;
 use std::borrow::Cow;
@@ -177,10 +176,10 @@ impl Checks {
     /// Measures the first lanes, with states at the rounded times since the start, and moves these to the exact times.
     fn record(&mut self, times: &[f64; TOGETHER], count: usize, rows: &mut Rows) {
         let mut phases = self.bodies.phases(&rows.rotors, &rows.omegas);
-        let moved: [bool; TOGETHER] = from_fn(|l| two_sum(times[l], -self.starts[l]).1 != 0.0);
+        let since = |l: usize| ElapsedTime::new(self.starts[l], self.gyrostats[l], &[]);
+        let moved: [bool; TOGETHER] = from_fn(|l| since(l).elapsed(times[l]).lo != 0.0);
         for l in (0..count).filter(|&l| moved[l]) {
-            let since = ElapsedTime::new(self.starts[l], self.gyrostats[l], &[]);
-            phases.set(l, &since.at(phases.phase(l, times[l])));
+            phases.set(l, &since(l).at(phases.phase(l, times[l])));
         }
         let points = self.bodies.points(phases);
         for l in (0..count).filter(|&l| moved[l]) {

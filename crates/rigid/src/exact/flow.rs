@@ -5,7 +5,7 @@ use super::free::series::{Circular, Hyperbolic};
 use super::lagrange::flow::Flow as LagrangeFlow;
 use super::lagrange::series::{Circular as LagrangeCircular, Hyperbolic as LagrangeHyperbolic};
 use super::{damped::flow::Flow as DampedFlow, larmor::flow::Flow as LarmorFlow};
-use polhode_ga::rows::curve::{sample, value};
+use polhode_ga::rows::curve::{Curve, TOGETHER, sample, together, value};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 
@@ -64,5 +64,23 @@ impl Flow {
             Form::FreeHyperbolic(free) => Form::DampedHyperbolic(DampedFlow::new(free, [g])),
             _ => return None,
         }))
+    }
+}
+
+/// States of motions in lanes, of which each is circular or hyperbolic, at times of their own.
+pub(super) fn either(
+    (circular, hyperbolic): (&impl Curve<4, 3>, &impl Curve<4, 3>),
+    is_circular: &[bool; TOGETHER],
+    times: &[f64; TOGETHER],
+    rotors: &mut [[f64; 4]; TOGETHER],
+    omegas: &mut [[f64; 3]; TOGETHER],
+) {
+    together(circular, times, rotors, omegas);
+    if *is_circular != [true; TOGETHER] {
+        let (mut r, mut w) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
+        together(hyperbolic, times, &mut r, &mut w);
+        for l in (0..TOGETHER).filter(|&l| !is_circular[l]) {
+            (rotors[l], omegas[l]) = (r[l], w[l]);
+        }
     }
 }

@@ -9,7 +9,9 @@
 use super::double_double::{DoubleDouble, DoubleDoubles};
 use super::precise::Precise;
 
-/// The series' next term is below rounding once the arguments agree to this relative spread.
+/// The series' next term is below rounding once the arguments agree to this relative spread: for `R_F`, with terms up to the
+/// seventh degree (DLMF 19.36.1), and for `R_J`, up to the fifth.
+const SPREAD_OF_FIRST: f64 = 4.8e-3;
 const SPREAD: f64 = 1.2e-3;
 
 /// `R_F(x, y, z) = ½ ∫₀^∞ dt / √((t+x)(t+y)(t+z))`; arguments >= 0, at most one 0.
@@ -20,7 +22,7 @@ pub fn r_f<const W: usize>(mut x: [f64; W], mut y: [f64; W], mut z: [f64; W]) ->
     while open != [0.0; W] {
         for l in 0..W {
             let mean = (x[l] + y[l] + z[l]) * THIRD;
-            let least = SPREAD * mean;
+            let least = SPREAD_OF_FIRST * mean;
             let apart = ((mean - x[l]).abs() >= least)
                 | ((mean - y[l]).abs() >= least)
                 | ((mean - z[l]).abs() >= least);
@@ -41,7 +43,8 @@ pub fn r_f<const W: usize>(mut x: [f64; W], mut y: [f64; W], mut z: [f64; W]) ->
         let dz = -dx - dy;
         let e2 = dx * dy - dz * dz;
         let e3 = dx * dy * dz;
-        let series = 1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0;
+        let low = e2 * (-1.0 / 10.0 + e2 * (1.0 / 24.0 - e2 * (5.0 / 208.0)));
+        let series = 1.0 + (low + e3 * (1.0 / 14.0 + e3 * (3.0 / 104.0) + e2 * (e2 / 16.0 - 3.0 / 44.0)));
         value[l] = series / mean.sqrt();
     }
     value

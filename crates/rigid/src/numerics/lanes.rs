@@ -2,7 +2,7 @@
 
 use super::double_double::{DoubleDouble, DoubleDoubles};
 use polhode_ga::simd::double::{add, quick_two_sum, sin_cos, two_product, two_sum};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Adding 1.5·2⁵² rounds to an integer in the last bits, the nearest up to 2⁵¹.
 const INTEGER: f64 = 6_755_399_441_055_744.0;
@@ -53,6 +53,16 @@ pub(crate) fn sin_cos_turns<const FMA: bool>(turns: f64, rest: f64) -> (f64, f64
     (sin + rest, cos)
 }
 
+/// Sine and cosine of an angle in [0, π/2], to a few roundings of each. The remainder of an angle above π/4 is exact but
+/// for the low part of π/2.
+#[inline(always)]
+pub(crate) fn sin_cos_of_quarter<const FMA: bool>(angle: f64) -> (f64, f64) {
+    const HALF_PI_REST: f64 = 6.123_233_995_736_766e-17;
+    let (quarters, whole) = if angle > FRAC_PI_4 { (1, 1.0) } else { (0, 0.0) };
+    let ((sin, rest), cos) = sin_cos::<FMA>(quarters, angle - whole * FRAC_PI_2, -whole * HALF_PI_REST);
+    (sin + rest, cos)
+}
+
 /// A place within a half period of `u = 4K · turns`.
 pub(crate) struct HalfPeriod {
     /// −1 in the half periods beside that about 0.
@@ -96,7 +106,10 @@ const fn reciprocal_factorials<const N: usize>(first: usize) -> [f64; N] {
     c
 }
 
-/// `e^{−x}` and `e^{−x} − 1`, each to a few roundings, for x in [0, 705].
+/// Largest argument of [`exp_minus`].
+pub(crate) const LARGEST: f64 = 705.0;
+
+/// `e^{−x}` and `e^{−x} − 1`, each to a few roundings, for x in [0, [`LARGEST`]].
 ///
 /// `−x = n ln 2 + r` with `|r| <= ½ ln 2`; the series of `e^r − 1` ends below 2⁻⁵⁶ of it.
 #[inline(always)]
@@ -114,6 +127,24 @@ pub(crate) fn exp_minus(x: f64) -> (f64, f64) {
     let p = r + r2 * (low + r4 * (middle + r4 * high));
     let power = f64::from_bits((shifted.to_bits().wrapping_add(1023)) << 52);
     (power + power * p, power * p + (power - 1.0))
+}
+
+/// `e^{−x}` for x >= 0 to a few roundings; 0 where it is hardly above the least normal number.
+#[inline(always)]
+pub(crate) fn decay(x: f64) -> f64 {
+    if x > LARGEST { 0.0 } else { exp_minus(x).0 }
+}
+
+/// `√(x² + y²)`, also where the squares are beyond the range of floats.
+#[inline(always)]
+pub(crate) fn hypotenuse(x: f64, y: f64) -> f64 {
+    /// The exponents of the least and the largest number whose reciprocal power of two is normal.
+    const EXPONENTS: [u64; 2] = [1, 0x7fd];
+    let (x, y) = (x.abs(), y.abs());
+    let exponent = ((if x > y { x } else { y }).to_bits() >> 52).clamp(EXPONENTS[0], EXPONENTS[1]);
+    let (unit, inverse) = (f64::from_bits(exponent << 52), f64::from_bits((0x7fe - exponent) << 52));
+    let (x, y) = (x * inverse, y * inverse);
+    (x * x + y * y).sqrt() * unit
 }
 
 /// A double-double number `hi + lo`, as [`DoubleDouble`], in a lane.
@@ -254,3 +285,6 @@ pub(crate) fn horner_in_lane<const N: usize, const C: usize>(c: &[[f64; C]; N], 
 pub(crate) fn in_lane<const C: usize>(numbers: &[f64; C], l: usize) -> f64 {
     numbers[if C == 1 { 0 } else { l }]
 }
+
+#[cfg(test)]
+mod tests;

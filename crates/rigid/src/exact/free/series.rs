@@ -11,9 +11,10 @@
 //! all with `p_{n+1} = 2x p_n − p_{n−1}`. The factors sin v etc. keep the relative accuracy where a function vanishes.
 
 use crate::exact::lanes::Coefficients;
-use crate::numerics::lanes::{exp_minus, half_period, horner_in_lane, in_lane, sin_cos_turns};
-use polhode_ga::simd::lanes::{Lanes, One};
-use std::array::from_fn;
+use crate::numerics::lanes::{
+    decay, exp_minus, half_period, horner_in_lane, in_lane, sin_cos_of_quarter, sin_cos_turns,
+};
+use polhode_ga::simd::lanes::Lanes;
 use std::f64::consts::PI;
 
 /// Numbers of `C` motions, computed as those of one.
@@ -102,6 +103,15 @@ pub(crate) fn normal<const C: usize, const N: usize>(c: &[Numbers<C>; N], least:
         }
     }
     normal
+}
+
+/// Sine and cosine of the sum of two angles.
+#[inline(always)]
+pub(crate) fn of_sum<const C: usize>(
+    [sin, cos]: [Numbers<C>; 2],
+    [other_sin, other_cos]: [Numbers<C>; 2],
+) -> [Numbers<C>; 2] {
+    [sin * other_cos + cos * other_sin, cos * other_cos - sin * other_sin]
 }
 
 /// Series in the nome q.
@@ -240,42 +250,55 @@ pub(crate) struct Hyperbolic<const C: usize = 1> {
 /// Scale of u in turns on the separatrix: the border is never reached.
 pub(crate) const NEVER: f64 = (1u128 << 70) as f64;
 
-impl Hyperbolic {
-    /// From X, `γ = πη/4K'` and s.
-    pub fn new(border: f64, gamma: f64, s: f64) -> Hyperbolic {
-        let nome = (-4.0 * border).exp();
-        let root = (-2.0 * border).exp();
-        let power = |x: f64, n: usize| power(Lanes([x]), n).0[0];
-        let series = |h: [f64; 4], before: [f64; 2]| chebyshev(&One::each(h), before).map(|Lanes(c)| c);
-        let sin: [f64; 4] = from_fn(|n| ((2 * n + 1) as f64 * gamma).sin());
-        let cos: [f64; 4] = from_fn(|n| ((2 * n + 1) as f64 * gamma).cos());
-        let weight: [f64; 4] = from_fn(|n| power(root, n * n + n));
-        let pronics: [f64; 4] = from_fn(|n| power(nome, n * n + n));
-        let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * power(nome, n * n) };
-        // θ4(2ix|q') without the factor that vanishes at ±X: 1 − 2q'³ cosh 4x and 1 − 2q'⁵ cosh 4x.
-        let (third, fifth) = (2.0 * power(nome, 3), 2.0 * power(nome, 5));
-        Hyperbolic {
-            border: [border],
-            nome: [nome],
-            z: [
-                series(from_fn(|n| weight[n] * cos[n]), THIRD),
-                series(from_fn(|n| s * sign(n) * weight[n] * cos[n]), FOURTH),
-                series(from_fn(|n| -sign(n) * weight[n] * sin[n]), THIRD),
-                series(from_fn(|n| -s * weight[n] * sin[n]), FOURTH),
-            ],
-            functions: [
-                [[1.0], [-(third + fifth)], [third * fifth], [0.0]],
-                series(from_fn(|n| sign(n) * pronics[n]), FOURTH),
-                series(from_fn(squares), FIRST),
-            ],
-            denominator: series(pronics, THIRD),
-            ahead: [s * gamma / PI],
+impl<const C: usize> Hyperbolic<C> {
+    /// Takes the series of X, of `γ = πη/4K'` in [0, π/4] and of s. On the separatrix, the limit K → ∞, `u = NEVER · turns`.
+    #[inline(always)]
+    pub fn set<const FMA: bool>(
+        &mut self,
+        border: &[f64; C],
+        gamma: &[f64; C],
+        s: &[f64; C],
+        on_separatrix: &[bool; C],
+    ) {
+        let (mut root, mut odd) = (Numbers::<C>::ZERO, [Numbers::<C>::ZERO; 2]);
+        for l in 0..C {
+            self.border[l] = if on_separatrix[l] { NEVER / 8.0 } else { border[l] };
+            self.ahead[l] = if on_separatrix[l] { 0.0 } else { s[l] * gamma[l] / PI };
+            root.0[l] = decay(2.0 * self.border[l]);
+            (odd[0].0[l], odd[1].0[l]) = sin_cos_of_quarter::<FMA>(gamma[l]);
         }
-    }
-
-    /// The limit K → ∞, with `u = NEVER · turns`.
-    pub fn separatrix(gamma: f64, s: f64) -> Hyperbolic {
-        Hyperbolic { ahead: [0.0], ..Hyperbolic::new(NEVER / 8.0, gamma, s) }
+        let (nome, s, two) = (root * root, Lanes(*s), Numbers::all(2.0));
+        self.nome = nome.0;
+        // The sines and cosines of odd multiples of γ, with their weights q'^{(n² + n)/2}, below q' but for the first.
+        let double = of_sum(odd, odd);
+        let [mut sin, mut cos] = odd.map(|first| [first; 4]);
+        let [mut pronics, mut squares] = [[Numbers::all(1.0); 4]; 2];
+        for n in 1..4 {
+            odd = of_sum(odd, double);
+            let weight = power(root, n * n + n);
+            (sin[n], cos[n]) = (weight * odd[0], weight * odd[1]);
+            (pronics[n], squares[n]) = (power(nome, n * n + n), two * power(nome, n * n));
+        }
+        let (mut other_cos, mut other_sin, mut less_sin, mut other_pronics) = (cos, sin, sin, pronics);
+        for n in 0..4 {
+            let alternating = Numbers::all(sign(n));
+            (other_cos[n], other_sin[n]) = (s * (alternating * cos[n]), -(alternating * sin[n]));
+            (less_sin[n], other_pronics[n]) = (-(s * sin[n]), alternating * pronics[n]);
+        }
+        self.z = [
+            normal(&chebyshev(&cos, THIRD), 0.0),
+            normal(&chebyshev(&other_cos, FOURTH), 0.0),
+            normal(&chebyshev(&other_sin, THIRD), 0.0),
+            normal(&chebyshev(&less_sin, FOURTH), 0.0),
+        ];
+        // θ4(2ix|q') without the factor that vanishes at ±X: 1 − 2q'³ cosh 4x and 1 − 2q'⁵ cosh 4x.
+        let (third, fifth) = (two * power(nome, 3), two * power(nome, 5));
+        self.functions = [
+            normal(&[Numbers::all(1.0), -(third + fifth), third * fifth, Numbers::ZERO], 0.0),
+            normal(&chebyshev(&other_pronics, FOURTH), 0.0),
+            normal(&chebyshev(&squares, FIRST), 0.0),
+        ];
+        self.denominator = normal(&chebyshev(&pronics, THIRD), 0.0);
     }
 }
 
@@ -339,7 +362,8 @@ impl<const C: usize> Series<C> for Hyperbolic<C> {
             let function = |k: usize, y: f64| horner_in_lane(&self.functions[k], l, y);
             let at_0 = |k: usize| denominator(1.0) / function(k, 1.0);
             let double = 2.0 * self.border[l].min(176.0);
-            let (g, y) = ((-double).exp(), (2.0 * double).cosh());
+            let g = decay(double);
+            let y = 0.5 * (1.0 / (g * g) + g * g);
             let sinh = (1.0 - g * g) / (1.0 + g * g) * function(1, y);
             let less = (1.0 - self.nome[l]) * (1.0 - self.nome[l]);
             (factors[0][l], factors[1][l], factors[2][l]) = (at_0(0) / less, denominator(y) / sinh, at_0(2));

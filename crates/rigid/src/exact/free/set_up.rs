@@ -6,15 +6,15 @@ use super::series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
 use super::{FreeMotion, horizon, power_of_two};
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
-use crate::exact::flow::{self, Form};
+use crate::exact::flow::{self, Form, either};
 use crate::exact::lanes::{Coefficients, Phases, by_component, product, reverse, turned};
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
-use crate::numerics::lanes::Phase;
+use crate::numerics::lanes::{Phase, decay};
 use crate::numerics::precise::Precise;
 use crate::numerics::wide::Wides;
 use crate::state::checks::check_moments;
-use polhode_ga::rows::curve::{TOGETHER, together};
+use polhode_ga::rows::curve::TOGETHER;
 use polhode_ga::simd::lanes::{Work, fastest};
 use polhode_ga::{Bivector, Rotor};
 use std::f64::consts::PI;
@@ -132,7 +132,7 @@ impl<const W: usize> FreeMotions<W> {
         tumbling.circular(&mut self.circular.series, &nome);
         tumbling.fill(&mut self.circular);
         if self.is_circular != [true; W] {
-            tumbling.hyperbolic(&mut self.hyperbolic.series, &self.is_circular, &other);
+            tumbling.hyperbolic(&mut self.hyperbolic.series, &other);
             tumbling.fill(&mut self.hyperbolic);
         }
         for l in 0..W {
@@ -153,14 +153,7 @@ impl FreeMotions<TOGETHER> {
         rotors: &mut [[f64; 4]; TOGETHER],
         omegas: &mut [[f64; 3]; TOGETHER],
     ) {
-        together(&self.circular, times, rotors, omegas);
-        if self.is_circular != [true; TOGETHER] {
-            let (mut r, mut w) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
-            together(&self.hyperbolic, times, &mut r, &mut w);
-            for l in (0..TOGETHER).filter(|&l| !self.is_circular[l]) {
-                (rotors[l], omegas[l]) = (r[l], w[l]);
-            }
-        }
+        either((&self.circular, &self.hyperbolic), &self.is_circular, times, rotors, omegas);
     }
 }
 
@@ -232,8 +225,8 @@ pub(crate) fn phases_and_nomes<const W: usize, const FMA: bool>(
     for l in 0..W {
         let part = rest[l] * per_u.hi[l];
         (start[0][l], start[1][l]) = if on_separatrix[l] { (part, 0.0) } else { (0.25 * whole[l], part) };
-        let exponent = if other[l] > 0.0 { -PI * mean.hi[l] / other[l] } else { f64::NEG_INFINITY };
-        nome[l] = if on_separatrix[l] { f64::INFINITY } else { exponent.exp() };
+        let decayed = if other[l] > 0.0 { decay(PI * mean.hi[l] / other[l]) } else { 0.0 };
+        nome[l] = if on_separatrix[l] { f64::INFINITY } else { decayed };
     }
     (Phases([rate.hi, rate.lo, start[0], start[1]]), nome)
 }
@@ -243,28 +236,22 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Tumbling<'_, N, W, FMA
     fn circular(&self, series: &mut Circular<W>, nome: &[f64; W]) {
         let (rest, mut rho) = (self.orbits.rest_of_eta(), [0.0; W]);
         for l in 0..W {
-            rho[l] = (-rest[l] * self.orbits.mean.hi[l]).exp();
+            rho[l] = decay(rest[l] * self.orbits.mean.hi[l]);
         }
         series.set(nome, &rho, &self.orbits.s);
     }
 
-    /// Leaves the lanes of circular motions.
+    /// Arbitrary in the lanes of circular motions.
     #[inline(always)]
-    fn hyperbolic(&self, series: &mut Hyperbolic<W>, circular: &[bool; W], other: &[f64; W]) {
-        let eta = self.orbits.eta();
+    fn hyperbolic(&self, series: &mut Hyperbolic<W>, other: &[f64; W]) {
+        let (eta, mean) = (self.orbits.eta(), &self.orbits.mean);
+        // πK/4K' and πη/4K'.
+        let (mut border, mut gamma) = ([0.0; W], [0.0; W]);
         for l in 0..W {
-            if circular[l] {
-                continue;
-            }
-            // πK/4K' and πη/4K'.
-            let (gamma, s) = (0.5 * eta[l] * other[l], self.orbits.s[l]);
-            let one = if self.orbits.on_separatrix[l] {
-                Hyperbolic::separatrix(gamma, s)
-            } else {
-                Hyperbolic::new(0.25 * PI * other[l] / self.orbits.mean.hi[l], gamma, s)
-            };
-            series.put(l, &one);
+            border[l] = 0.25 * PI * other[l] / mean.hi[l];
+            gamma[l] = 0.5 * eta[l] * other[l];
         }
+        series.set::<FMA>(&border, &gamma, &self.orbits.s, &self.orbits.on_separatrix);
     }
 
     /// Completes flows with the given series by phases and frames.

@@ -59,6 +59,7 @@
 //! Klein & Sommerfeld, *Theorie des Kreisels* (1897–1910), ch. VI; Whittaker, *Analytical Dynamics* §72.
 
 mod description;
+mod factors;
 pub(super) mod flow;
 mod orbit;
 mod roots;
@@ -76,7 +77,7 @@ pub use description::{LagrangeDescription, LagrangeRegime};
 use orbit::Orbit;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
-pub(super) use set_up::LagrangeTops;
+pub(crate) use set_up::LagrangeTops;
 pub use start::HeavyTop;
 use start::{Axes, Start};
 

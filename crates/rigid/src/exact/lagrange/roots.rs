@@ -67,7 +67,8 @@ impl<N> Cubic<N> {
             near[l] *= 1.0 + MARGIN;
         }
         let near = N::from(near);
-        let is_above = self.has_no_root_above::<ABOVE, W, FMA>(near);
+        let mut values = self.at::<ABOVE>(near);
+        let is_above = have_no_root_above::<ABOVE, N, W, FMA>(&values);
         let mut open = [false; W];
         for l in 0..W {
             begun[l] &= is_above[l];
@@ -79,42 +80,36 @@ impl<N> Cubic<N> {
                 break;
             }
             let next = x * N::all(STRIDE);
-            let is_above = self.has_no_root_above::<ABOVE, W, FMA>(next);
+            let is_above = have_no_root_above::<ABOVE, N, W, FMA>(&self.at::<ABOVE>(next));
             for l in 0..W {
                 open[l] &= is_above[l];
             }
             x = next.or(&open, x);
         }
+        if begun != [true; W] {
+            values = self.at::<ABOVE>(x);
+        }
         open = *wanted;
         for _ in 0..200 {
-            let [value, slope, _] = self.at::<ABOVE>(x);
+            let [value, slope, bend] = values;
             let (step, flat) = (value / slope, slope.zeros());
-            let small = step.at_most(x * N::all(1e-31));
+            let least = x * N::all(1e-31);
+            let small = step.at_most(least);
             for l in 0..W {
                 open[l] &= !flat[l] & !small[l] & step.signs()[l].is_finite();
+            }
+            x = (x - step).or(&open, x);
+            // The next step, to the leading order.
+            let next = (step * step * bend).abs().at_most((slope * least).abs());
+            for l in 0..W {
+                open[l] &= !next[l];
             }
             if open == [false; W] {
                 break;
             }
-            x = (x - step).or(&open, x);
+            values = self.at::<ABOVE>(x);
         }
         x
-    }
-
-    #[inline(always)]
-    fn has_no_root_above<const ABOVE: bool, const W: usize, const FMA: bool>(self, x: N) -> [bool; W]
-    where
-        N: Precise<W, FMA>,
-    {
-        let leading = if ABOVE { 1.0 } else { -1.0 };
-        let values = self.at::<ABOVE>(x);
-        let mut found = [true; W];
-        for value in values {
-            for l in 0..W {
-                found[l] &= value.signs()[l] * leading > 0.0;
-            }
-        }
-        found
     }
 
     #[inline(always)]
@@ -130,6 +125,20 @@ impl<N> Cubic<N> {
             surplus: Lanes(surplus.values()),
         }
     }
+}
+
+/// Whether the cubic and its derivatives have the sign of the leading coefficient.
+#[inline(always)]
+fn have_no_root_above<const ABOVE: bool, N: Precise<W, FMA>, const W: usize, const FMA: bool>(
+    values: &[N; 3],
+) -> [bool; W] {
+    let (leading, mut found) = (if ABOVE { 1.0 } else { -1.0 }, [true; W]);
+    for value in values {
+        for l in 0..W {
+            found[l] &= value.signs()[l] * leading > 0.0;
+        }
+    }
+    found
 }
 
 impl<const W: usize, const FMA: bool> Cubic<Lanes<W, FMA>> {

@@ -4,9 +4,13 @@
 //! ([`crate::exact::free::series`]) trigonometric functions serve up to a nome `q = exp(−πK'/K)` of 0.2, hyperbolic ones
 //! beyond, where `q' = exp(−πK/K')` is below 0.0022.
 
-use crate::exact::free::series::{FIRST, FOURTH, NEVER, Numbers, THIRD, chebyshev, normal, power, sign};
+use crate::exact::free::series::{
+    FIRST, FOURTH, NEVER, Numbers, THIRD, chebyshev, normal, of_sum, power, sign,
+};
 use crate::exact::lanes::Coefficients;
-use crate::numerics::lanes::{exp_minus, half_period, horner_in_lane, in_lane, sin_cos_turns};
+use crate::numerics::lanes::{
+    LARGEST, decay, exp_minus, half_period, horner_in_lane, in_lane, sin_cos_of_quarter, sin_cos_turns,
+};
 use polhode_ga::simd::lanes::Lanes;
 use std::f64::consts::PI;
 
@@ -94,8 +98,8 @@ fn coefficients<const C: usize>(
 ) -> [[Numbers<C>; 5]; 2] {
     let (mut rho, mut less) = (Numbers::<C>::ZERO, Numbers::<C>::ZERO);
     for l in 0..C {
-        rho.0[l] = (-zeros.rest[l] * mean[l]).exp();
-        less.0[l] = (-2.0 * (zeros.eta[l] * mean[l])).exp_m1();
+        rho.0[l] = decay(zeros.rest[l] * mean[l]);
+        less.0[l] = exp_minus((2.0 * (zeros.eta[l] * mean[l])).min(LARGEST)).1;
     }
     let less = powers_less_one(less);
     let side: Numbers<C> = Lanes(zeros.side);
@@ -197,17 +201,18 @@ struct Exponentials {
     tail: [f64; 2],
 }
 
-impl Fourth<1> {
-    fn new(side: f64, gamma: f64) -> Fourth<1> {
-        let (sin, cos) = (2.0 * gamma).sin_cos();
-        Fourth { side: [side], versine: [2.0 * gamma.sin().powi(2)], cos: [cos], sin: [sin] }
-    }
-}
-
 impl<const C: usize> Fourth<C> {
     fn empty() -> Fourth<C> {
         let none = [0.0; C];
         Fourth { side: none, versine: none, cos: none, sin: none }
+    }
+
+    /// Takes the product of the side s and of the sine and cosine of γ.
+    #[inline(always)]
+    fn set(&mut self, side: &[f64; C], sin: Numbers<C>, cos: Numbers<C>) {
+        let [double_sin, double_cos] = of_sum([sin, cos], [sin, cos]);
+        (self.side, self.versine) = (*side, (Numbers::all(2.0) * sin * sin).0);
+        (self.sin, self.cos) = (double_sin.0, double_cos.0);
     }
 
     fn each(&mut self) -> [&mut [f64; C]; 4] {
@@ -230,35 +235,49 @@ impl<const C: usize> Fourth<C> {
     }
 }
 
-impl Hyperbolic {
-    /// From B, and for each zero its side and `γ = πη/2K'`.
-    pub fn new(border: f64, zeros: [(f64, f64); 3]) -> Hyperbolic {
-        let q = (-2.0 * border).exp();
-        let [q2, q4, q5, q6] = [2, 4, 5, 6].map(|n| q.powi(n));
-        let (s, gamma) = zeros[0];
-        let [s1, s3, s5] = [1.0, 3.0, 5.0].map(|n: f64| s * (n * gamma).sin());
-        let [c1, c3, c5] = [1.0, 3.0, 5.0].map(|n: f64| (n * gamma).cos());
-        let alpha = [
-            [c1 - q2 * c3 - q6 * c5, -q * c3 + q5 * c5, q4 * c5],
-            [-(s1 + q2 * s3 - q6 * s5), q * s3 + q5 * s5, -q4 * s5],
-        ];
-        Hyperbolic {
-            border: [border],
-            nome: [q],
-            tail: [[-(q * q) * (1.0 + q * q)], [q6]],
-            alpha: alpha.map(|bracket| bracket.map(|c| [c])),
-            beta: Fourth::new(zeros[1].0, zeros[1].1),
-            across: Fourth::new(zeros[2].0, zeros[2].1),
-            denominator: [[1.0 - q2 - q6], [q - q5], [q4]],
-            ahead: zeros.map(|(side, gamma)| [side * gamma / PI]),
+impl<const C: usize> Hyperbolic<C> {
+    /// Takes the series of B, and for each zero of its side and `γ = πη/2K'` in [0, π/2]. On the separatrix, the limit
+    /// K → ∞ with `u = NEVER · turns`, only the first zero counts.
+    #[inline(always)]
+    pub fn set<const FMA: bool>(
+        &mut self,
+        border: &[f64; C],
+        sides: [&[f64; C]; 3],
+        gammas: &[[f64; C]; 3],
+        on_separatrix: &[bool; C],
+    ) {
+        let (mut q, one) = (Numbers::<C>::ZERO, Numbers::all(1.0));
+        for l in 0..C {
+            self.border[l] = if on_separatrix[l] { NEVER / 4.0 } else { border[l] };
+            q.0[l] = decay(2.0 * self.border[l]);
         }
-    }
-
-    /// The limit K → ∞, with `u = NEVER · turns`.
-    pub fn separatrix(gamma: f64, side: f64) -> Hyperbolic {
-        let border = NEVER / 4.0;
-        let zeros = [(side, gamma), (1.0, 0.0), (1.0, 0.0)];
-        Hyperbolic { ahead: [[0.0]; 3], ..Hyperbolic::new(border, zeros) }
+        let (mut side, [mut sin, mut cos]) = ([[0.0; C]; 3], [[Numbers::<C>::ZERO; 3]; 2]);
+        for k in 0..3 {
+            for l in 0..C {
+                let absent = (k > 0) & on_separatrix[l];
+                let gamma = if absent { 0.0 } else { gammas[k][l] };
+                side[k][l] = if absent { 1.0 } else { sides[k][l] };
+                (sin[k].0[l], cos[k].0[l]) = sin_cos_of_quarter::<FMA>(gamma);
+                self.ahead[k][l] = if on_separatrix[l] { 0.0 } else { side[k][l] * gamma / PI };
+            }
+        }
+        let [q2, q4, q5, q6] = [power(q, 2), power(q, 4), power(q, 5), power(q, 6)];
+        self.nome = q.0;
+        self.tail = [(-(q2 * (one + q2))).0, q6.0];
+        // The cosines of γ, 3γ and 5γ, and s times the sines.
+        let first = [sin[0], cos[0]];
+        let double = of_sum(first, first);
+        let third = of_sum(first, double);
+        let [fifth_sin, c5] = of_sum(third, double);
+        let (s, c1, c3) = (Lanes(side[0]), first[1], third[1]);
+        let [s1, s3, s5] = [s * first[0], s * third[0], s * fifth_sin];
+        self.alpha = [
+            [(c1 - q2 * c3 - q6 * c5).0, (q5 * c5 - q * c3).0, (q4 * c5).0],
+            [(q6 * s5 - s1 - q2 * s3).0, (q * s3 + q5 * s5).0, (-(q4 * s5)).0],
+        ];
+        self.beta.set(&side[1], sin[1], cos[1]);
+        self.across.set(&side[2], sin[2], cos[2]);
+        self.denominator = [(one - q2 - q6).0, (q - q5).0, q4.0];
     }
 }
 

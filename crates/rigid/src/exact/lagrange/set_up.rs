@@ -6,16 +6,17 @@ use super::series::{Circular, Hyperbolic, Series};
 use super::start::{HeavyTop, Starts, square};
 use super::{FreeMotion, LagrangeTop, MOST_TURNS};
 use crate::error::SimulateError;
-use crate::exact::flow::{Flow, Form};
+use crate::exact::flow::{Flow, Form, either};
 use crate::exact::free::series::LARGEST_NOME;
 use crate::exact::free::{are_within, phases_and_nomes};
 use crate::exact::lanes::{Coefficients, Phases, by_component, product, reverse, turned};
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
+use crate::numerics::lanes::hypotenuse;
 use crate::numerics::precise::Precise;
 use crate::numerics::wide::Wides;
 use polhode_ga::Bivector;
-use polhode_ga::rows::curve::Curve;
+use polhode_ga::rows::curve::{Curve, TOGETHER};
 use polhode_ga::simd::lanes::{Work, fastest};
 use std::f64::consts::PI;
 
@@ -53,7 +54,7 @@ impl HeavyTop {
 
 /// The motions of `W` heavy tops, one in each lane.
 #[derive(Clone, Debug)]
-pub(in crate::exact) struct LagrangeTops<const W: usize> {
+pub(crate) struct LagrangeTops<const W: usize> {
     /// Valid where [`LagrangeTops::is_circular`].
     pub circular: LagrangeFlow<Circular<W>, W>,
     /// Valid elsewhere.
@@ -120,7 +121,7 @@ impl<const W: usize> LagrangeTops<W> {
         self.horizons = nutating.horizons(&self.circular);
         self.resolved = nutating.resolved(&self.circular);
         if self.is_circular != [true; W] {
-            nutating.hyperbolic(&mut self.hyperbolic.series, &self.is_circular, &other);
+            nutating.hyperbolic(&mut self.hyperbolic.series, &other);
             nutating.fill(&mut self.hyperbolic);
             let resolved = nutating.resolved(&self.hyperbolic);
             for l in 0..W {
@@ -131,6 +132,23 @@ impl<const W: usize> LagrangeTops<W> {
             self.resolved[l] &= orbits.resolved[l];
         }
         (starts, orbits)
+    }
+}
+
+impl LagrangeTops<TOGETHER> {
+    /// Whether the motion of a top is that of its lane.
+    pub fn has(&self, l: usize) -> bool {
+        self.resolved[l] & !self.steady[l]
+    }
+
+    /// [`crate::exact::free::FreeMotions::at`].
+    pub fn at(
+        &self,
+        times: &[f64; TOGETHER],
+        rotors: &mut [[f64; 4]; TOGETHER],
+        omegas: &mut [[f64; 3]; TOGETHER],
+    ) {
+        either((&self.circular, &self.hyperbolic), &self.is_circular, times, rotors, omegas);
     }
 }
 
@@ -169,9 +187,9 @@ fn are_moderate<const W: usize>(tops: &[HeavyTop; W]) -> bool {
 }
 
 /// Tops with their orbits, in lanes.
-struct Nutating<'a, N, const W: usize, const FMA: bool> {
-    starts: &'a Starts<N, W, FMA>,
-    orbits: &'a Orbits<N, W, FMA>,
+pub(super) struct Nutating<'a, N, const W: usize, const FMA: bool> {
+    pub starts: &'a Starts<N, W, FMA>,
+    pub orbits: &'a Orbits<N, W, FMA>,
     /// From the tops' axes to those of the body, and from these to space.
     frames: [[f64; W]; 4],
     rotors: [[f64; W]; 4],
@@ -181,25 +199,19 @@ struct Nutating<'a, N, const W: usize, const FMA: bool> {
 }
 
 impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Nutating<'_, N, W, FMA> {
-    /// Leaves the lanes of circular motions.
+    /// Arbitrary in the lanes of circular motions.
     #[inline(always)]
-    fn hyperbolic(&self, series: &mut Hyperbolic<W>, circular: &[bool; W], other: &[f64; W]) {
-        let orbits = self.orbits;
+    fn hyperbolic(&self, series: &mut Hyperbolic<W>, other: &[f64; W]) {
+        let Orbits { mean, zeros, on_separatrix, .. } = self.orbits;
+        let (mut border, mut gammas) = ([0.0; W], [[0.0; W]; 3]);
         for l in 0..W {
-            if circular[l] {
-                continue;
+            border[l] = 0.5 * PI * other[l] / mean.hi[l];
+            for k in 0..3 {
+                gammas[k][l] = zeros[k].eta[l] * other[l];
             }
-            let mut gammas = [(0.0, 0.0); 3];
-            for (gamma, zeros) in gammas.iter_mut().zip(&orbits.zeros) {
-                *gamma = (zeros.side[l], zeros.eta[l] * other[l]);
-            }
-            let one = if orbits.on_separatrix[l] {
-                Hyperbolic::separatrix(gammas[0].1, gammas[0].0)
-            } else {
-                Hyperbolic::new(0.5 * PI * other[l] / orbits.mean.hi[l], gammas)
-            };
-            series.put(l, &one);
         }
+        let sides = [&zeros[0].side, &zeros[1].side, &zeros[2].side];
+        series.set::<FMA>(&border, sides, &gammas, on_separatrix);
     }
 
     /// Completes flows with the given series by phases and frames.
@@ -239,63 +251,6 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Nutating<'_, N, W, FMA
         }
         (flow.scale, flow.orbit) = (starts.scale, *phases);
         flow.factors = self.factors(flow);
-    }
-
-    /// The constants A, B and C: their sizes from the bounds, their phases from the two of α, β and w that are relatively
-    /// largest at the start.
-    #[inline(always)]
-    fn factors<S: Series<W>>(&self, flow: &LagrangeFlow<S, W>) -> [[[f64; W]; 2]; 3] {
-        let (starts, orbits) = (self.starts, self.orbits);
-        let upper = flow.series.state::<W, FMA>(&[0.25; W], &[0.0; W]);
-        let lower = flow.series.state::<W, FMA>(&[0.0; W], &[0.0; W]);
-        let now = flow.turned::<W, FMA>(&[0.0; W]);
-        let mut state = [[[0.0; W]; 2]; 3];
-        for (parts, z) in state.iter_mut().zip([starts.alpha, starts.beta, starts.w]) {
-            *parts = [z[0].values(), z[1].values()];
-        }
-        let (relations, mut factors) = (self.relations(), [[[0.0; W]; 2]; 3]);
-        for l in 0..W {
-            let at = |[re, im]: &[[f64; W]; 2]| [re[l], im[l]];
-            let mut unit: [[f64; 2]; 3] = std::array::from_fn(|k| {
-                let [re, im] = at(&now.z[k]);
-                normalized(times(at(&state[k]), normalized([re, -im])))
-            });
-            let part = |k: usize| size(at(&state[k])) / orbits.sizes[k][l];
-            let smallest = (0..3).min_by(|&j, &k| part(j).total_cmp(&part(k))).unwrap_or(2);
-            // C = −iκ A* B at v = 0.
-            let relation = at(&relations);
-            match smallest {
-                0 => unit[0] = conjugate(times(times(unit[2], conjugate(unit[1])), conjugate(relation))),
-                1 => unit[1] = times(times(unit[2], unit[0]), conjugate(relation)),
-                _ => unit[2] = times(times(conjugate(unit[0]), unit[1]), relation),
-            }
-            for k in 0..3 {
-                let bound = if k == 0 { &upper } else { &lower };
-                let factor = orbits.sizes[k][l] * bound.denominator[l] / size(at(&bound.z[k]));
-                for part in 0..2 {
-                    factors[k][part][l] = unit[k][part] * factor;
-                }
-            }
-        }
-        factors
-    }
-
-    /// `C/(A* B)` at the start: −iκ, turned by the phase `μ_β − μ_α − μ_w` since v = 0, an odd number of turns of the theta
-    /// functions in each period.
-    #[inline(always)]
-    fn relations(&self) -> [[f64; W]; 2] {
-        let Orbits { lambda, mean, on_separatrix, start, kappa, rates, .. } = self.orbits;
-        let [alpha, beta, across] = *rates;
-        let turns = (across - beta + alpha) / (*lambda * *mean);
-        let mut relations = [[0.0; W]; 2];
-        for l in 0..W {
-            let odd = 2.0 * (0.5 * (turns.hi[l] + turns.lo[l] - 1.0)).round() + 1.0;
-            // v/π at the start.
-            let part = 0.5 * start[0][l] + start[1][l] * mean.hi[l] / PI;
-            let (sin, cos) = if on_separatrix[l] { (0.0, 1.0) } else { (PI * odd * part).sin_cos() };
-            (relations[0][l], relations[1][l]) = (kappa[l] * sin, -kappa[l] * cos);
-        }
-        relations
     }
 
     /// The times of 1e17 turns of the fastest phases.
@@ -339,8 +294,12 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Nutating<'_, N, W, FMA
             let across = self.orbits.sizes[2][l] * starts.scale[l];
             let spin = 64.0 * f64::EPSILON * starts.omega3[l].abs();
             let most = MOST * across + spin + LEAST * starts.scale[l];
-            let [x, y, z] = [0, 1, 2].map(|k| omegas[k][l] - self.omegas[k][l]);
-            right[l] &= size([size([x, y]), z]) <= most;
+            let mut change = [0.0; 3];
+            for k in 0..3 {
+                change[k] = omegas[k][l] - self.omegas[k][l];
+            }
+            let [x, y, z] = change;
+            right[l] &= hypotenuse(hypotenuse(x, y), z) <= most;
         }
         right
     }
@@ -370,26 +329,4 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Nutating<'_, N, W, FMA
         let (largest, spin) = (N::from(orbits.sizes[2]), N::from(rounding));
         change.abs().at_most((largest * largest) * N::all(MOST) + (largest + spin) * spin)
     }
-}
-
-/// The product of complex numbers.
-#[inline(always)]
-fn times(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
-}
-
-#[inline(always)]
-fn conjugate([x, y]: [f64; 2]) -> [f64; 2] {
-    [x, -y]
-}
-
-#[inline(always)]
-fn size([x, y]: [f64; 2]) -> f64 {
-    x.hypot(y)
-}
-
-#[inline(always)]
-fn normalized(z: [f64; 2]) -> [f64; 2] {
-    let size = size(z);
-    if size > 0.0 { [z[0] / size, z[1] / size] } else { [1.0, 0.0] }
 }

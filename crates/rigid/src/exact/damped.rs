@@ -11,13 +11,18 @@
 
 pub(super) mod flow;
 
-use super::flow::Flow;
-use super::free::FreeBody;
+use super::flow::{Flow, either};
+use super::free::series::{Circular, Hyperbolic};
+use super::free::{FreeBody, FreeMotions};
+use super::lanes::Coefficients;
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::state::phase::Gyrostat;
+use flow::Flow as DampedFlow;
+use polhode_ga::rows::curve::TOGETHER;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
+use std::array::from_fn;
 
 /// Up to this many radians the rounding error of τ is negligible.
 const MOST_RADIANS: f64 = 1e10;
@@ -91,8 +96,64 @@ impl DampedTop {
     }
 }
 
+/// The motions of `W` damped bodies, one in each lane.
+#[derive(Clone, Debug)]
+pub(crate) struct DampedMotions<const W: usize> {
+    free: FreeMotions<W>,
+    /// Valid where the free motion is circular.
+    pub(super) circular: DampedFlow<Circular<W>, W>,
+    /// Valid elsewhere.
+    pub(super) hyperbolic: DampedFlow<Hyperbolic<W>, W>,
+    /// [`DampedTop::horizons`] of each, or why it is not resolved.
+    pub horizons: [Result<[f64; 2], SimulateError>; W],
+}
+
+impl<const W: usize> Default for DampedMotions<W> {
+    fn default() -> DampedMotions<W> {
+        DampedMotions {
+            free: FreeMotions::default(),
+            circular: DampedFlow::empty(),
+            hyperbolic: DampedFlow::empty(),
+            horizons: from_fn(|_| Err(SimulateError::Unresolved)),
+        }
+    }
+}
+
+impl<const W: usize> DampedMotions<W> {
+    /// Replaces the motions by those of other bodies, from each [`DampedTop::body`] and its g. Each has the bits that it has
+    /// alone.
+    pub fn set_up(&mut self, bodies: &[(FreeBody, f64); W]) {
+        self.free.set_up(&bodies.map(|(body, _)| body));
+        let dampings = bodies.map(|(_, g)| g);
+        self.circular = DampedFlow::new(self.free.circular, dampings);
+        if self.free.is_circular != [true; W] {
+            self.hyperbolic = DampedFlow::new(self.free.hyperbolic, dampings);
+        }
+        for (l, (body, g)) in bodies.iter().enumerate() {
+            self.horizons[l] = own_horizon(body, self.free.horizons[l]).map(|own| horizons(own, *g));
+        }
+    }
+
+    /// [`FreeMotions::lanes`].
+    pub(super) fn lanes(&self, count: usize) -> [Vec<usize>; 2] {
+        self.free.lanes(count)
+    }
+}
+
+impl DampedMotions<TOGETHER> {
+    /// [`FreeMotions::at`].
+    pub fn at(
+        &self,
+        times: &[f64; TOGETHER],
+        rotors: &mut [[f64; 4]; TOGETHER],
+        omegas: &mut [[f64; 3]; TOGETHER],
+    ) {
+        either((&self.circular, &self.hyperbolic), &self.free.is_circular, times, rotors, omegas);
+    }
+}
+
 /// How far in the time of the free body its phase and τ are accurate, from how far its phase is.
-pub(super) fn own_horizon(body: &FreeBody, horizon: f64) -> Result<f64, SimulateError> {
+fn own_horizon(body: &FreeBody, horizon: f64) -> Result<f64, SimulateError> {
     let (moments, omega) = (body.moments, body.omega);
     // |ω| stays below |L|/i_min.
     let least = moments.iter().fold(f64::INFINITY, |m: f64, i| m.min(*i));
@@ -104,7 +165,7 @@ pub(super) fn own_horizon(body: &FreeBody, horizon: f64) -> Result<f64, Simulate
 }
 
 /// [`DampedTop::horizons`].
-pub(super) fn horizons(most: f64, damping: f64) -> [f64; 2] {
+fn horizons(most: f64, damping: f64) -> [f64; 2] {
     let rate = damping.abs();
     if rate == 0.0 {
         return [most, most];

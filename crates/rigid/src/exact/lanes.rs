@@ -35,7 +35,8 @@ pub(crate) trait Coefficients<const C: usize>: Copy + Sync {
         self.each().for_each(|to| {
             if let Some(from) = sources.next() {
                 for (to, &l) in to[first..].iter_mut().zip(lanes) {
-                    *to = from[l];
+                    // Less than C, which the compiler does not know.
+                    *to = from[l % C];
                 }
             }
         });

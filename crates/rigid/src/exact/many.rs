@@ -5,7 +5,7 @@
 //! blocks, one motion per lane. A lane depends only on its own numbers, so a state has the same bits as
 //! [`ExactMotion::at`].
 
-use super::damped::{self, flow::Flow as Damped};
+use super::damped::{DampedMotions, flow::Flow as Damped};
 use super::flow::Form;
 use super::free::flow::Flow as Free;
 use super::free::series::{Circular, Hyperbolic};
@@ -85,7 +85,7 @@ impl Tile {
         for (place, motion) in motions.take(TILE).enumerate() {
             tile.add(&motion.map_err(|error| (place, error))?);
         }
-        Ok(tile)
+        Ok(tile.without_room())
     }
 
     /// The motions of the next bodies without a torque, set up in lanes.
@@ -112,22 +112,16 @@ impl Tile {
     pub fn damped<E: From<String>>(
         bodies: impl Iterator<Item = Result<(FreeBody, f64), E>>,
     ) -> Result<Tile, (usize, E)> {
-        let mut motions = FreeMotions::default();
+        let mut motions = DampedMotions::default();
         Tile::in_groups(bodies, |tile, bodies, count| {
-            motions.set_up(&bodies.map(|(body, _)| body));
-            let (first, dampings) = (tile.horizons.len(), bodies.map(|(_, g)| g));
-            for (l, (body, g)) in bodies[..count].iter().enumerate() {
-                let own = damped::own_horizon(body, motions.horizons[l])
-                    .map_err(|error| (l, error.to_string().into()))?;
-                tile.horizons.push(damped::horizons(own, *g));
+            motions.set_up(bodies);
+            let first = tile.horizons.len();
+            for (l, horizons) in motions.horizons[..count].iter().enumerate() {
+                tile.horizons.push(*horizons.as_ref().map_err(|error| (l, error.to_string().into()))?);
             }
             let [circular, hyperbolic] = motions.lanes(count);
-            let circular_motions = &mut Damped::new(motions.circular, dampings);
-            tile.damped_circular.add_lanes(first, circular_motions, &circular);
-            if !hyperbolic.is_empty() {
-                let hyperbolic_motions = &mut Damped::new(motions.hyperbolic, dampings);
-                tile.damped_hyperbolic.add_lanes(first, hyperbolic_motions, &hyperbolic);
-            }
+            tile.damped_circular.add_lanes(first, &mut motions.circular, &circular);
+            tile.damped_hyperbolic.add_lanes(first, &mut motions.hyperbolic, &hyperbolic);
             Ok(())
         })
     }
@@ -144,11 +138,11 @@ impl Tile {
             motions.set_up(tops);
             let (first, mut lanes) = (tile.horizons.len(), [Vec::new(), Vec::new()]);
             for (l, top) in tops[..count].iter().enumerate() {
-                if motions.steady[l] || !motions.resolved[l] {
-                    tile.add(&top.motion().map_err(|error| (l, error.to_string().into()))?);
-                } else {
+                if motions.has(l) {
                     tile.horizons.push([motions.horizons[l]; 2]);
                     lanes[usize::from(!motions.is_circular[l])].push(l);
+                } else {
+                    tile.add(&top.motion().map_err(|error| (l, error.to_string().into()))?);
                 }
             }
             tile.lagrange_circular.add_lanes(first, &mut motions.circular, &lanes[0]);
@@ -183,7 +177,7 @@ impl Tile {
             }
             match failed {
                 Some(error) => return Err(error),
-                None if group.is_empty() => return Ok(tile),
+                None if group.is_empty() => return Ok(tile.without_room()),
                 None => {}
             }
         }
@@ -202,6 +196,18 @@ impl Tile {
             Form::DampedHyperbolic(one) => self.damped_hyperbolic.add(place, one),
             Form::Larmor(one) => self.larmor.add(place, one),
         }
+    }
+
+    /// Without room for more motions: blocks are large.
+    fn without_room(mut self) -> Tile {
+        self.free_circular.0.shrink_to_fit();
+        self.free_hyperbolic.0.shrink_to_fit();
+        self.lagrange_circular.0.shrink_to_fit();
+        self.lagrange_hyperbolic.0.shrink_to_fit();
+        self.damped_circular.0.shrink_to_fit();
+        self.damped_hyperbolic.0.shrink_to_fit();
+        self.larmor.0.shrink_to_fit();
+        self
     }
 
     /// [`ExactMotion::horizons`] of each motion.
@@ -230,9 +236,7 @@ impl<K: Lanes<TOGETHER>> Blocks<K> {
     /// The block with the next lane.
     fn open(&mut self) -> &mut Block<K> {
         let Blocks(blocks) = self;
-        if blocks.last().is_none_or(|block| block.count == TOGETHER) {
-            // Without room for more: blocks are large.
-            blocks.reserve_exact(1);
+        if blocks.last().is_none_or(Block::is_full) {
             blocks.push(Block { coefficients: K::empty(), places: [0; TOGETHER], count: 0 });
         }
         let last = blocks.len() - 1;
@@ -249,15 +253,15 @@ impl<K: Lanes<TOGETHER>> Blocks<K> {
 
     /// Puts the motions in some lanes, those of the places `first` and up, into the next lanes.
     fn add_lanes(&mut self, first: usize, motions: &mut K, mut lanes: &[usize]) {
+        if lanes.len() == TOGETHER && self.0.last().is_none_or(Block::is_full) {
+            // All lanes, in their order.
+            let places = array::from_fn(|l| (first + l) as u16);
+            return self.0.push(Block { coefficients: *motions, places, count: TOGETHER });
+        }
         while !lanes.is_empty() {
             let block = self.open();
             let (some, more) = lanes.split_at(lanes.len().min(TOGETHER - block.count));
-            if some.len() == TOGETHER {
-                // All lanes, in their order.
-                block.coefficients = *motions;
-            } else {
-                block.coefficients.put_from(block.count, motions, some);
-            }
+            block.coefficients.put_from(block.count, motions, some);
             for &l in some {
                 block.places[block.count] = (first + l) as u16;
                 block.count += 1;
@@ -333,6 +337,12 @@ fn in_order(
         tile.fill(Part { times, each, rows: start..start + count, rotors: a, omegas: b });
         (rotors, omegas) = (more_rotors, more_omegas);
         first += count;
+    }
+}
+
+impl<K> Block<K> {
+    fn is_full(&self) -> bool {
+        self.count == TOGETHER
     }
 }
 

@@ -26,14 +26,29 @@ fn inertia(i: usize) -> Inertia {
     Inertia::from_principal_moments([1.0 + x, 2.0 + 0.5 * x, 2.5 + x]).expect("moments of a body")
 }
 
+/// The inertia of each body.
+type Own = fn(usize) -> Inertia;
+
+/// Symmetric about e3.
+fn top(i: usize) -> Inertia {
+    let x = (i * 4241 % 1013) as f64 / 1013.0;
+    Inertia::from_principal_moments([1.0 + x, 1.0 + x, 0.5 + x]).expect("moments of a body")
+}
+
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let mut number = |or: usize| arguments.next().map_or(or, |text| text.parse().expect("a whole number"));
     let (bodies, steps, rounds) = (number(100_000), number(2), number(10));
     let only = arguments.next().unwrap_or_default();
-    let heavy = Torque::Heavy(Vector([0.1, 0.2, 0.3]));
+    let heavy = |c: [f64; 3]| vec![Torque::Heavy(Vector(c))];
+    let kinds: [(_, _, Own); 4] = [
+        ("free", vec![], inertia),
+        ("damped", vec![Torque::Damping(0.1)], inertia),
+        ("heavy", heavy([0.1, 0.2, 0.3]), inertia),
+        ("heavy top", heavy([0.0, 0.0, 0.3]), top),
+    ];
     for (own, what) in [(false, "shared"), (true, "own")] {
-        for (laws, law) in [(vec![], "free"), (vec![heavy.clone()], "heavy")] {
+        for (law, laws, inertia) in &kinds {
             for method in ["rk4", "kahan_li8", "auto"] {
                 let name = format!("{law}, {what} moments, {method}");
                 if !name.contains(&only) {

@@ -2,7 +2,7 @@
 
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
-use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start, Summary};
+use polhode_rigid::ensemble::{Ensemble, Failure, Outputs, Rows, Start, Summary};
 use polhode_rigid::laws::force::Force;
 use polhode_rigid::laws::torque::{Axes, Gains, Kind, Orbit, Table, Torque};
 use polhode_rigid::methods::Method;
@@ -170,6 +170,53 @@ fn closed_forms_are_the_default() {
     let far = run(&bodies(2, vec![]), &[1e30], &Options::default());
     assert!(far.summary.failures.iter().all(|f| matches!(f.error, SimulateError::BeyondHorizon { .. })));
     assert!(far.summary.failures.len() == 2 && far.rotors.iter().all(|x| x.is_nan()));
+}
+
+/// Heavy tops about any axis, each with its weight. Among them are one that turns about its upright axis, and ones whose moments
+/// differ by rounding; some start at times whose differences from others are rounded.
+fn tops(count: usize) -> Ensemble {
+    let mut all = bodies(count, vec![]);
+    let (mut inertias, mut weights) = (Vec::new(), Vec::new());
+    for i in 0..count {
+        let (mut moments, mut c) = ([2.0; 3], [0.0; 3]);
+        (moments[i % 3], c[i % 3]) = (1.0 + 0.1 * (i % 7) as f64, 0.5 - (i % 5) as f64);
+        if i % 11 == 10 {
+            moments[(i + 1) % 3] *= 1.0 + f64::EPSILON;
+        }
+        inertias.push(Inertia::from_principal_moments(moments).unwrap());
+        weights.push(Torque::Heavy(Vector(c)));
+        all.starts[i].time = 0.1 * (i % 4) as f64;
+    }
+    (all.inertias, all.laws) = (Rows::new(inertias), vec![Rows::new(weights)]);
+    all.starts[2].rotor = Rotor::IDENTITY;
+    all.starts[2].omega = Bivector([0.0, 0.0, 4.0]);
+    all
+}
+
+/// Under torques, bodies in closed form have the states of single runs, however many are side by side.
+#[test]
+fn closed_forms_under_torques_are_as_alone() {
+    for count in [3, 16, 53] {
+        let damped = (0..count).map(|i| Torque::Damping(0.05 * (i % 4) as f64)).collect();
+        for all in [tops(count), Ensemble { laws: vec![Rows::new(damped)], ..bodies(count, vec![]) }] {
+            assert_as_alone(&all, &TIMES, &Options::default(), 1e-12);
+            let found = run(&all, &TIMES, &Options::default());
+            assert_eq!(found.summary.method_names, ["exact"]);
+            for body in 0..count {
+                let alone = all.problem(body).simulate(&TIMES, Options::default(), &mut |_| true).unwrap();
+                for (i, rotor) in alone.states().rotors.iter().enumerate() {
+                    let row = body * TIMES.len() + i;
+                    assert_eq!(found.rotors[4 * row..][..4], rotor.components(), "body {body} of {count}");
+                }
+            }
+        }
+    }
+    // One beyond its horizon fails, and the others have their motions.
+    let mut all = tops(20);
+    all.starts[7].omega = Bivector([1.0, 1e12, 1.0]);
+    let found = run(&all, &[1e6], &Options::default());
+    assert!(matches!(found.summary.failures[..], [Failure { body: 7, .. }]), "{:?}", found.summary.failures);
+    assert!((0..20).all(|body| found.rotors[4 * body].is_nan() == (body == 7)));
 }
 
 /// Results do not depend on the other bodies, their number and order, or the threads.

@@ -1,35 +1,51 @@
 //! Bodies of an ensemble under torques in closed form.
 
-use super::member::{Member, Outcome};
+use super::checks::{Checks, Rows};
+use super::member::{Member, Outcome, of};
 use super::scheduler::Scheduler;
-use crate::exact::many::{Tile, Times, at_each};
+use crate::exact::damped::DampedMotions;
+use crate::exact::lagrange::{HeavyTop, LagrangeTops};
 use crate::run::Progress;
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
-use crate::run::closed_form::{ClosedForm, ElapsedTime, ExactBody, check_kept};
+use crate::run::closed_form::{ClosedForm, ExactBody, check_kept};
 use crate::state::carried::Carried;
 use crate::state::checks::check_horizons;
-use crate::state::phase::Phase;
 use polhode_ga::rows::curve::TOGETHER;
-use polhode_ga::simd::threads::Threads;
-use polhode_ga::{Bivector, Rotor};
-use std::slice;
+use std::array::from_fn;
 
 /// The name of the method in certificates.
 pub(super) const METHOD: &str = "exact";
 
-/// Members with what their closed form needs.
-type Members<'a> = Vec<(Member<'a>, ExactBody)>;
+/// Bodies under torques in closed form that wait for others, with what their closed forms need.
+#[derive(Default)]
+pub(super) struct Waiting<'a> {
+    members: Vec<(Member<'a>, ExactBody)>,
+    tops: Option<Box<LagrangeTops<TOGETHER>>>,
+    damped: Option<Box<DampedMotions<TOGETHER>>>,
+}
 
 impl<'a> Scheduler<'a> {
-    /// Writes the motions of bodies under torques, at most as many as there are lanes, and leaves none.
-    pub fn exact(&self, members: &mut Members<'a>, progress: &mut dyn FnMut(Progress) -> bool) {
+    /// Takes a body. Writes the motions of those that wait as soon as there are as many as are computed together.
+    pub fn exact(
+        &self,
+        waiting: &mut Waiting<'a>,
+        member: (Member<'a>, ExactBody),
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) {
+        waiting.members.push(member);
+        if waiting.members.len() == self.exact_together() {
+            self.write_exact(waiting, progress);
+        }
+    }
+
+    /// Writes the motions of the bodies that wait, at most as many as there are lanes.
+    pub fn write_exact(&self, waiting: &mut Waiting<'a>, progress: &mut dyn FnMut(Progress) -> bool) {
+        let Waiting { members, tops, damped } = waiting;
         if members.is_empty() {
             return;
         }
-        if members.len() == TOGETHER
-            && let Some(tile) = ExactBody::tile(members.iter().map(|(_, body)| body))
-        {
-            self.under_torques(members, &tile);
+        if members.len() > 1 {
+            self.side_by_side(members, tops, damped);
         }
         for (member, body) in members.drain(..) {
             self.alone(member, &body, progress);
@@ -37,26 +53,64 @@ impl<'a> Scheduler<'a> {
         self.report(progress);
     }
 
-    /// Writes the motions of bodies under torques, from their rotations in lanes.
-    fn under_torques(&self, members: &mut Members<'a>, tile: &Tile) {
-        let (each, all) = (self.times.len(), members.len() * self.times.len());
-        let starts = members.iter().map(|(member, _)| member.start.time);
-        let elapsed: Vec<f64> = starts.flat_map(|start| self.times.iter().map(move |t| t - start)).collect();
-        let (mut rotors, mut omegas) = (vec![[0.0; 4]; all], vec![[0.0; 3]; all]);
-        let rows = (rotors.as_flattened_mut(), omegas.as_flattened_mut());
-        let times = Times::Own(&elapsed, each);
-        at_each(Threads::ONE, slice::from_ref(tile), times, 0..all, rows.0, rows.1);
-        for (l, (member, _)) in members.drain(..).enumerate() {
-            let Member { body, gyrostat, start, .. } = member;
-            let (since, center) =
-                (ElapsedTime::new(start.time, gyrostat, member.torques.clone()), self.center(body));
-            let states = rotors[l * each..].iter().zip(&omegas[l * each..]).zip(self.times);
-            let points = states.map(|((rotor, omega), &time)| {
-                let momentum = gyrostat.momentum(Bivector(*omega));
-                let phase = Phase { rotor: Rotor::from_unit_components(*rotor), momentum, time };
-                Carried::new(since.at(phase), center.at(time))
-            });
-            self.finish(member, tile.horizons()[l], points, None);
+    /// Writes the motions of the bodies whose closed forms have lanes, and leaves the others.
+    fn side_by_side(
+        &self,
+        members: &mut Vec<(Member<'a>, ExactBody)>,
+        tops: &mut Option<Box<LagrangeTops<TOGETHER>>>,
+        damped: &mut Option<Box<DampedMotions<TOGETHER>>>,
+    ) {
+        let bodies = || members.iter().map(|(_, body)| body);
+        if let Some(bodies) = bodies().map(ExactBody::heavy).collect::<Option<Vec<HeavyTop>>>() {
+            let motions = tops.get_or_insert_default();
+            motions.set_up(&in_lanes(&bodies));
+            let is_known = |l: usize| motions.has(l) && bodies[l].is_exact();
+            let horizons = |l: usize| is_known(l).then_some([motions.horizons[l]; 2]);
+            let at = |times: &_, rows: &mut Rows| motions.at(times, &mut rows.rotors, &mut rows.omegas);
+            self.under_torques(members, horizons, at);
+        } else if let Some(bodies) = bodies().map(ExactBody::damped).collect::<Option<Vec<_>>>() {
+            let motions = damped.get_or_insert_default();
+            motions.set_up(&in_lanes(&bodies));
+            let horizons = |l: usize| motions.horizons[l].as_ref().ok().copied();
+            let at = |times: &_, rows: &mut Rows| motions.at(times, &mut rows.rotors, &mut rows.omegas);
+            self.under_torques(members, horizons, at);
+        }
+    }
+
+    /// Writes the motions of the bodies whose horizons are known, from states in principal axes at the times of the lanes since
+    /// their starts, and leaves the others.
+    fn under_torques(
+        &self,
+        all: &mut Vec<(Member<'a>, ExactBody)>,
+        horizons: impl Fn(usize) -> Option<[f64; 2]>,
+        at: impl Fn(&[f64; TOGETHER], &mut Rows),
+    ) {
+        let count = all.len();
+        let (mut members, bodies): (Vec<_>, Vec<_>) = all.drain(..).unzip();
+        let torques = from_fn(|l| of(&members, l).torques.clone());
+        let (mut checks, mut rows) = (Checks::new(&members, torques), Rows::default());
+        let centers: Vec<_> = members.iter().map(|member| self.center(member.body)).collect();
+        let starts: [f64; TOGETHER] = from_fn(|l| of(&members, l).start.time);
+        for (index, &time) in self.times.iter().enumerate() {
+            at(&starts.map(|start| time - start), &mut rows);
+            let (points, energies) = checks.under_torques(time, count, &rows);
+            for (l, Member { own, .. }) in members.iter_mut().enumerate() {
+                let (rotor, omega) = points.in_body(l);
+                own.put(index, rotor, omega, points.momentum_of(l), energies[l]);
+                own.place(index, &centers[l].at(time));
+            }
+        }
+        let method = self.columns.method(METHOD);
+        for (l, (mut member, body)) in members.into_iter().zip(bodies).enumerate() {
+            let Some(horizons) = horizons(l) else {
+                all.push((member, body));
+                continue;
+            };
+            self.count(&mut 0, 1.0, 1);
+            let found = (checks.norm_drifts[l], checks.monitor.finish(l));
+            if let Err(error) = self.kept(&member, method, horizons, found) {
+                self.fail(member.body, &mut member.own, METHOD, error);
+            }
         }
     }
 
@@ -68,28 +122,20 @@ impl<'a> Scheduler<'a> {
         let most = self.options.rtol.filter(|_| !self.options.exact).unwrap_or(f64::INFINITY);
         let neglected = closed.as_ref().and_then(|closed| closed.neglected(self.times));
         match closed {
-            Some(closed) if neglected.unwrap_or(0.0) <= most => {
-                self.finish(member, closed.horizons(), closed.at_many(self.times), neglected);
-            }
+            Some(closed) if neglected.unwrap_or(0.0) <= most => self.finish(member, &closed, neglected),
             _ => self.run_single(member.body, member.own, progress),
         }
     }
 
     /// Writes the points of a body under torques, with the error of what its closed form neglects.
-    fn finish(
-        &self,
-        mut member: Member<'a>,
-        horizons: [f64; 2],
-        points: impl IntoIterator<Item = Carried>,
-        error_estimate: Option<f64>,
-    ) {
+    fn finish(&self, mut member: Member<'a>, closed: &ClosedForm, error_estimate: Option<f64>) {
         let Member { body, frame, gyrostat, start, ref torques, ref mut own, .. } = member;
-        if let Err(error) = check_horizons(start.time, self.times, horizons) {
+        if let Err(error) = check_horizons(start.time, self.times, closed.horizons()) {
             return self.fail(body, own, METHOD, error);
         }
         let mut monitor = DriftMonitor::new(gyrostat, torques, start);
         let mut norm_drift = 0.0_f64;
-        for (index, Carried { phase, center, .. }) in points.into_iter().enumerate() {
+        for (index, Carried { phase, center, .. }) in closed.at_many(self.times).into_iter().enumerate() {
             monitor.record(&phase);
             norm_drift = norm_drift.max(off_unit(phase.rotor));
             own.write(index, (frame, &gyrostat, torques), &phase, &center);
@@ -103,4 +149,9 @@ impl<'a> Scheduler<'a> {
         self.count(&mut 0, 1.0, 1);
         self.record([Outcome { body, certificate, failure: None }]);
     }
+}
+
+/// One of some bodies for each lane, the first one for those beyond.
+fn in_lanes<B: Copy>(bodies: &[B]) -> [B; TOGETHER] {
+    from_fn(|l| bodies[if l < bodies.len() { l } else { 0 }])
 }

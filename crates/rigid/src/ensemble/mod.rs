@@ -8,6 +8,7 @@
 mod adaptive;
 pub mod bins;
 mod body_run;
+mod checks;
 mod columns;
 mod exact;
 mod fixed;

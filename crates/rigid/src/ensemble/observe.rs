@@ -117,6 +117,13 @@ impl<const W: usize> LaneBodies<W> {
         fastest(InPrincipalAxes { bodies: self, rotors, omegas })
     }
 
+    /// The same from principal axes.
+    pub fn phases_in_principal_axes(&self, rotors: &[[f64; 4]; W], omegas: &[[f64; 3]; W]) -> LanePhases<W> {
+        let (rotor, omega): ([Plain<W>; 4], [Plain<W>; 3]) =
+            (in_lanes(|l| rotors[l]), in_lanes(|l| omegas[l]));
+        LanePhases { rotor: rotor.map(|lanes| lanes.0), momentum: self.momentum(omega) }
+    }
+
     /// The points at these rotors and momenta.
     pub fn points(&self, phases: LanePhases<W>) -> LanePoints<W> {
         let mut points = fastest(Observe { bodies: self, phases: &phases });

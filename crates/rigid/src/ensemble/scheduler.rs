@@ -2,6 +2,7 @@
 
 use super::Ensemble;
 use super::columns::{Columns, lock};
+use super::exact::Waiting;
 use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy, WIDE};
 use super::output::{Outputs, Share};
 use crate::error::SimulateError;
@@ -101,7 +102,7 @@ impl<'a> Scheduler<'a> {
 
     /// The number of bodies in closed form that a thread computes together: as many as there are lanes; one if motions are
     /// long, or if some threads would have none.
-    fn exact_together(&self) -> usize {
+    pub fn exact_together(&self) -> usize {
         let enough = self.ensemble.starts.len() >= self.threads * TOGETHER;
         if enough && self.times.len() < TIMES_IN_LANES { TOGETHER } else { 1 }
     }
@@ -121,8 +122,7 @@ impl<'a> Scheduler<'a> {
     pub fn next_member(&self, progress: &mut dyn FnMut(Progress) -> bool) -> Option<Member<'a>> {
         let method = self.options.method.unwrap_or(METHOD);
         let adapts = method == METHOD && self.ensemble.in_lanes(false);
-        let mut exact = Vec::new();
-        let mut next = None;
+        let (mut waiting, mut next) = (Waiting::default(), None);
         while let Some((body, own)) = self.next_body() {
             if !adapts {
                 self.run_single(body, own, progress);
@@ -134,16 +134,11 @@ impl<'a> Scheduler<'a> {
                     next = Some(member);
                     break;
                 }
-                Strategy::Exact(body) => {
-                    exact.push((member, body));
-                    if exact.len() == self.exact_together() {
-                        self.exact(&mut exact, progress);
-                    }
-                }
+                Strategy::Exact(body) => self.exact(&mut waiting, (member, body), progress),
                 Strategy::Single => self.run_single(body, member.own, progress),
             }
         }
-        self.exact(&mut exact, progress);
+        self.write_exact(&mut waiting, progress);
         next
     }
 

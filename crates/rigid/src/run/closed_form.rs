@@ -7,7 +7,6 @@ use crate::exact::damped::DampedTop;
 use crate::exact::free::FreeBody;
 use crate::exact::lagrange::HeavyTop;
 use crate::exact::larmor::LarmorSphere;
-use crate::exact::many::Tile;
 use crate::exact::motion::ExactMotion;
 use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
@@ -141,6 +140,16 @@ impl ExactBody {
         }
     }
 
+    /// The heavy top that it is.
+    pub fn heavy(&self) -> Option<HeavyTop> {
+        if let ExactBody::Heavy(top) = self { Some(*top) } else { None }
+    }
+
+    /// The damped body that it is, with the g of its torque.
+    pub fn damped(&self) -> Option<(FreeBody, f64)> {
+        if let ExactBody::Damped(body, damping) = self { Some((*body, *damping)) } else { None }
+    }
+
     /// Its rotation, unless it is not resolved.
     pub fn motion(&self) -> Option<Arc<dyn ExactMotion>> {
         Some(match self {
@@ -149,30 +158,6 @@ impl ExactBody {
             ExactBody::Damped(body, damping) => Arc::new(DampedTop::of(body, *damping).ok()?),
             ExactBody::Larmor(motion) => motion.clone(),
         })
-    }
-
-    /// The rotations of bodies under laws of one kind, set up in lanes. None for free and Larmor motions, and if a rotation
-    /// neglects something or is not resolved.
-    pub fn tile<'a>(bodies: impl Iterator<Item = &'a ExactBody>) -> Option<Tile> {
-        let other = || SimulateError::Unresolved.to_string();
-        let mut bodies = bodies.peekable();
-        match bodies.peek()? {
-            ExactBody::Heavy(_) => {
-                let tops = bodies.map(|body| match body {
-                    ExactBody::Heavy(top) if top.is_exact() => Ok(*top),
-                    _ => Err(other()),
-                });
-                Tile::lagrange(tops).ok()
-            }
-            ExactBody::Damped(..) => {
-                let bodies = bodies.map(|body| match body {
-                    ExactBody::Damped(body, damping) => Ok((*body, *damping)),
-                    _ => Err(other()),
-                });
-                Tile::damped(bodies).ok()
-            }
-            _ => None,
-        }
     }
 }
 
@@ -196,9 +181,14 @@ impl<'a> ElapsedTime<'a> {
         DoubleDouble::two_sum(time, -self.start)
     }
 
+    /// The remainder of the time since a start.
+    pub fn remainder(start: f64, time: f64) -> f64 {
+        DoubleDouble::two_sum(time, -start).lo
+    }
+
     /// The point at its time, from the state at the rounded time since the start.
     pub fn at(&self, phase: Phase) -> Phase {
-        let rest = self.elapsed(phase.time).lo;
+        let rest = ElapsedTime::remainder(self.start, phase.time);
         if rest == 0.0 {
             return phase;
         }

@@ -236,6 +236,17 @@ fn is_predicted(values: &[Bivector], allowed: f64) -> bool {
 const CHECKED_STEPS: usize = 256;
 const INSIDE: usize = 12;
 
+/// The parts of a step at which Simpson's rule evaluates a law, and then those of the samples.
+const PARTS: [f64; 3 + INSIDE] = {
+    let (mut parts, mut k) = ([0.0; 3 + INSIDE], 0);
+    (parts[1], parts[2]) = (0.5, 1.0);
+    while k < INSIDE {
+        parts[3 + k] = (k as f64 + 0.5) / INSIDE as f64;
+        k += 1;
+    }
+    parts
+};
+
 /// Whether a law depends on time in an unknown way; tables and wheels have their own stops.
 fn is_to_be_sampled(law: &Torque) -> bool {
     !law.is_autonomous() && !matches!(law, Torque::Tabulated(_) | Torque::Wheels(_))
@@ -299,14 +310,14 @@ fn misses_impulse(values: &Values, [from, to]: [f64; 2], step: f64) -> bool {
     let steps = step_count(to - from, step);
     let h = (to - from) / steps;
     let checked = (steps as usize).min(CHECKED_STEPS);
-    let times = (0..checked).flat_map(|k| {
+    let mut times = Vec::with_capacity(checked * PARTS.len());
+    for k in 0..checked {
         let begin = from + h * (steps * k as f64 / checked as f64).floor();
-        let inside = (0..INSIDE).map(move |j| (j as f64 + 0.5) / INSIDE as f64);
-        [0.0, 0.5, 1.0].into_iter().chain(inside).map(move |part| begin + h * part)
-    });
-    let Ok(values) = values(&times.collect::<Vec<_>>()) else { return false };
+        times.extend(PARTS.map(|part| begin + h * part));
+    }
+    let Ok(values) = values(&times) else { return false };
     let (mut missed, mut all) = (0.0, 0.0);
-    for of_step in values.chunks_exact(3 + INSIDE) {
+    for of_step in values.chunks_exact(PARTS.len()) {
         let (seen, inside) = of_step.split_at(3);
         let mean = inside.iter().fold(Bivector::default(), |sum, &value| sum + value) * (1.0 / INSIDE as f64);
         all += inside.iter().map(|value| value.norm()).sum::<f64>() / INSIDE as f64;

@@ -31,13 +31,14 @@ struct Parameter<'r, const W: usize> {
     input: usize,
     /// The steps, with numbers as rows.
     steps: SideBySide<'r, W>,
-    /// The bits of the numbers to which the values of the program belong.
-    now: Option<[u64; W]>,
+    /// The numbers to which the values of the program belong.
+    now: Option<[f64; W]>,
     /// Whether some row has no value now.
     missing: bool,
     lookahead: Lookahead,
-    /// The values for these, one row after the other.
+    /// The values for these, one row after the other, of this number of components.
     values: Vec<f64>,
+    count: usize,
 }
 
 impl Runner {
@@ -57,8 +58,10 @@ impl Runner {
         if own.results.is_empty() {
             return self.part(known, self.whole());
         }
+        let count = own.results.iter().map(|&id| size(self.steps[id].grades)).sum();
         let parameter = Parameter {
             input,
+            count,
             steps: self.part(known, own)?,
             now: None,
             missing: false,
@@ -96,12 +99,11 @@ impl<const W: usize> SideBySide<'_, W> {
     #[inline]
     pub fn set_parameter(&mut self, input: usize, numbers: &[f64; W]) {
         self.input(input)[0].0 = *numbers;
-        if let Some(parameter) = &mut self.parameter {
-            let bits = numbers.map(f64::to_bits);
-            if parameter.now != Some(bits) {
-                parameter.now = Some(bits);
-                parameter.missing = parameter.fill(numbers, &self.schedule.given, &mut self.lanes);
-            }
+        if let Some(parameter) = &mut self.parameter
+            && !parameter.now.as_ref().is_some_and(|now| have_same_bits(now, numbers))
+        {
+            parameter.now = Some(*numbers);
+            parameter.missing = parameter.fill(numbers, &self.schedule.given, &mut self.lanes);
         }
     }
 
@@ -170,14 +172,20 @@ impl<const W: usize> SideBySide<'_, W> {
 impl<const W: usize> Parameter<'_, W> {
     /// Fills the lanes with the values for these numbers; whether some row has none.
     fn fill(&mut self, numbers: &[f64; W], given: &[Range<usize>], lanes: &mut [Lane<W>]) -> bool {
-        let count = given.iter().map(ExactSizeIterator::len).sum::<usize>();
-        let shared = numbers.iter().all(|x| x.to_bits() == numbers[0].to_bits());
-        if shared && let Some(place) = self.lookahead.find(numbers[0]) {
-            let values = &self.values[place * count..(place + 1) * count];
-            for (lane, &x) in given.iter().cloned().flatten().zip(values) {
-                lanes[lane] = Lane::filled(x);
+        if have_same_bits(&[numbers[0]; W], numbers)
+            && let Some(place) = self.lookahead.find(numbers[0])
+        {
+            let mut values = &self.values[place * self.count..(place + 1) * self.count];
+            let mut missing = false;
+            for range in given {
+                let (own, others) = values.split_at(range.len());
+                for (lane, &x) in lanes[range.clone()].iter_mut().zip(own) {
+                    *lane = Lane::filled(x);
+                    missing |= x.is_nan();
+                }
+                values = others;
             }
-            return values.iter().any(|x| x.is_nan());
+            return missing;
         }
         self.steps.set_parameter(self.input, numbers);
         self.steps.run();
@@ -191,17 +199,34 @@ impl<const W: usize> Parameter<'_, W> {
     }
 
     fn foresee(&mut self, numbers: impl Iterator<Item = f64>) {
-        let Parameter { input, steps, lookahead, values, .. } = self;
-        values.clear();
-        for numbers in lookahead.announce(numbers).chunks(W) {
+        let Parameter { input, steps, lookahead, values, count, .. } = self;
+        let numbers = lookahead.announce(numbers);
+        values.resize(numbers.len() * *count, 0.0);
+        for (numbers, values) in numbers.chunks(W).zip(values.chunks_mut((W * *count).max(1))) {
             let mut rows = [numbers[0]; W];
             rows[..numbers.len()].copy_from_slice(numbers);
             steps.set_parameter(*input, &rows);
             steps.run();
-            for row in 0..numbers.len() {
-                let results = (0..steps.results.len()).flat_map(|number| steps.result(number));
-                values.extend(results.map(|lane| lane.0[row]));
+            let mut first = 0;
+            for number in 0..steps.results.len() {
+                let lanes = steps.result(number);
+                for (k, lane) in lanes.iter().enumerate() {
+                    for (values, &x) in values.chunks_exact_mut(*count).zip(&lane.0) {
+                        values[first + k] = x;
+                    }
+                }
+                first += lanes.len();
             }
         }
     }
+}
+
+/// Whether numbers are the same, also NaN and zeros.
+#[inline(always)]
+fn have_same_bits<const W: usize>(a: &[f64; W], b: &[f64; W]) -> bool {
+    let mut different = 0;
+    for row in 0..W {
+        different |= a[row].to_bits() ^ b[row].to_bits();
+    }
+    different == 0
 }

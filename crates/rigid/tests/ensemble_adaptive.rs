@@ -200,23 +200,49 @@ fn closed_forms_under_torques_are_as_alone() {
         let damped = (0..count).map(|i| Torque::Damping(0.05 * (i % 4) as f64)).collect();
         for all in [tops(count), Ensemble { laws: vec![Rows::new(damped)], ..bodies(count, vec![]) }] {
             assert_as_alone(&all, &TIMES, &Options::default(), 1e-12);
-            let found = run(&all, &TIMES, &Options::default());
-            assert_eq!(found.summary.method_names, ["exact"]);
-            for body in 0..count {
-                let alone = all.problem(body).simulate(&TIMES, Options::default(), &mut |_| true).unwrap();
-                for (i, rotor) in alone.states().rotors.iter().enumerate() {
-                    let row = body * TIMES.len() + i;
-                    assert_eq!(found.rotors[4 * row..][..4], rotor.components(), "body {body} of {count}");
+            for threads in [1, 2] {
+                let found = run_with(&all, &TIMES, &Options::default(), threads, &mut |_| true).unwrap();
+                assert_eq!(found.summary.method_names, ["exact"]);
+                for body in 0..count {
+                    let problem = all.problem(body);
+                    let alone = problem.simulate(&TIMES, Options::default(), &mut |_| true).unwrap();
+                    for (i, rotor) in alone.states().rotors.iter().enumerate() {
+                        let row = body * TIMES.len() + i;
+                        assert_eq!(
+                            found.rotors[4 * row..][..4],
+                            rotor.components(),
+                            "body {body} of {count}"
+                        );
+                    }
                 }
             }
         }
     }
-    // One beyond its horizon fails, and the others have their motions.
-    let mut all = tops(20);
-    all.starts[7].omega = Bivector([1.0, 1e12, 1.0]);
-    let found = run(&all, &[1e6], &Options::default());
-    assert!(matches!(found.summary.failures[..], [Failure { body: 7, .. }]), "{:?}", found.summary.failures);
-    assert!((0..20).all(|body| found.rotors[4 * body].is_nan() == (body == 7)));
+}
+
+/// A body beyond its horizon fails at once, though its time since the start is rounded; the others have their motions, and
+/// all are counted.
+#[test]
+fn closed_forms_beyond_their_horizons_fail_at_once() {
+    for count in [3, 20] {
+        let damped = vec![Rows::new(vec![Torque::Damping(1e-3)])];
+        let damped = Ensemble { laws: damped, ..bodies(count, vec![]) };
+        for mut all in [tops(count), damped, bodies(count, vec![])] {
+            all.starts[1].time = 0.1;
+            all.starts[1].omega = Bivector([1.0, 1e30, 1.0]);
+            let mut last = 0.0;
+            let mut progress = |at: Progress| {
+                last = at.fraction;
+                true
+            };
+            let found = run_with(&all, &[1.0], &Options::default(), 1, &mut progress).unwrap();
+            let failures = &found.summary.failures;
+            assert!(matches!(failures[..], [Failure { body: 1, .. }]), "{failures:?}");
+            assert!(matches!(failures[0].error, SimulateError::BeyondHorizon { .. }), "{failures:?}");
+            assert!((0..count).all(|body| found.rotors[4 * body].is_nan() == (body == 1)));
+            assert_eq!(last, 1.0);
+        }
+    }
 }
 
 /// Results do not depend on the other bodies, their number and order, or the threads.

@@ -45,11 +45,12 @@ pub(super) struct Checks<'t> {
     gyrostats: [Gyrostat; TOGETHER],
     torques: Torques<'t>,
     starts: [f64; TOGETHER],
+    known: [bool; TOGETHER],
 }
 
 impl<'t> Checks<'t> {
-    /// Lanes beyond the members are of the first one.
-    pub fn new(members: &[Member], torques: Torques<'t>) -> Checks<'t> {
+    /// Lanes beyond the members are of the first one. `known` are those of [`Scheduler::known`].
+    pub fn new(members: &[Member], torques: Torques<'t>, known: [bool; TOGETHER]) -> Checks<'t> {
         let gyrostats = from_fn(|l| of(members, l).gyrostat);
         let bodies = LaneBodies::new(members);
         let starts = bodies.points(LanePhases::starts(members));
@@ -60,6 +61,7 @@ impl<'t> Checks<'t> {
             bodies,
             gyrostats,
             torques,
+            known,
         }
     }
 
@@ -91,9 +93,10 @@ impl<'t> Checks<'t> {
         (points, energies)
     }
 
-    /// The first lanes whose times since the start are rounded.
+    /// The first lanes whose times since the start are rounded. Steps over the remainder are few only within the horizon.
     fn moved(&self, times: &[f64; TOGETHER], count: usize) -> [bool; TOGETHER] {
-        from_fn(|l| l < count && ElapsedTime::remainder(self.starts[l], times[l]) != 0.0)
+        let is_rounded = |l: usize| ElapsedTime::remainder(self.starts[l], times[l]) != 0.0;
+        from_fn(|l| l < count && self.known[l] && is_rounded(l))
     }
 
     /// Moves some lanes to their exact times and measures the first ones.
@@ -134,6 +137,17 @@ impl<'t> Checks<'t> {
 }
 
 impl Scheduler<'_> {
+    /// Whether the motion of each lane is known at all times, from its horizons.
+    pub(super) fn known(
+        &self,
+        members: &[Member],
+        horizons: impl Fn(usize) -> Option<[f64; 2]>,
+    ) -> [bool; TOGETHER] {
+        let within =
+            |l: usize, horizons| check_horizons(of(members, l).start.time, self.times, horizons).is_ok();
+        from_fn(|l| horizons(l).is_some_and(|horizons| within(l, horizons)))
+    }
+
     /// Records a body by what its checks found. An error if its motion is not known, or not kept.
     pub(super) fn kept(
         &self,

@@ -1,7 +1,7 @@
 //! Bodies of an ensemble under torques in closed form.
 
 use super::checks::{Checks, Rows};
-use super::member::{Member, Outcome, of};
+use super::member::{Member, Outcome, Waiting, of};
 use super::scheduler::Scheduler;
 use crate::exact::damped::DampedMotions;
 use crate::exact::lagrange::{HeavyTop, LagrangeTops};
@@ -15,14 +15,6 @@ use std::array::from_fn;
 
 /// The name of the method in certificates.
 pub(super) const METHOD: &str = "exact";
-
-/// Bodies under torques in closed form that wait for others, with what their closed forms need.
-#[derive(Default)]
-pub(super) struct Waiting<'a> {
-    members: Vec<(Member<'a>, ExactBody)>,
-    tops: Option<Box<LagrangeTops<TOGETHER>>>,
-    damped: Option<Box<DampedMotions<TOGETHER>>>,
-}
 
 impl<'a> Scheduler<'a> {
     /// Takes a body. Writes the motions of those that wait as soon as there are as many as are computed together.
@@ -44,7 +36,7 @@ impl<'a> Scheduler<'a> {
         if members.is_empty() {
             return;
         }
-        if members.len() > 1 {
+        if self.are_together(members.len()) {
             self.side_by_side(members, tops, damped);
         }
         for (member, body) in members.drain(..) {
@@ -88,7 +80,8 @@ impl<'a> Scheduler<'a> {
         let count = all.len();
         let (mut members, bodies): (Vec<_>, Vec<_>) = all.drain(..).unzip();
         let torques = from_fn(|l| of(&members, l).torques.clone());
-        let (mut checks, mut rows) = (Checks::new(&members, torques), Rows::default());
+        let known = self.known(&members, |l| if l < count { horizons(l) } else { None });
+        let (mut checks, mut rows) = (Checks::new(&members, torques, known), Rows::default());
         let centers: Vec<_> = members.iter().map(|member| self.center(member.body)).collect();
         let starts: [f64; TOGETHER] = from_fn(|l| of(&members, l).start.time);
         for (index, &time) in self.times.iter().enumerate() {
@@ -130,6 +123,7 @@ impl<'a> Scheduler<'a> {
     /// Writes the points of a body under torques, with the error of what its closed form neglects.
     fn finish(&self, mut member: Member<'a>, closed: &ClosedForm, error_estimate: Option<f64>) {
         let Member { body, frame, gyrostat, start, ref torques, ref mut own, .. } = member;
+        self.count(&mut 0, 1.0, 1);
         if let Err(error) = check_horizons(start.time, self.times, closed.horizons()) {
             return self.fail(body, own, METHOD, error);
         }
@@ -146,7 +140,6 @@ impl<'a> Scheduler<'a> {
         }
         let certificate =
             Certificate { method: METHOD, error_estimate, drifts, norm_drift, ..Certificate::default() };
-        self.count(&mut 0, 1.0, 1);
         self.record([Outcome { body, certificate, failure: None }]);
     }
 }

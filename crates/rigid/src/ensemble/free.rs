@@ -41,13 +41,12 @@ impl<'a> Scheduler<'a> {
 
     /// Writes the motions of free bodies, at most as many as there are lanes, and leaves none.
     fn free(&self, members: &mut Vec<Member<'a>>, motions: &mut FreeMotions<TOGETHER>) {
-        // The lanes hold all bodies at a time, or the times of one body.
-        let alone = members.len() * self.times.len().div_ceil(TOGETHER);
-        if alone <= self.times.len() / 2 || members.len() == 1 {
+        if !self.are_together(members.len()) {
             return members.drain(..).for_each(|member| self.free_alone(member));
         }
         motions.set_up(&from_fn(|l| free_body(of(members, l))));
-        let (mut checks, mut rows) = (Checks::new(members, NO_TORQUES), Rows::default());
+        let known = self.known(members, |l| Some([motions.horizons[l]; 2]));
+        let (mut checks, mut rows) = (Checks::new(members, NO_TORQUES, known), Rows::default());
         let starts: [f64; TOGETHER] = from_fn(|l| of(members, l).start.time);
         for (index, &time) in self.times.iter().enumerate() {
             motions.at(&starts.map(|start| time - start), &mut rows.rotors, &mut rows.omegas);
@@ -69,7 +68,9 @@ impl<'a> Scheduler<'a> {
     /// Writes the motion of a free body.
     fn free_alone(&self, mut member: Member<'a>) {
         let (motion, start) = (free_body(&member).motion(), member.start.time);
-        let mut checks = Checks::new(slice::from_ref(&member), NO_TORQUES);
+        let alone = slice::from_ref(&member);
+        let known = self.known(alone, |_| Some([motion.horizon(); 2]));
+        let mut checks = Checks::new(alone, NO_TORQUES, known);
         let elapsed: Vec<f64> = self.times.iter().map(|time| time - start).collect();
         let own = &mut member.own;
         motion.at_many(Threads::ONE, &elapsed, own.rotors, own.omegas);

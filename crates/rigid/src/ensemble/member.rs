@@ -1,6 +1,8 @@
 //! Members of an ensemble: body, plan and outcome.
 
 use crate::error::SimulateError;
+use crate::exact::damped::DampedMotions;
+use crate::exact::lagrange::LagrangeTops;
 use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::methods::splitting::turns::Kind;
@@ -8,6 +10,7 @@ use crate::run::certificate::Certificate;
 use crate::run::closed_form::ExactBody;
 use crate::run::output::BodyOutput;
 use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::rows::curve::TOGETHER;
 use polhode_ga::{Bivector, Rotor};
 use std::borrow::Cow;
 
@@ -49,6 +52,14 @@ pub(super) enum Strategy {
     Exact(ExactBody),
     /// As a single body.
     Single,
+}
+
+/// Bodies under torques in closed form that wait for others, with what their closed forms need.
+#[derive(Default)]
+pub(super) struct Waiting<'a> {
+    pub members: Vec<(Member<'a>, ExactBody)>,
+    pub tops: Option<Box<LagrangeTops<TOGETHER>>>,
+    pub damped: Option<Box<DampedMotions<TOGETHER>>>,
 }
 
 /// The outcome of a body.

@@ -2,8 +2,7 @@
 
 use super::Ensemble;
 use super::columns::{Columns, lock};
-use super::exact::Waiting;
-use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy, WIDE};
+use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy, WIDE, Waiting};
 use super::output::{Outputs, Share};
 use crate::error::SimulateError;
 use crate::exact::many::TIMES_IN_LANES;
@@ -105,6 +104,11 @@ impl<'a> Scheduler<'a> {
     pub fn exact_together(&self) -> usize {
         let enough = self.ensemble.starts.len() >= self.threads * TOGETHER;
         if enough && self.times.len() < TIMES_IN_LANES { TOGETHER } else { 1 }
+    }
+
+    /// Whether the lanes hold this number of bodies at a time rather than the times of one.
+    pub fn are_together(&self, bodies: usize) -> bool {
+        bodies > 1 && bodies * self.times.len().div_ceil(TOGETHER) > self.times.len() / 2
     }
 
     /// Whether the run was stopped.

@@ -269,7 +269,7 @@ impl<const C: usize> Hyperbolic<C> {
         }
         let (nome, s, two) = (root * root, Lanes(*s), Numbers::all(2.0));
         self.nome = nome.0;
-        // The sines and cosines of odd multiples of γ, with their weights q'^{(n² + n)/2}, below q' but for the first.
+        // The sines and cosines of odd multiples of γ, with their weights q'^{(n² + n)/2}, at most q' but for the first.
         let double = of_sum(odd, odd);
         let [mut sin, mut cos] = odd.map(|first| [first; 4]);
         let [mut pronics, mut squares] = [[Numbers::all(1.0); 4]; 2];

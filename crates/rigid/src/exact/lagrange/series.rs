@@ -207,7 +207,7 @@ impl<const C: usize> Fourth<C> {
         Fourth { side: none, versine: none, cos: none, sin: none }
     }
 
-    /// Takes the product of the side s and of the sine and cosine of γ.
+    /// Sets the product for the zero on side s at γ, from the sine and cosine of γ.
     #[inline(always)]
     fn set(&mut self, side: &[f64; C], sin: Numbers<C>, cos: Numbers<C>) {
         let [double_sin, double_cos] = of_sum([sin, cos], [sin, cos]);

@@ -6,6 +6,7 @@
 
 use super::Path;
 use super::double;
+use super::map::BUILT_WITH_FMA;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// `W` numbers.
@@ -22,6 +23,16 @@ pub trait Work {
 
     /// Runs it. `#[inline(always)]`, like all arithmetic that it calls; `FUSED` for [`Lanes`].
     fn run<const FUSED: bool>(self) -> Self::Output;
+
+    /// Runs it where no wide instructions were detected. Where lanes have the bits of one alone, large work may be done
+    /// one by one: without wide instructions its code in lanes is long, and hardly faster.
+    #[inline(always)]
+    fn run_portably(self) -> Self::Output
+    where
+        Self: Sized,
+    {
+        self.run::<BUILT_WITH_FMA>()
+    }
 }
 
 /// Runs the work with the widest instructions of this machine.

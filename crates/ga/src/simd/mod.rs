@@ -262,7 +262,7 @@ impl Path {
 
     /// Does work that is compiled for this path.
     pub fn run<T: Work>(self, work: T) -> T::Output {
-        by_path!(self, run(work), work.run::<BUILT_WITH_FMA>())
+        by_path!(self, run(work), work.run_portably())
     }
 
     /// The short method of a map for one row. Rounding errors of products take one instruction where it is compiled for

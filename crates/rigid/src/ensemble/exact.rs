@@ -50,7 +50,7 @@ impl<'a> Scheduler<'a> {
         &self,
         members: &mut Vec<(Member<'a>, ExactBody)>,
         tops: &mut Option<Box<LagrangeTops<TOGETHER>>>,
-        damped: &mut Option<Box<DampedMotions<TOGETHER>>>,
+        damped: &mut Option<Box<DampedMotions>>,
     ) {
         let bodies = || members.iter().map(|(_, body)| body);
         if let Some(bodies) = bodies().map(ExactBody::heavy).collect::<Option<Vec<HeavyTop>>>() {

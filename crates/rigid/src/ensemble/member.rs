@@ -59,7 +59,7 @@ pub(super) enum Strategy {
 pub(super) struct Waiting<'a> {
     pub members: Vec<(Member<'a>, ExactBody)>,
     pub tops: Option<Box<LagrangeTops<TOGETHER>>>,
-    pub damped: Option<Box<DampedMotions<TOGETHER>>>,
+    pub damped: Option<Box<DampedMotions>>,
 }
 
 /// The outcome of a body.

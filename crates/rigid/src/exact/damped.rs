@@ -96,20 +96,20 @@ impl DampedTop {
     }
 }
 
-/// The motions of `W` damped bodies, one in each lane.
+/// The motions of damped bodies, one in each lane.
 #[derive(Clone, Debug)]
-pub(crate) struct DampedMotions<const W: usize> {
-    free: FreeMotions<W>,
+pub(crate) struct DampedMotions {
+    free: FreeMotions<TOGETHER>,
     /// Valid where the free motion is circular.
-    pub(super) circular: DampedFlow<Circular<W>, W>,
+    pub(super) circular: DampedFlow<Circular<TOGETHER>, TOGETHER>,
     /// Valid elsewhere.
-    pub(super) hyperbolic: DampedFlow<Hyperbolic<W>, W>,
+    pub(super) hyperbolic: DampedFlow<Hyperbolic<TOGETHER>, TOGETHER>,
     /// [`DampedTop::horizons`] of each, or why it is not resolved.
-    pub horizons: [Result<[f64; 2], SimulateError>; W],
+    pub horizons: [Result<[f64; 2], SimulateError>; TOGETHER],
 }
 
-impl<const W: usize> Default for DampedMotions<W> {
-    fn default() -> DampedMotions<W> {
+impl Default for DampedMotions {
+    fn default() -> DampedMotions {
         DampedMotions {
             free: FreeMotions::default(),
             circular: DampedFlow::empty(),
@@ -119,14 +119,14 @@ impl<const W: usize> Default for DampedMotions<W> {
     }
 }
 
-impl<const W: usize> DampedMotions<W> {
+impl DampedMotions {
     /// Replaces the motions by those of other bodies, from each [`DampedTop::body`] and its g. Each has the bits that it has
     /// alone.
-    pub fn set_up(&mut self, bodies: &[(FreeBody, f64); W]) {
+    pub fn set_up(&mut self, bodies: &[(FreeBody, f64); TOGETHER]) {
         self.free.set_up(&bodies.map(|(body, _)| body));
         let dampings = bodies.map(|(_, g)| g);
         self.circular = DampedFlow::new(self.free.circular, dampings);
-        if self.free.is_circular != [true; W] {
+        if self.free.is_circular != [true; TOGETHER] {
             self.hyperbolic = DampedFlow::new(self.free.hyperbolic, dampings);
         }
         for (l, (body, g)) in bodies.iter().enumerate() {
@@ -138,9 +138,7 @@ impl<const W: usize> DampedMotions<W> {
     pub(super) fn lanes(&self, count: usize) -> [Vec<usize>; 2] {
         self.free.lanes(count)
     }
-}
 
-impl DampedMotions<TOGETHER> {
     /// [`FreeMotions::at`].
     pub fn at(
         &self,

@@ -90,15 +90,6 @@ impl<const W: usize> FreeMotions<W> {
         [circular, hyperbolic]
     }
 
-    /// Replaces the motions by those of other bodies. Each has the bits that it has alone.
-    pub fn set_up(&mut self, bodies: &[FreeBody; W]) {
-        if are_moderate(bodies) {
-            fastest(SetUp::<W, false> { bodies, motions: self });
-        } else {
-            fastest(SetUp::<W, true> { bodies, motions: self });
-        }
-    }
-
     /// The same; whether each turns steadily, and the orbits of the others.
     #[inline(always)]
     fn filled<N: Precise<W, FMA>, const FMA: bool>(
@@ -146,6 +137,25 @@ impl<const W: usize> FreeMotions<W> {
 }
 
 impl FreeMotions<TOGETHER> {
+    /// Replaces the motions by those of other bodies. Each has the bits that it has alone.
+    pub fn set_up(&mut self, bodies: &[FreeBody; TOGETHER]) {
+        if are_moderate(bodies) {
+            fastest(SetUp::<false> { bodies, motions: self });
+        } else {
+            fastest(SetUp::<true> { bodies, motions: self });
+        }
+    }
+
+    fn put(&mut self, l: usize, motion: &FreeMotion) {
+        self.horizons[l] = motion.horizon;
+        match &motion.flow.0 {
+            Form::FreeCircular(flow) => self.circular.put(l, flow),
+            Form::FreeHyperbolic(flow) => self.hyperbolic.put(l, flow),
+            _ => unreachable!("the form of a free body"),
+        }
+        self.is_circular[l] = matches!(motion.flow.0, Form::FreeCircular(_));
+    }
+
     /// States of all at times of their own: rows of four rotor components and of three of the angular velocity.
     pub fn at(
         &self,
@@ -158,9 +168,9 @@ impl FreeMotions<TOGETHER> {
 }
 
 /// With numbers beyond the range of floats where they are `WIDE`.
-struct SetUp<'a, const W: usize, const WIDE: bool> {
-    bodies: &'a [FreeBody; W],
-    motions: &'a mut FreeMotions<W>,
+struct SetUp<'a, const WIDE: bool> {
+    bodies: &'a [FreeBody; TOGETHER],
+    motions: &'a mut FreeMotions<TOGETHER>,
 }
 
 /// Bodies that do not turn steadily, in lanes.
@@ -171,25 +181,30 @@ struct Tumbling<'a, N, const W: usize, const FMA: bool> {
     phases: Phases<W>,
 }
 
-impl<const W: usize, const WIDE: bool> Work for SetUp<'_, W, WIDE> {
+impl<const WIDE: bool> Work for SetUp<'_, WIDE> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         if WIDE {
-            self.motions.filled::<Wides<W, FMA>, FMA>(self.bodies);
+            self.motions.filled::<Wides<TOGETHER, FMA>, FMA>(self.bodies);
         } else {
-            self.motions.filled::<DoubleDoubles<W, FMA>, FMA>(self.bodies);
+            self.motions.filled::<DoubleDoubles<TOGETHER, FMA>, FMA>(self.bodies);
+        }
+    }
+
+    fn run_portably(self) {
+        for (l, body) in self.bodies.iter().enumerate() {
+            self.motions.put(l, &body.motion());
         }
     }
 }
 
-/// Whether all invariants of the orbits, with their low parts, are in the range of floats. In the browser the same code
-/// serves all bodies, since code for both would make the page larger.
-fn are_moderate<const W: usize>(bodies: &[FreeBody; W]) -> bool {
+/// Whether all invariants of the orbits, with their low parts, are in the range of floats.
+fn are_moderate(bodies: &[FreeBody; TOGETHER]) -> bool {
     // Invariants are products of at most four moments, three differences of moments, each 0 or at least 2⁻⁵² of the moments,
     // and six rates, in units of the largest.
-    let mut moderate = cfg!(not(target_family = "wasm"));
+    let mut moderate = true;
     for FreeBody { moments, omega, .. } in bodies {
         moderate &= are_within(moments, 1e-6 * power_of_two(*moments), 4.0 * power_of_two(*moments));
         moderate &= are_within(&omega.0, 1e-15 * power_of_two(omega.0), 4.0 * power_of_two(omega.0));

@@ -82,15 +82,6 @@ impl<const W: usize> Default for LagrangeTops<W> {
 }
 
 impl<const W: usize> LagrangeTops<W> {
-    /// Replaces the motions by those of other tops. Each has the bits that it has alone.
-    pub fn set_up(&mut self, tops: &[HeavyTop; W]) {
-        if are_moderate(tops) {
-            fastest(SetUp::<W, false> { tops, motions: self });
-        } else {
-            fastest(SetUp::<W, true> { tops, motions: self });
-        }
-    }
-
     #[inline(always)]
     fn filled<N: Precise<W, FMA>, const FMA: bool>(
         &mut self,
@@ -136,6 +127,29 @@ impl<const W: usize> LagrangeTops<W> {
 }
 
 impl LagrangeTops<TOGETHER> {
+    /// Replaces the motions by those of other tops. Each has the bits that it has alone.
+    pub fn set_up(&mut self, tops: &[HeavyTop; TOGETHER]) {
+        if are_moderate(tops) {
+            fastest(SetUp::<false> { tops, motions: self });
+        } else {
+            fastest(SetUp::<true> { tops, motions: self });
+        }
+    }
+
+    fn put(&mut self, l: usize, motion: Result<LagrangeTop, SimulateError>) {
+        self.resolved[l] = motion.is_ok();
+        let Ok(motion) = motion else { return };
+        self.steady[l] = motion.orbit.is_none();
+        self.horizons[l] = motion.horizon;
+        match &motion.flow.0 {
+            Form::LagrangeCircular(flow) => self.circular.put(l, flow),
+            Form::LagrangeHyperbolic(flow) => self.hyperbolic.put(l, flow),
+            // Steady tops have the motions of free bodies.
+            _ => {}
+        }
+        self.is_circular[l] = !matches!(motion.flow.0, Form::LagrangeHyperbolic(_));
+    }
+
     /// Whether the motion of a top is that of its lane.
     pub fn has(&self, l: usize) -> bool {
         self.resolved[l] & !self.steady[l]
@@ -153,29 +167,34 @@ impl LagrangeTops<TOGETHER> {
 }
 
 /// With numbers beyond the range of floats where they are `WIDE`.
-struct SetUp<'a, const W: usize, const WIDE: bool> {
-    tops: &'a [HeavyTop; W],
-    motions: &'a mut LagrangeTops<W>,
+struct SetUp<'a, const WIDE: bool> {
+    tops: &'a [HeavyTop; TOGETHER],
+    motions: &'a mut LagrangeTops<TOGETHER>,
 }
 
-impl<const W: usize, const WIDE: bool> Work for SetUp<'_, W, WIDE> {
+impl<const WIDE: bool> Work for SetUp<'_, WIDE> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         if WIDE {
-            self.motions.filled::<Wides<W, FMA>, FMA>(self.tops);
+            self.motions.filled::<Wides<TOGETHER, FMA>, FMA>(self.tops);
         } else {
-            self.motions.filled::<DoubleDoubles<W, FMA>, FMA>(self.tops);
+            self.motions.filled::<DoubleDoubles<TOGETHER, FMA>, FMA>(self.tops);
+        }
+    }
+
+    fn run_portably(self) {
+        for (l, top) in self.tops.iter().enumerate() {
+            self.motions.put(l, top.motion());
         }
     }
 }
 
-/// Whether all invariants of the orbits, with their low parts, are in the range of floats. In the browser the same code
-/// serves all tops, since code for both would make the page larger.
-fn are_moderate<const W: usize>(tops: &[HeavyTop; W]) -> bool {
+/// Whether all invariants of the orbits, with their low parts, are in the range of floats.
+fn are_moderate(tops: &[HeavyTop; TOGETHER]) -> bool {
     // Invariants are products of up to four squares of tilts, rates in units of the largest, and cancelled differences of them.
-    let mut moderate = cfg!(not(target_family = "wasm"));
+    let mut moderate = true;
     for HeavyTop { axes, rotor, omega, scale } in tops {
         let gravity = axes.c / axes.i1 / scale / scale;
         moderate &= are_within(&[axes.i1, axes.i3, axes.c], 1e-100, 1e100) & (axes.i3 >= 1e-6 * axes.i1);

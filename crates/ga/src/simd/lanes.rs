@@ -6,7 +6,6 @@
 
 use super::Path;
 use super::double;
-use super::map::BUILT_WITH_FMA;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// `W` numbers.
@@ -23,21 +22,29 @@ pub trait Work {
 
     /// Runs it. `#[inline(always)]`, like all arithmetic that it calls; `FUSED` for [`Lanes`].
     fn run<const FUSED: bool>(self) -> Self::Output;
-
-    /// Runs it where no wide instructions were detected. Where lanes have the bits of one alone, large work may be done
-    /// one by one: without wide instructions its code in lanes is long, and hardly faster.
-    #[inline(always)]
-    fn run_portably(self) -> Self::Output
-    where
-        Self: Sized,
-    {
-        self.run::<BUILT_WITH_FMA>()
-    }
 }
 
 /// Runs the work with the widest instructions of this machine.
 pub fn fastest<T: Work>(work: T) -> T::Output {
     Path::best().run(work)
+}
+
+/// The same, but None on a machine without wide instructions. For large work that can be done one by one: without wide
+/// instructions its code in lanes is the longest of all, and hardly faster.
+pub fn with_wide_instructions<T: Work>(work: T) -> Option<T::Output> {
+    Path::best().run_if_wide(work)
+}
+
+/// Work that says that it was done.
+pub(super) struct Done<T>(pub T);
+
+impl<T: Work> Work for Done<T> {
+    type Output = Option<T::Output>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Option<T::Output> {
+        Some(self.0.run::<FUSED>())
+    }
 }
 
 impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {

@@ -24,7 +24,7 @@ mod workers;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use lanes::Work;
+use lanes::{Done, Work};
 use map::{BUILT_WITH_FMA, Map};
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -262,7 +262,12 @@ impl Path {
 
     /// Does work that is compiled for this path.
     pub fn run<T: Work>(self, work: T) -> T::Output {
-        by_path!(self, run(work), work.run_portably())
+        by_path!(self, run(work), work.run::<BUILT_WITH_FMA>())
+    }
+
+    /// The same; None on the portable path.
+    pub fn run_if_wide<T: Work>(self, work: T) -> Option<T::Output> {
+        by_path!(self, run(Done(work)), None)
     }
 
     /// The short method of a map for one row. Rounding errors of products take one instruction where it is compiled for

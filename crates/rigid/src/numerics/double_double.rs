@@ -144,6 +144,16 @@ impl<const W: usize, const FMA: bool> DoubleDoubles<W, FMA> {
         DoubleDouble { hi: self.hi[l], lo: self.lo[l] }
     }
 
+    /// Sums of numbers with the same signs: nothing cancels, so that the low parts need no exact sum.
+    #[inline(always)]
+    pub fn plus(mut self, o: Self) -> Self {
+        for l in 0..W {
+            let (hi, e) = double::two_sum(self.hi[l], o.hi[l]);
+            (self.hi[l], self.lo[l]) = double::quick_two_sum(hi, e + (self.lo[l] + o.lo[l]));
+        }
+        self
+    }
+
     #[inline(always)]
     pub fn sqrt(mut self) -> Self {
         for l in 0..W {

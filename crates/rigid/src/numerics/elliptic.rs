@@ -7,7 +7,7 @@
 //! it has alone.
 
 use super::double_double::{DoubleDouble, DoubleDoubles};
-use super::precise::Precise;
+use super::precise::{Precise, Real};
 
 /// The series' next term is below rounding once the arguments agree to this relative spread: for `R_F`, with terms up to the
 /// seventh degree (DLMF 19.36.1), and for `R_J`, up to the fifth.
@@ -158,12 +158,11 @@ impl<const W: usize, const FMA: bool> Means<W, FMA> {
         // The root of any k' is in the range of floats.
         let (mut a, mut g) = (DoubleDoubles::all(DoubleDouble::ONE), kc.narrowed());
         let mut root = kc.sqrt().narrowed();
-        let half = DoubleDoubles::all(0.5.into());
         let mut products = [DoubleDoubles::all(DoubleDouble::ZERO); STEPS];
         let (mut open, mut own, mut count) = ([true; W], [0.0; W], 0);
         for product in &mut products {
             *product = (root * root).or(&open, a * a);
-            a = ((a + g) * half).or(&open, a);
+            a = a.plus(g).half().or(&open, a);
             let between = (a - g).abs();
             count += 1;
             for l in 0..W {
@@ -191,14 +190,13 @@ impl<const W: usize, const FMA: bool> Means<W, FMA> {
     #[inline(always)]
     pub fn sum(&self, p2: DoubleDoubles<W, FMA>) -> DoubleDoubles<W, FMA> {
         let zero = DoubleDoubles::all(DoubleDouble::ZERO);
-        let two = DoubleDoubles::all(2.0.into());
         let (mut p2, mut p) = (p2, p2.sqrt());
         let (mut term, mut sum) = (DoubleDoubles::all(DoubleDouble::ONE), zero);
         for step in 0..SUMMED {
             sum = sum + term;
             let product = if step < self.count { self.products[step] } else { self.mean * self.mean };
-            let whole = p2 + product;
-            term = term * (p2 - product) / (whole * two);
+            let whole = p2.plus(product);
+            term = term * (p2 - product) / whole.twice();
             let mut open = [false; W];
             for l in 0..W {
                 open[l] = (((step + 1) as f64) < self.own[l]) | (term.hi[l].abs() > 1e-33);
@@ -207,7 +205,7 @@ impl<const W: usize, const FMA: bool> Means<W, FMA> {
                 break;
             }
             term = term.or(&open, zero);
-            p = whole / (p * two);
+            p = whole / p.twice();
             p2 = p * p;
         }
         sum

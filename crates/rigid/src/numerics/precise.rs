@@ -12,12 +12,20 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub(crate) trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// The same number in each lane.
     fn all(x: f64) -> Self;
+
+    /// Twice each, without a rounding.
+    fn twice(self) -> Self;
 }
 
 impl<const W: usize, const FUSED: bool> Real for Lanes<W, FUSED> {
     #[inline(always)]
     fn all(x: f64) -> Self {
         Lanes([x; W])
+    }
+
+    #[inline(always)]
+    fn twice(self) -> Self {
+        self + self
     }
 }
 
@@ -26,12 +34,22 @@ impl<const W: usize, const FMA: bool> Real for DoubleDoubles<W, FMA> {
     fn all(x: f64) -> Self {
         [x; W].into()
     }
+
+    #[inline(always)]
+    fn twice(self) -> Self {
+        self.scaled(&[2.0; W])
+    }
 }
 
 impl<const W: usize, const FMA: bool> Real for Wides<W, FMA> {
     #[inline(always)]
     fn all(x: f64) -> Self {
         [x; W].into()
+    }
+
+    #[inline(always)]
+    fn twice(self) -> Self {
+        self.in_units(&[0.5; W])
     }
 }
 
@@ -59,6 +77,10 @@ pub(crate) trait Precise<const W: usize, const FMA: bool>:
 
     /// 0 for a negative number.
     fn sqrt(self) -> Self;
+
+    /// Products and quotients rounded to floats: for what needs no more digits.
+    fn times_roughly(self, o: Self) -> Self;
+    fn over_roughly(self, o: Self) -> Self;
 
     /// In the range of floats: 0 below it, infinite above.
     fn narrowed(self) -> DoubleDoubles<W, FMA>;
@@ -121,10 +143,10 @@ pub(crate) trait Precise<const W: usize, const FMA: bool>:
         self.signed(&self.unit_signs())
     }
 
-    /// Halves.
+    /// Half of each, without a rounding.
     #[inline(always)]
     fn half(self) -> Self {
-        self * Self::all(0.5)
+        self.in_units(&[2.0; W])
     }
 
     /// Rounded to the range of floats.
@@ -180,6 +202,43 @@ impl<const W: usize, const FMA: bool> Precise<W, FMA> for DoubleDoubles<W, FMA> 
     }
 
     #[inline(always)]
+    fn times_roughly(mut self, o: Self) -> Self {
+        for l in 0..W {
+            (self.hi[l], self.lo[l]) = (self.hi[l] * o.hi[l], 0.0);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn over_roughly(mut self, o: Self) -> Self {
+        for l in 0..W {
+            (self.hi[l], self.lo[l]) = (self.hi[l] / o.hi[l], 0.0);
+        }
+        self
+    }
+
+    /// By their parts, which is exact: the low part of a sum of two is at most half a unit of the high one.
+    #[inline(always)]
+    fn exceeds(self, o: Self) -> [bool; W] {
+        let mut result = [false; W];
+        for l in 0..W {
+            let (more, same) = (self.hi[l] > o.hi[l], self.hi[l] == o.hi[l]);
+            result[l] = more | (same & (self.lo[l] > o.lo[l]));
+        }
+        result
+    }
+
+    #[inline(always)]
+    fn at_most(self, o: Self) -> [bool; W] {
+        let mut result = [false; W];
+        for l in 0..W {
+            let (less, same) = (self.hi[l] < o.hi[l], self.hi[l] == o.hi[l]);
+            result[l] = less | (same & (self.lo[l] <= o.lo[l]));
+        }
+        result
+    }
+
+    #[inline(always)]
     fn narrowed(mut self) -> Self {
         for l in 0..W {
             self.lo[l] = if self.hi[l].abs() < f64::INFINITY { self.lo[l] } else { 0.0 };
@@ -222,6 +281,16 @@ impl<const W: usize, const FMA: bool> Precise<W, FMA> for Wides<W, FMA> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         Wides::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn times_roughly(self, o: Self) -> Self {
+        self.of_parts(o, Precise::times_roughly, 1)
+    }
+
+    #[inline(always)]
+    fn over_roughly(self, o: Self) -> Self {
+        self.of_parts(o, Precise::over_roughly, -1)
     }
 
     #[inline(always)]

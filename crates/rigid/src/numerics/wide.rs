@@ -102,6 +102,17 @@ impl<const W: usize, const FMA: bool> Wides<W, FMA> {
         Wides::normal(self.x.scaled(&powers).sqrt(), exponents)
     }
 
+    /// An operation on numbers without exponents, whose exponents are added or subtracted.
+    #[inline(always)]
+    pub fn of_parts(
+        self,
+        o: Self,
+        operation: impl Fn(DoubleDoubles<W, FMA>, DoubleDoubles<W, FMA>) -> DoubleDoubles<W, FMA>,
+        sign: i64,
+    ) -> Self {
+        Wides::normal(operation(self.x, o.x), together(self.exponent, &o.exponent, sign))
+    }
+
     /// In the range of floating point: 0 below it, infinite above.
     #[inline(always)]
     pub fn narrowed(self) -> DoubleDoubles<W, FMA> {
@@ -273,7 +284,7 @@ impl<const W: usize, const FMA: bool> Mul for Wides<W, FMA> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        Wides::normal(self.x * o.x, together(self.exponent, &o.exponent, 1))
+        self.of_parts(o, Mul::mul, 1)
     }
 }
 
@@ -281,7 +292,7 @@ impl<const W: usize, const FMA: bool> Div for Wides<W, FMA> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: Self) -> Self {
-        Wides::normal(self.x / o.x, together(self.exponent, &o.exponent, -1))
+        self.of_parts(o, Div::div, -1)
     }
 }
 

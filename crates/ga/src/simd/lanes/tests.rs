@@ -46,6 +46,15 @@ fn products_match_single_values() {
     }
 }
 
+/// The same results, except on the portable path.
+#[test]
+fn work_with_wide_instructions() {
+    for path in Path::available() {
+        let result = path.run_if_wide(Products);
+        assert_eq!(result, (!path.is_portable()).then(|| path.run(Products)), "{path:?}");
+    }
+}
+
 /// On every path within 2 ulps of the library's, from no angle to a quarter turn, and none for NaN.
 #[test]
 fn angles_match_the_standard_library() {

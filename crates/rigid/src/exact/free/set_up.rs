@@ -15,7 +15,7 @@ use crate::numerics::precise::Precise;
 use crate::numerics::wide::Wides;
 use crate::state::checks::check_moments;
 use polhode_ga::rows::curve::TOGETHER;
-use polhode_ga::simd::lanes::{Work, fastest};
+use polhode_ga::simd::lanes::{Work, with_wide_instructions};
 use polhode_ga::{Bivector, Rotor};
 use std::f64::consts::PI;
 
@@ -139,10 +139,19 @@ impl<const W: usize> FreeMotions<W> {
 impl FreeMotions<TOGETHER> {
     /// Replaces the motions by those of other bodies. Each has the bits that it has alone.
     pub fn set_up(&mut self, bodies: &[FreeBody; TOGETHER]) {
-        if are_moderate(bodies) {
-            fastest(SetUp::<false> { bodies, motions: self });
+        let done = if are_moderate(bodies) {
+            with_wide_instructions(SetUp::<false> { bodies, motions: self })
         } else {
-            fastest(SetUp::<true> { bodies, motions: self });
+            with_wide_instructions(SetUp::<true> { bodies, motions: self })
+        };
+        if done.is_none() {
+            self.set_up_one_by_one(bodies);
+        }
+    }
+
+    fn set_up_one_by_one(&mut self, bodies: &[FreeBody; TOGETHER]) {
+        for (l, body) in bodies.iter().enumerate() {
+            self.put(l, &body.motion());
         }
     }
 
@@ -190,12 +199,6 @@ impl<const WIDE: bool> Work for SetUp<'_, WIDE> {
             self.motions.filled::<Wides<TOGETHER, FMA>, FMA>(self.bodies);
         } else {
             self.motions.filled::<DoubleDoubles<TOGETHER, FMA>, FMA>(self.bodies);
-        }
-    }
-
-    fn run_portably(self) {
-        for (l, body) in self.bodies.iter().enumerate() {
-            self.motions.put(l, &body.motion());
         }
     }
 }
@@ -358,3 +361,6 @@ impl FreeBody {
         flow
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,43 +1,34 @@
 //! The constant factors of the three functions of a heavy top, one top in each lane.
 
 use super::flow::Flow;
-use super::orbit::Orbits;
+use super::nutations::Nutations;
 use super::series::Series;
-use super::set_up::Nutating;
-use crate::numerics::lanes::{hypotenuse, sin_cos_turns};
-use crate::numerics::precise::Precise;
-use std::f64::consts::PI;
+use crate::numerics::lanes::hypotenuse;
 
-impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Nutating<'_, N, W, FMA> {
+impl<const W: usize> Nutations<W> {
     /// The constants A, B and C: their sizes from the bounds, their phases from the two of α, β and w that are relatively
     /// largest at the start.
     #[inline(always)]
-    pub fn factors<S: Series<W>>(&self, flow: &Flow<S, W>) -> [[[f64; W]; 2]; 3] {
-        let (starts, orbits) = (self.starts, self.orbits);
+    pub fn factors<S: Series<W>, const FMA: bool>(&self, flow: &Flow<S, W>) -> [[[f64; W]; 2]; 3] {
         let upper = flow.series.state::<W, FMA>(&[0.25; W], &[0.0; W]);
         let lower = flow.series.state::<W, FMA>(&[0.0; W], &[0.0; W]);
         let now = flow.turned::<W, FMA>(&[0.0; W]);
-        let mut state = [[[0.0; W]; 2]; 3];
-        for (parts, z) in state.iter_mut().zip([starts.alpha, starts.beta, starts.w]) {
-            *parts = [z[0].values(), z[1].values()];
-        }
         let (mut units, mut shares, mut factors) = ([[[0.0; W]; 2]; 3], [[0.0; W]; 3], [[[0.0; W]; 2]; 3]);
         for k in 0..3 {
             let bound = if k == 0 { &upper } else { &lower };
             for l in 0..W {
-                let (at_start, now) = (at(&state[k], l), at(&now.z[k], l));
+                let (at_start, now) = (at(&self.state[k], l), at(&now.z[k], l));
                 let unit = normalized(times(at_start, normalized(conjugate(now))));
                 (units[k][0][l], units[k][1][l]) = (unit[0], unit[1]);
                 // One that is always 0 is the smallest.
-                let largest = orbits.sizes[k][l];
+                let largest = self.sizes[k][l];
                 shares[k][l] = if largest > 0.0 { size(at_start) / largest } else { -1.0 };
                 factors[k][0][l] = largest * bound.denominator[l] / size(at(&bound.z[k], l));
             }
         }
-        let relations = self.relations();
         for l in 0..W {
             let [alpha, beta, across] = [at(&units[0], l), at(&units[1], l), at(&units[2], l)];
-            let relation = at(&relations, l);
+            let relation = at(&self.relations, l);
             // C = −iκ A* B at v = 0.
             let alpha_by_others = times(times(conjugate(across), beta), relation);
             let beta_by_others = times(times(across, alpha), conjugate(relation));
@@ -58,25 +49,6 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Nutating<'_, N, W, FMA
             }
         }
         factors
-    }
-
-    /// `C/(A* B)` at the start: −iκ, turned by the phase `μ_β − μ_α − μ_w` since v = 0, an odd number of turns of the theta
-    /// functions in each period.
-    #[inline(always)]
-    fn relations(&self) -> [[f64; W]; 2] {
-        let Orbits { lambda, mean, on_separatrix, start, kappa, rates, .. } = self.orbits;
-        let [alpha, beta, across] = *rates;
-        let turns = (across - beta + alpha) / (*lambda * *mean);
-        let mut relations = [[0.0; W]; 2];
-        for l in 0..W {
-            let odd = 2.0 * (0.5 * (turns.hi[l] + turns.lo[l] - 1.0)).round() + 1.0;
-            // v/2π at the start.
-            let part = 0.25 * start[0][l] + start[1][l] * mean.hi[l] / (2.0 * PI);
-            let (sin, cos) = sin_cos_turns::<FMA>(odd * part - (odd * part).round(), 0.0);
-            let (sin, cos) = if on_separatrix[l] { (0.0, 1.0) } else { (sin, cos) };
-            (relations[0][l], relations[1][l]) = (kappa[l] * sin, -kappa[l] * cos);
-        }
-        relations
     }
 }
 

@@ -59,8 +59,10 @@
 //! Klein & Sommerfeld, *Theorie des Kreisels* (1897–1910), ch. VI; Whittaker, *Analytical Dynamics* §72.
 
 mod description;
+mod energies;
 mod factors;
 pub(super) mod flow;
+mod nutations;
 mod orbit;
 mod roots;
 pub(super) mod series;

@@ -8,9 +8,10 @@ use super::series::{Zero, Zeros};
 use super::start::{Starts, square, times_conjugate};
 use crate::exact::free::orbit::arguments;
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
-use crate::numerics::elliptic::{Means, first_kind};
+use crate::numerics::elliptic::{Means, first_kind, mean};
 use crate::numerics::precise::Precise;
 use crate::numerics::wide::Wide;
+use std::f64::consts::PI;
 
 /// A motion in which the tilt is defined by the cubic, in units of the start's scale.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +44,8 @@ pub(super) struct Orbits<N, const W: usize, const FMA: bool> {
     /// Arbitrary on the separatrix.
     pub mean: DoubleDoubles<W, FMA>,
     pub on_separatrix: [bool; W],
+    /// AGM(1, k) = π/2K'.
+    pub other: [f64; W],
     /// u at time 0: a multiple of K, and the rest.
     pub start: [[f64; W]; 2],
     pub rates: [DoubleDoubles<W, FMA>; 3],
@@ -75,6 +78,8 @@ struct Modulus<N, const W: usize, const FMA: bool> {
     kc: N,
     k2: [f64; W],
     lambda: DoubleDoubles<W, FMA>,
+    /// AGM(1, k).
+    other: [f64; W],
     /// r2 − r1, r3 − r1 and r3 − r2 times 2ĉ.
     gaps: [N; 3],
 }
@@ -120,27 +125,26 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Invariants<N, W, FMA> 
     fn roots(&self, start: &Starts<N, W, FMA>) -> Roots<N, W, FMA> {
         let (w0, z0) = (start.below, start.above);
         let Cubic { gravity, spin, delta, surplus } = self.cubic;
-        let two = N::all(2.0);
-        let highest = surplus + spin * spin + two * gravity;
+        let highest = surplus + spin * spin + gravity.twice();
         let v = self.cubic.largest_root::<true, W, FMA>(highest, &[true; W]);
         let x3 = gravity * w0 + v;
-        let second = two * spin * self.h - gravity * self.g_g - two * (z0 - N::all(1.0)) * self.w_w;
+        let second = (spin * self.h - (z0 - N::all(1.0)) * self.w_w).twice() - gravity * self.g_g;
         let [x1, x2] = self.other_distances(second, x3);
         let far = (gravity * (x1 + x2)).exceeds(x3 - gravity * x2);
         let mut w1 = w0 + x1;
         if far != [false; W] {
-            w1 = self.cubic.largest_root::<false, W, FMA>(two, &far).or(&far, w1);
+            w1 = self.cubic.largest_root::<false, W, FMA>(N::all(2.0), &far).or(&far, w1);
         }
         // 1 − r2 and 2ĉ(r3 − 1), given 1 − r1.
         let product = delta * delta / w1;
-        let p1 = two * (surplus - delta * spin);
+        let p1 = (surplus - delta * spin).twice();
         let [v, w2_scaled] = factors(gravity * product, (product - p1) / w1);
         // One of the two by the other, so that no factor 2ĉ is divided by.
         let by_v = v.exceeds(w2_scaled);
         let w2 = product.or(&by_v, w2_scaled) / v.or(&by_v, gravity);
         let [x1, x2] = self.other_distances(second, gravity * w0 + v);
         let gap = x1 + x2;
-        let z3 = two * gravity + v;
+        let z3 = gravity.twice() + v;
         let [z1, z2] = factors(self.sigma * self.sigma / z3, gap);
         Roots { x: [x1, x2], w: [w0 + x1, w2], v, z: [z1, z2, z3], gap }
     }
@@ -216,8 +220,12 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Modulus<N, W, FMA> {
             let whole = gaps[1].signs()[l];
             resolved[l] = (whole > 0.0) & (whole < f64::INFINITY);
         }
+        let mut k = [0.0; W];
+        for l in 0..W {
+            k[l] = k2[l].sqrt();
+        }
         let (kc, lambda) = ((gaps[2] / gaps[1]).sqrt(), gaps[1].sqrt().half().narrowed());
-        (Modulus { kc, k2, lambda, gaps }, resolved)
+        (Modulus { kc, k2, lambda, other: mean(k), gaps }, resolved)
     }
 
     /// μ(−1), by the parameter for which the sum converges quickly.
@@ -235,8 +243,8 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Modulus<N, W, FMA> {
         let p2 = z3 / self.gaps[1];
         let near = p2.at_most(N::all(FAR));
         let sum = means.sum(p2.or(&near, z2 / z1).narrowed());
-        let direct = (gravity * n * N::from(sum) / (z3 * N::all(4.0))).narrowed();
-        let whole = (n / (z1 * N::all(2.0))).narrowed();
+        let direct = (gravity * n * N::from(sum) / z3.twice().twice()).narrowed();
+        let whole = (n / z1.twice()).narrowed();
         let other = self.complement(means, n, whole, (gap / z2).narrowed() * sum);
         direct.or(&near, other)
     }
@@ -244,14 +252,13 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Modulus<N, W, FMA> {
     /// μ(p) for p between r2 and r3, by whichever of the two parameters is smaller.
     #[inline(always)]
     fn rate_above(&self, means: &Means<W, FMA>, p: &Point<N, W, FMA>) -> DoubleDoubles<W, FMA> {
-        let half = DoubleDoubles::all(0.5.into());
         let [_, to2, to3] = p.to;
         let [_, whole, long] = self.gaps;
         let by_n = (to2 * to2).at_most(to3 * to3 * N::from(self.k2));
         let p2 = ((to2 + to3) / to3).or(&by_n, long / whole / p.ratio);
         let sum = means.sum(p2.narrowed());
-        let slope = (p.n / to3.or(&by_n, to2)).narrowed() * half;
-        let direct = slope * (half * sum - DoubleDoubles::all(DoubleDouble::ONE));
+        let slope = (p.n / to3.or(&by_n, to2)).narrowed().half();
+        let direct = slope * (sum.half() - DoubleDoubles::all(DoubleDouble::ONE));
         direct.or(&by_n, self.complement(means, p.n, slope, p.rest.narrowed() * sum))
     }
 
@@ -264,8 +271,7 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Modulus<N, W, FMA> {
         whole: DoubleDoubles<W, FMA>,
         less: DoubleDoubles<W, FMA>,
     ) -> DoubleDoubles<W, FMA> {
-        let half = DoubleDoubles::all(0.5.into());
-        let part = DoubleDoubles::all(DoubleDouble::ONE) - less * half;
+        let part = DoubleDoubles::all(DoubleDouble::ONE) - less.half();
         whole * part - (self.lambda * means.mean()).scaled(&n.unit_signs())
     }
 
@@ -287,11 +293,23 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Modulus<N, W, FMA> {
         self.zeros(side, [eta, [zero.or(&none, to3 / long), one.or(&none, to2 / long)]])
     }
 
-    /// From the squared sines and cosines of the amplitudes.
+    /// From the squared sines and cosines of the amplitudes: the smaller of the two integrals, and the rest of K', which
+    /// does not cancel.
     #[inline(always)]
     fn zeros(&self, side: [f64; W], [eta, rest]: [[N; 2]; 2]) -> Zeros<W> {
-        let eta = first_kind([eta[0].values(), eta[1].values()], &self.k2);
-        let rest = first_kind([rest[0].values(), rest[1].values()], &self.k2);
+        let (eta, rest) = (eta.map(N::values), rest.map(N::values));
+        let (mut sin2, mut cos2, mut begins) = ([0.0; W], [0.0; W], [false; W]);
+        for l in 0..W {
+            begins[l] = eta[0][l] <= rest[0][l];
+            sin2[l] = if begins[l] { eta[0][l] } else { rest[0][l] };
+            cos2[l] = if begins[l] { eta[1][l] } else { rest[1][l] };
+        }
+        let small = first_kind([sin2, cos2], &self.k2);
+        let [mut eta, mut rest] = [[0.0; W]; 2];
+        for l in 0..W {
+            let large = 0.5 * PI / self.other[l] - small[l];
+            (eta[l], rest[l]) = if begins[l] { (small[l], large) } else { (large, small[l]) };
+        }
         Zeros { side, eta, rest }
     }
 }
@@ -308,7 +326,7 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Orbits<N, W, FMA> {
         let on_separatrix = modulus.gaps[2].zeros();
         // Any means, which are not used there.
         let means = Means::new(N::all(1.0).or(&on_separatrix, modulus.kc));
-        let axial = DoubleDoubles::all(0.5.into()) * spin.narrowed();
+        let axial = spin.narrowed().half();
         let zero = DoubleDoubles::all(DoubleDouble::ZERO);
         let alpha = modulus.rate_below(&means, roots.z, roots.gap, of.sigma, gravity);
         let beta = modulus.rate_above(&means, &up);
@@ -337,6 +355,7 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Orbits<N, W, FMA> {
             kc: modulus.kc,
             mean: means.mean(),
             on_separatrix,
+            other: modulus.other,
             start: arguments(cn, sn, modulus.kc),
             rates,
             zeros,

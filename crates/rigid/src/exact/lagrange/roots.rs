@@ -16,7 +16,7 @@ impl<T: Real> Cubic<T> {
     /// Half the second derivative by 2ĉ(u − 1), and by 1 − u, at u = 1.
     #[inline(always)]
     fn bend(self) -> T {
-        T::all(2.0) * self.gravity - self.surplus - self.spin * self.spin
+        self.gravity.twice() - self.surplus - self.spin * self.spin
     }
 
     /// The cubic, its derivative and half the second: above the upright by y = 2ĉ(u − 1), else by w = 1 − u.
@@ -28,20 +28,18 @@ impl<T: Real> Cubic<T> {
     #[inline(always)]
     fn above(self, y: T) -> [T; 3] {
         let Cubic { gravity, spin, delta, surplus } = self;
-        let two = T::all(2.0);
-        let (p, q, r) = (y * (two * gravity + y), y - surplus, gravity * delta - spin * y);
-        let slope = two * (gravity + y) * q + p + two * spin * r;
+        let (p, q, r) = (y * (gravity.twice() + y), y - surplus, gravity * delta - spin * y);
+        let slope = ((gravity + y) * q + spin * r).twice() + p;
         [p * q - r * r, slope, self.bend() + y * T::all(3.0)]
     }
 
     #[inline(always)]
     fn below(self, w: T) -> [T; 3] {
         let Cubic { gravity, spin, delta, surplus } = self;
-        let two = T::all(2.0);
-        let (p, q, r) = (w * (two - w), surplus + gravity * w, delta + spin * w);
+        let (p, q, r) = (w * (T::all(2.0) - w), surplus + gravity * w, delta + spin * w);
         let bend = self.bend();
         let third = gravity * w * T::all(3.0);
-        let slope = two * (surplus - delta * spin) + two * bend * w - third * w;
+        let slope = (surplus - delta * spin + bend * w).twice() - third * w;
         [p * q - r * r, slope, bend - third]
     }
 }
@@ -92,17 +90,20 @@ impl<N> Cubic<N> {
         open = *wanted;
         for _ in 0..200 {
             let [value, slope, bend] = values;
-            let (step, flat) = (value / slope, slope.zeros());
-            let least = x * N::all(1e-31);
+            // The value has all digits, so that steps need no more than leading ones.
+            let (step, flat) = (value.over_roughly(slope), slope.zeros());
+            let least = x.times_roughly(N::all(1e-31));
             let small = step.at_most(least);
             for l in 0..W {
                 open[l] &= !flat[l] & !small[l] & step.signs()[l].is_finite();
             }
             x = (x - step).or(&open, x);
-            // The next step, to the leading order.
-            let next = (step * step * bend).abs().at_most((slope * least).abs());
+            // The next step, to the leading order, and the rounding of this one.
+            let next = step.times_roughly(step).times_roughly(bend);
+            let next = next.abs().at_most(slope.times_roughly(least).abs());
+            let rounded = step.abs().times_roughly(N::all(f64::EPSILON)).at_most(least);
             for l in 0..W {
-                open[l] &= !next[l];
+                open[l] &= !(next[l] & rounded[l]);
             }
             if open == [false; W] {
                 break;
@@ -171,7 +172,7 @@ pub(super) fn factors<N: Precise<W, FMA>, const W: usize, const FMA: bool>(
     product: N,
     difference: N,
 ) -> [N; 2] {
-    let root = (difference * difference + product * N::all(4.0)).sqrt();
+    let root = (difference * difference + product.twice().twice()).sqrt();
     let large = (root + difference.abs()).half();
     let small = (product / large).or(&large.positive(), N::all(0.0));
     let negative = difference.negative();

@@ -203,7 +203,7 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Starts<N, W, FMA> {
         }
         let [w1, w2, w3] = turned_back(frame, rates);
         let spin = w3 * i3 / i1;
-        let gravity = (N::all(2.0) * c / i1).in_units(&scale).in_units(&scale);
+        let gravity = (c.twice() / i1).in_units(&scale).in_units(&scale);
         // A torque this small has no effect up to any horizon.
         let (gravity_values, mut acts) = (gravity.values(), [false; W]);
         for l in 0..W {

@@ -19,6 +19,18 @@ proptest! {
     }
 }
 
+proptest! {
+    /// Sums of numbers with the same signs, to a unit of 2⁻¹⁰⁴.
+    #[test]
+    fn sums_of_the_same_sign(a in number(), b in number()) {
+        let b = if (a.hi < 0.0) == (b.hi < 0.0) { b } else { -b };
+        let [x, y]: [DoubleDoubles<1, false>; 2] = [DoubleDoubles::all(a), DoubleDoubles::all(b)];
+        let sum = x.plus(y).lane(0);
+        prop_assert!((sum - (a + b)).value().abs() <= 2f64.powi(-104) * (a + b).value().abs());
+        prop_assert_eq!(sum.hi + sum.lo, sum.hi);
+    }
+}
+
 #[test]
 fn over_two_pi() {
     let pi = DoubleDouble { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };

@@ -68,6 +68,13 @@ fn same_results(
     prop_assert!(same(a + b, x + y) && same(a - b, x - y) && same(a * b, x * y) && same(a / b, x / y));
     prop_assert!(same(Precise::sqrt(a), Precise::sqrt(x)) && same(Precise::abs(a), Precise::abs(x)));
     prop_assert!(same(a + a * b - a, x + x * y - x) && same(a.half(), x.half()) && same(-a, -x));
+    prop_assert!(same(a.twice(), x.twice()) && same(a.times_roughly(b), x.times_roughly(y)));
+    prop_assert!(same(a.over_roughly(b), x.over_roughly(y)));
+    // Numbers that differ in their low parts alone.
+    let part = 2f64.powi(-70);
+    let (c, z) = (a + b.times_roughly(Real::all(part)), x + y.times_roughly(Real::all(part)));
+    prop_assert_eq!((a.exceeds(c), c.exceeds(a)), (x.exceeds(z), z.exceeds(x)));
+    prop_assert_eq!((a.at_most(c), c.at_most(a)), (x.at_most(z), z.at_most(x)));
     let (mask, units) = (a.exceeds(b), [0.25, 1024.0, 2f64.powi(-300), 2f64.powi(300), 2.0, 1.0, 0.5]);
     prop_assert_eq!(mask, x.exceeds(y));
     prop_assert!(same(Precise::or(a, &mask, b), Precise::or(x, &mask, y)));

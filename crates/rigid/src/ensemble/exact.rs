@@ -5,6 +5,7 @@ use super::member::{Member, Outcome, Waiting, of};
 use super::scheduler::Scheduler;
 use crate::exact::damped::DampedMotions;
 use crate::exact::lagrange::{HeavyTop, LagrangeTops};
+use crate::exact::lanes::SetUp;
 use crate::run::Progress;
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
 use crate::run::closed_form::{ClosedForm, ExactBody, check_kept};

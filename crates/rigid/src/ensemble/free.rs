@@ -5,6 +5,7 @@ use super::exact::METHOD;
 use super::member::{Member, of};
 use super::scheduler::Scheduler;
 use crate::exact::free::{FreeBody, FreeMotions};
+use crate::exact::lanes::SetUp;
 use crate::exact::many::TIMES_IN_LANES;
 use crate::run::Progress;
 use polhode_ga::rows::curve::TOGETHER;

@@ -14,7 +14,7 @@ pub(super) mod flow;
 use super::flow::{Flow, either};
 use super::free::series::{Circular, Hyperbolic};
 use super::free::{FreeBody, FreeMotions};
-use super::lanes::Coefficients;
+use super::lanes::{Coefficients, SetUp};
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::state::phase::Gyrostat;

@@ -1,7 +1,9 @@
-//! Coefficients of motions in closed form, one motion in each lane, the sums that end every form, and products of rotors.
+//! Coefficients of motions in closed form, one motion in each lane, their set-up, the sums that end every form, and products of rotors.
 
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::{Phase, in_lane};
+use polhode_ga::rows::curve::TOGETHER;
+use std::array::from_fn;
 
 /// Coefficients of `C` motions of one form, one in each lane; with `C = 1` they are common to all lanes, which hold times.
 pub(crate) trait Coefficients<const C: usize>: Copy + Sync {
@@ -79,6 +81,53 @@ fn zip_through<T>(
         function(element, &mut numbers[count]);
         count += 1;
     });
+}
+
+/// Motions in lanes that are set up from bodies.
+pub(crate) trait SetUp {
+    /// What a motion follows from.
+    type Body: Copy;
+
+    /// Whether all invariants of the orbit, with their low parts, are in the range of floats.
+    fn is_moderate(body: &Self::Body) -> bool;
+
+    /// Replaces the motions by those of moderate bodies. Each has the bits that it has alone. None if lanes do not pay on
+    /// this machine.
+    fn set_up_together(&mut self, bodies: &[Self::Body; TOGETHER]) -> Option<()>;
+
+    /// Replaces the motion in lane l.
+    fn set_up_alone(&mut self, l: usize, body: &Self::Body);
+
+    /// Replaces the motions by those of other bodies.
+    fn set_up(&mut self, bodies: &[Self::Body; TOGETHER]) {
+        let mut alone = bodies.each_ref().map(|body| !Self::is_moderate(body));
+        if let Some(moderate) = alone.iter().position(|alone| !alone) {
+            // Every lane needs a body.
+            let together = from_fn(|l| bodies[if alone[l] { moderate } else { l }]);
+            if self.set_up_together(&together).is_none() {
+                alone = [true; TOGETHER];
+            }
+        }
+        for l in 0..TOGETHER {
+            if alone[l] {
+                self.set_up_alone(l, &bodies[l]);
+            }
+        }
+    }
+}
+
+/// The least rate, or component of a rotor, of moderate bodies, in units of the largest: below the rounding of any sum, and its
+/// sixth power far from the smallest floats.
+pub(crate) const LEAST_RATE: f64 = 1e-20;
+
+/// Whether the sizes of numbers are 0 or within bounds.
+#[inline(always)]
+pub(crate) fn are_within(numbers: &[f64], least: f64, most: f64) -> bool {
+    let mut are_within = true;
+    for x in numbers {
+        are_within &= (*x == 0.0) | ((x.abs() >= least) & (x.abs() <= most));
+    }
+    are_within
 }
 
 /// The [`Phase`] of each motion by numbers: two of the rate, two of the start.

@@ -13,7 +13,7 @@ use super::free::{FreeBody, FreeMotions};
 use super::lagrange::flow::Flow as Lagrange;
 use super::lagrange::series::{Circular as LagrangeCircular, Hyperbolic as LagrangeHyperbolic};
 use super::lagrange::{HeavyTop, LagrangeTops};
-use super::lanes::Coefficients;
+use super::lanes::{Coefficients, SetUp};
 use super::larmor::flow::Flow as Larmor;
 use super::motion::ExactMotion;
 use polhode_ga::rows::curve::{Curve, TOGETHER, expect, sample, together};

@@ -5,7 +5,7 @@ pub mod damped;
 pub mod flow;
 pub mod free;
 pub mod lagrange;
-mod lanes;
+pub(crate) mod lanes;
 pub mod larmor;
 pub mod many;
 pub mod motion;

@@ -91,7 +91,6 @@ use orbit::Orbit;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 pub use set_up::FreeBody;
-pub(in crate::exact) use set_up::are_within;
 pub(crate) use set_up::{FreeMotions, phases_and_nomes};
 use std::f64::consts::PI;
 

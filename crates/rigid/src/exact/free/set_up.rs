@@ -7,7 +7,9 @@ use super::{FreeMotion, horizon, power_of_two};
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::exact::flow::{self, Form, either};
-use crate::exact::lanes::{Coefficients, Phases, by_component, product, reverse, turned};
+use crate::exact::lanes::{
+    Coefficients, LEAST_RATE, Phases, SetUp, are_within, by_component, product, reverse, turned,
+};
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::elliptic::mean;
 use crate::numerics::lanes::{Phase, decay};
@@ -136,35 +138,33 @@ impl<const W: usize> FreeMotions<W> {
     }
 }
 
-impl FreeMotions<TOGETHER> {
-    /// Replaces the motions by those of other bodies. Each has the bits that it has alone.
-    pub fn set_up(&mut self, bodies: &[FreeBody; TOGETHER]) {
-        let done = if are_moderate(bodies) {
-            with_wide_instructions(SetUp::<false> { bodies, motions: self })
-        } else {
-            with_wide_instructions(SetUp::<true> { bodies, motions: self })
-        };
-        if done.is_none() {
-            self.set_up_one_by_one(bodies);
-        }
+impl SetUp for FreeMotions<TOGETHER> {
+    type Body = FreeBody;
+
+    fn is_moderate(FreeBody { moments, omega, .. }: &FreeBody) -> bool {
+        // Invariants are products of at most four moments, three differences of moments, each 0 or at least 2⁻⁵² of the
+        // moments, and six rates, in units of the largest.
+        let (size, scale) = (power_of_two(*moments), power_of_two(omega.0));
+        are_within(moments, 1e-6 * size, 4.0 * size) & are_within(&omega.0, LEAST_RATE * scale, 4.0 * scale)
     }
 
-    fn set_up_one_by_one(&mut self, bodies: &[FreeBody; TOGETHER]) {
-        for (l, body) in bodies.iter().enumerate() {
-            self.put(l, &body.motion());
-        }
+    fn set_up_together(&mut self, bodies: &[FreeBody; TOGETHER]) -> Option<()> {
+        with_wide_instructions(Fill { bodies, motions: self })
     }
 
-    fn put(&mut self, l: usize, motion: &FreeMotion) {
+    fn set_up_alone(&mut self, l: usize, body: &FreeBody) {
+        let motion = body.motion();
         self.horizons[l] = motion.horizon;
+        self.is_circular[l] = matches!(motion.flow.0, Form::FreeCircular(_));
         match &motion.flow.0 {
             Form::FreeCircular(flow) => self.circular.put(l, flow),
             Form::FreeHyperbolic(flow) => self.hyperbolic.put(l, flow),
             _ => unreachable!("the form of a free body"),
         }
-        self.is_circular[l] = matches!(motion.flow.0, Form::FreeCircular(_));
     }
+}
 
+impl FreeMotions<TOGETHER> {
     /// States of all at times of their own: rows of four rotor components and of three of the angular velocity.
     pub fn at(
         &self,
@@ -176,10 +176,19 @@ impl FreeMotions<TOGETHER> {
     }
 }
 
-/// With numbers beyond the range of floats where they are `WIDE`.
-struct SetUp<'a, const WIDE: bool> {
+/// The motions of bodies whose numbers are in the range of floats.
+struct Fill<'a> {
     bodies: &'a [FreeBody; TOGETHER],
     motions: &'a mut FreeMotions<TOGETHER>,
+}
+
+impl Work for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        self.motions.filled::<DoubleDoubles<TOGETHER, FMA>, FMA>(self.bodies);
+    }
 }
 
 /// Bodies that do not turn steadily, in lanes.
@@ -188,41 +197,6 @@ struct Tumbling<'a, N, const W: usize, const FMA: bool> {
     orbits: &'a Orbits<N, W, FMA>,
     scale: [f64; W],
     phases: Phases<W>,
-}
-
-impl<const WIDE: bool> Work for SetUp<'_, WIDE> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        if WIDE {
-            self.motions.filled::<Wides<TOGETHER, FMA>, FMA>(self.bodies);
-        } else {
-            self.motions.filled::<DoubleDoubles<TOGETHER, FMA>, FMA>(self.bodies);
-        }
-    }
-}
-
-/// Whether all invariants of the orbits, with their low parts, are in the range of floats.
-fn are_moderate(bodies: &[FreeBody; TOGETHER]) -> bool {
-    // Invariants are products of at most four moments, three differences of moments, each 0 or at least 2⁻⁵² of the moments,
-    // and six rates, in units of the largest.
-    let mut moderate = true;
-    for FreeBody { moments, omega, .. } in bodies {
-        moderate &= are_within(moments, 1e-6 * power_of_two(*moments), 4.0 * power_of_two(*moments));
-        moderate &= are_within(&omega.0, 1e-15 * power_of_two(omega.0), 4.0 * power_of_two(omega.0));
-    }
-    moderate
-}
-
-/// Whether the sizes of numbers are 0 or within bounds.
-#[inline(always)]
-pub(in crate::exact) fn are_within(numbers: &[f64], least: f64, most: f64) -> bool {
-    let mut are_within = true;
-    for x in numbers {
-        are_within &= (*x == 0.0) | ((x.abs() >= least) & (x.abs() <= most));
-    }
-    are_within
 }
 
 /// The phases v/2π, and the nomes of the trigonometric series, infinite on the separatrix: from λ, AGM(1, k'), u at time 0, and

@@ -1,7 +1,6 @@
 //! Whether heavy tops keep their energies, one top in each lane.
 
-use super::nutations::LEAST;
-use super::start::{Starts, square};
+use super::start::{LEAST, Starts, square};
 use crate::exact::free::power_of_two;
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
 use crate::numerics::precise::Precise;

@@ -8,7 +8,7 @@ use super::energies::Energies;
 use super::flow::Flow;
 use super::orbit::Orbits;
 use super::series::{Hyperbolic, Series, Zeros};
-use super::start::{HeavyTop, Starts};
+use super::start::{HeavyTop, LEAST, Starts};
 use crate::exact::free::phases_and_nomes;
 use crate::exact::lanes::{Phases, by_component, product, reverse, turned};
 use crate::numerics::double_double::{DoubleDouble, DoubleDoubles};
@@ -16,9 +16,6 @@ use crate::numerics::lanes::{hypotenuse, sin_cos_turns};
 use crate::numerics::precise::Precise;
 use polhode_ga::rows::curve::Curve;
 use std::f64::consts::PI;
-
-/// The series cannot represent tilts and rates below this.
-pub(super) const LEAST: f64 = 1e-303;
 
 /// Orbits and starts, in units of the scales.
 #[derive(Clone, Copy, Debug)]

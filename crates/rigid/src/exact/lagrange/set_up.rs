@@ -7,9 +7,8 @@ use super::start::HeavyTop;
 use super::{FreeMotion, LagrangeTop};
 use crate::error::SimulateError;
 use crate::exact::flow::{Flow, Form, either};
-use crate::exact::free::are_within;
 use crate::exact::free::series::LARGEST_NOME;
-use crate::exact::lanes::Coefficients;
+use crate::exact::lanes::{Coefficients, LEAST_RATE, SetUp, are_within};
 use crate::numerics::double_double::DoubleDoubles;
 use crate::numerics::wide::Wides;
 use polhode_ga::Bivector;
@@ -100,30 +99,28 @@ impl<const W: usize> LagrangeTops<W> {
     }
 }
 
-impl LagrangeTops<TOGETHER> {
-    /// Replaces the motions by those of other tops. Each has the bits that it has alone.
-    pub fn set_up(&mut self, tops: &[HeavyTop; TOGETHER]) {
-        let nutations = if are_moderate(tops) {
-            with_wide_instructions(Solve::<false> { tops })
-        } else {
-            with_wide_instructions(Solve::<true> { tops })
-        };
-        let done = nutations.and_then(|nutations| {
-            // Apart from the solution, which is compiled twice.
-            with_wide_instructions(Fill { motions: self, nutations: &nutations })
-        });
-        if done.is_none() {
-            self.set_up_one_by_one(tops);
-        }
+impl SetUp for LagrangeTops<TOGETHER> {
+    type Body = HeavyTop;
+
+    fn is_moderate(HeavyTop { axes, rotor, omega, scale }: &HeavyTop) -> bool {
+        // Invariants are products of up to four squares of tilts, rates in units of the largest, and cancelled differences of
+        // them.
+        let gravity = axes.c / axes.i1 / scale / scale;
+        are_within(&[axes.i1, axes.i3, axes.c], 1e-100, 1e100)
+            & (axes.i3 >= 1e-6 * axes.i1)
+            & are_within(&[gravity], 1e-15, 4.0)
+            & are_within(&omega.0, LEAST_RATE * scale, 4.0 * scale)
+            & are_within(&rotor.components(), LEAST_RATE, 4.0)
+            & are_within(&axes.frame.components(), LEAST_RATE, 4.0)
     }
 
-    fn set_up_one_by_one(&mut self, tops: &[HeavyTop; TOGETHER]) {
-        for (l, top) in tops.iter().enumerate() {
-            self.put(l, top.motion());
-        }
+    fn set_up_together(&mut self, tops: &[HeavyTop; TOGETHER]) -> Option<()> {
+        let nutations = &with_wide_instructions(Solve { tops })?;
+        with_wide_instructions(Fill { motions: self, nutations })
     }
 
-    fn put(&mut self, l: usize, motion: Result<LagrangeTop, SimulateError>) {
+    fn set_up_alone(&mut self, l: usize, top: &HeavyTop) {
+        let motion = top.motion();
         self.resolved[l] = motion.is_ok();
         let Ok(motion) = motion else { return };
         self.steady[l] = motion.orbit.is_none();
@@ -136,7 +133,9 @@ impl LagrangeTops<TOGETHER> {
             _ => {}
         }
     }
+}
 
+impl LagrangeTops<TOGETHER> {
     /// Whether the motion of a top is that of its lane.
     pub fn has(&self, l: usize) -> bool {
         self.resolved[l] & !self.steady[l]
@@ -153,21 +152,17 @@ impl LagrangeTops<TOGETHER> {
     }
 }
 
-/// With numbers beyond the range of floats where they are `WIDE`.
-struct Solve<'a, const WIDE: bool> {
+/// The orbits of tops whose numbers are in the range of floats.
+struct Solve<'a> {
     tops: &'a [HeavyTop; TOGETHER],
 }
 
-impl<const WIDE: bool> Work for Solve<'_, WIDE> {
+impl Work for Solve<'_> {
     type Output = Nutations<TOGETHER>;
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Nutations<TOGETHER> {
-        if WIDE {
-            Nutations::of::<Wides<TOGETHER, FMA>, FMA>(self.tops).0
-        } else {
-            Nutations::of::<DoubleDoubles<TOGETHER, FMA>, FMA>(self.tops).0
-        }
+        Nutations::of::<DoubleDoubles<TOGETHER, FMA>, FMA>(self.tops).0
     }
 }
 
@@ -183,20 +178,6 @@ impl Work for Fill<'_> {
     fn run<const FMA: bool>(self) {
         self.motions.fill::<FMA>(self.nutations);
     }
-}
-
-/// Whether all invariants of the orbits, with their low parts, are in the range of floats.
-fn are_moderate(tops: &[HeavyTop; TOGETHER]) -> bool {
-    // Invariants are products of up to four squares of tilts, rates in units of the largest, and cancelled differences of them.
-    let mut moderate = true;
-    for HeavyTop { axes, rotor, omega, scale } in tops {
-        let gravity = axes.c / axes.i1 / scale / scale;
-        moderate &= are_within(&[axes.i1, axes.i3, axes.c], 1e-100, 1e100) & (axes.i3 >= 1e-6 * axes.i1);
-        moderate &= are_within(&[gravity], 1e-15, 4.0) & are_within(&omega.0, 1e-15 * scale, 4.0 * scale);
-        moderate &= are_within(&rotor.components(), 1e-15, 4.0);
-        moderate &= are_within(&axes.frame.components(), 1e-15, 4.0);
-    }
-    moderate
 }
 
 #[cfg(test)]

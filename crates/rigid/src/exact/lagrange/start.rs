@@ -15,6 +15,9 @@ const ASIDE: f64 = 64.0 * f64::EPSILON;
 /// Torques below this, relative to the scale of the rates, are zero.
 const NONE: f64 = 1e-250;
 
+/// The series cannot represent tilts and rates below this.
+pub(super) const LEAST: f64 = 1e-303;
+
 /// Complex numbers of twice the precision.
 pub(super) type Complex<N> = [N; 2];
 

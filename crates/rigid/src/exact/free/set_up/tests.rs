@@ -1,35 +1,64 @@
 use super::*;
+use proptest::prelude::*;
 use std::array::from_fn;
 
-/// Tumbling bodies, one near the separatrix, one that turns steadily and one with rates far below those of the others.
-fn bodies() -> [FreeBody; TOGETHER] {
+/// Rotors and angular velocities in lanes.
+fn states(motions: &FreeMotions<TOGETHER>) -> ([[f64; 4]; TOGETHER], [[f64; 3]; TOGETHER]) {
+    let times = from_fn(|l| 3.0 * l as f64 - 7.0);
+    let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
+    motions.at(&times, &mut rotors, &mut omegas);
+    (rotors, omegas)
+}
+
+/// In lanes, and one by one, as on machines without wide instructions.
+fn same_in_lanes(bodies: &[FreeBody; TOGETHER]) -> FreeMotions<TOGETHER> {
+    let [mut lanes, mut singles] = [FreeMotions::default(), FreeMotions::default()];
+    lanes.set_up(bodies);
+    for (l, body) in bodies.iter().enumerate() {
+        singles.set_up_alone(l, body);
+    }
+    assert_eq!(lanes.is_circular, singles.is_circular);
+    assert_eq!(lanes.horizons, singles.horizons);
+    assert_eq!(states(&lanes), states(&singles));
+    lanes
+}
+
+/// Tumbling bodies, one near the separatrix, one that turns steadily and one that is not moderate.
+#[test]
+fn of_every_kind() {
     let rotor = Rotor::exp(Bivector([0.2, -0.1, 0.4]));
-    from_fn(|l| {
+    let lanes = same_in_lanes(&from_fn(|l| {
         let part = l as f64;
         let omega = match l {
             3 => [1e-9, 1.0, 0.0],
             5 => [0.0, 0.0, 2.0],
-            8 => [1e-200, 2e-200, 1e-201],
+            8 => [1.0, 2.0, 1e-200],
             _ => [1.0 - 0.1 * part, 0.3, 0.05 * part - 0.4],
         };
         FreeBody::in_frame(rotor, [1.0, 2.0, 3.0 - 0.01 * part], rotor, Bivector(omega))
-    })
+    }));
+    assert!(lanes.is_circular.contains(&true) && lanes.is_circular.contains(&false));
 }
 
-/// Machines without wide instructions set up the motions of lanes one by one.
-#[test]
-fn one_by_one_as_in_lanes() {
-    let [mut lanes, mut singles] = [FreeMotions::default(), FreeMotions::default()];
-    lanes.set_up(&bodies());
-    singles.set_up_one_by_one(&bodies());
-    assert_eq!(lanes.is_circular, singles.is_circular);
-    assert!(lanes.is_circular.contains(&true) && lanes.is_circular.contains(&false));
-    assert_eq!(lanes.horizons, singles.horizons);
-    let times = from_fn(|l| 3.0 * l as f64 - 7.0);
-    let [first, second] = [lanes, singles].map(|motions| {
-        let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
-        motions.at(&times, &mut rotors, &mut omegas);
-        (rotors, omegas)
-    });
-    assert_eq!(first, second);
+/// Rates from the least of a moderate body, or below it, up, of either sign.
+fn rate() -> impl Strategy<Value = f64> {
+    (-20.2..0.3f64, prop::bool::ANY)
+        .prop_map(|(power, minus)| 10f64.powf(power) * if minus { -1.0 } else { 1.0 })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Rates and differences of moments of any size.
+    #[test]
+    fn of_any_size(
+        rates in prop::collection::vec([rate(), rate(), rate()], TOGETHER),
+        apart in prop::collection::vec([rate(), rate()], TOGETHER),
+    ) {
+        same_in_lanes(&from_fn(|l| {
+            let [a, b] = apart[l].map(|x| 0.4 * x.abs());
+            let omega = Bivector(rates[l]);
+            FreeBody::in_frame(Rotor::IDENTITY, [1.0, 1.0 + a, 1.0 + a + b], Rotor::IDENTITY, omega)
+        }));
+    }
 }

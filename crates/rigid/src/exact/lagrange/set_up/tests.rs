@@ -1,32 +1,22 @@
 use super::*;
 use crate::body::inertia::Inertia;
 use polhode_ga::{Rotor, Vector};
+use proptest::prelude::*;
 use std::array::from_fn;
 
-/// Tops, one near the separatrix, one that turns steadily and one that is hardly tilted.
-fn tops() -> [HeavyTop; TOGETHER] {
+fn top(tilt: f64, omega: [f64; 3], c: f64) -> HeavyTop {
     let inertia = Inertia::from_principal_moments([1.0, 1.0, 0.5]).expect("a body's");
-    from_fn(|l| {
-        let part = l as f64;
-        let (tilt, omega) = match l {
-            3 => (1e-4, [0.0, 0.0, 0.1]),
-            5 => (0.0, [0.0, 0.0, 2.0]),
-            8 => (1e-120, [1e-121, 0.0, 6.0]),
-            _ => (0.3 + 0.1 * part, [0.1 * part, -0.2, 4.0 - 0.5 * part]),
-        };
-        let rotor = Rotor::exp(Bivector([-0.5 * tilt, 0.0, 0.0]));
-        HeavyTop::new(&inertia, rotor, Bivector(omega), Vector([0.0, 0.0, 2.0])).expect("a symmetric top")
-    })
+    let rotor = Rotor::exp(Bivector([-0.5 * tilt, 0.0, 0.0]));
+    HeavyTop::new(&inertia, rotor, Bivector(omega), Vector([0.0, 0.0, c])).expect("a symmetric top")
 }
 
-/// Machines without wide instructions set up the motions of lanes one by one.
-#[test]
-fn one_by_one_as_in_lanes() {
+/// In lanes, and one by one, as on machines without wide instructions.
+fn same_in_lanes(tops: &[HeavyTop; TOGETHER]) -> LagrangeTops<TOGETHER> {
     let [mut lanes, mut singles] = [LagrangeTops::default(), LagrangeTops::default()];
-    lanes.set_up(&tops());
-    singles.set_up_one_by_one(&tops());
-    let has = |tops: &LagrangeTops<TOGETHER>| from_fn::<_, TOGETHER, _>(|l| tops.has(l));
-    assert_eq!(has(&lanes), has(&singles));
+    lanes.set_up(tops);
+    for (l, top) in tops.iter().enumerate() {
+        singles.set_up_alone(l, top);
+    }
     let times = from_fn(|l| 0.7 * l as f64 - 2.0);
     let states = |tops: &LagrangeTops<TOGETHER>| {
         let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
@@ -34,11 +24,51 @@ fn one_by_one_as_in_lanes() {
         (rotors, omegas)
     };
     let (first, second) = (states(&lanes), states(&singles));
-    for l in (0..TOGETHER).filter(|&l| lanes.has(l)) {
-        assert_eq!(lanes.is_circular[l], singles.is_circular[l], "{l}");
-        assert_eq!(lanes.horizons[l], singles.horizons[l], "{l}");
-        assert_eq!((first.0[l], first.1[l]), (second.0[l], second.1[l]), "{l}");
+    for l in 0..TOGETHER {
+        assert_eq!(lanes.has(l), singles.has(l), "{:?}", tops[l]);
+        if lanes.has(l) {
+            assert_eq!(lanes.is_circular[l], singles.is_circular[l], "{:?}", tops[l]);
+            assert_eq!(lanes.horizons[l], singles.horizons[l], "{:?}", tops[l]);
+            assert_eq!((first.0[l], first.1[l]), (second.0[l], second.1[l]), "{:?}", tops[l]);
+        }
     }
+    lanes
+}
+
+/// Nutating tops, one near the separatrix, one that turns steadily and one that is not moderate.
+#[test]
+fn of_every_kind() {
+    let lanes = same_in_lanes(&from_fn(|l| {
+        let part = l as f64;
+        match l {
+            3 => top(1e-4, [0.0, 0.0, 0.1], 2.0),
+            5 => top(0.0, [0.0, 0.0, 2.0], 0.0),
+            8 => top(1e-120, [1e-121, 0.0, 6.0], 2.0),
+            _ => top(0.3 + 0.1 * part, [0.1 * part, -0.2, 4.0 - 0.5 * part], 2.0),
+        }
+    }));
     assert_eq!((0..TOGETHER).filter(|&l| lanes.has(l)).count(), TOGETHER - 1);
-    assert!(lanes.is_circular.contains(&false));
+    assert!(lanes.is_circular.contains(&true) && lanes.is_circular.contains(&false));
+}
+
+/// Rates and tilts from the least of a moderate top, or below it, up, of either sign.
+fn rate() -> impl Strategy<Value = f64> {
+    (-20.2..0.3f64, prop::bool::ANY)
+        .prop_map(|(power, minus)| 10f64.powf(power) * if minus { -1.0 } else { 1.0 })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Tilts, rates and torques of any size.
+    #[test]
+    fn of_any_size(
+        rates in prop::collection::vec([rate(), rate(), rate()], TOGETHER),
+        tilts in prop::collection::vec([rate(), rate()], TOGETHER),
+    ) {
+        same_in_lanes(&from_fn(|l| {
+            let [tilt, c] = tilts[l];
+            top(tilt, rates[l], c.abs().max(1e-15))
+        }));
+    }
 }

@@ -38,6 +38,13 @@ pub fn with_wide_instructions<T: Work>(work: T) -> Option<T::Output> {
 /// Work that says that it was done.
 pub(super) struct Done<T>(pub T);
 
+impl<T: Work> Done<T> {
+    /// For machines without wide instructions.
+    pub fn left_undone(self) -> Option<T::Output> {
+        None
+    }
+}
+
 impl<T: Work> Work for Done<T> {
     type Output = Option<T::Output>;
 

@@ -267,7 +267,7 @@ impl Path {
 
     /// The same; None on the portable path.
     pub fn run_if_wide<T: Work>(self, work: T) -> Option<T::Output> {
-        by_path!(self, run(Done(work)), None)
+        by_path!(self, run(Done(work)), Done(work).left_undone())
     }
 
     /// The short method of a map for one row. Rounding errors of products take one instruction where it is compiled for

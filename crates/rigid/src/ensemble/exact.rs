@@ -56,14 +56,14 @@ impl<'a> Scheduler<'a> {
         let bodies = || members.iter().map(|(_, body)| body);
         if let Some(bodies) = bodies().map(ExactBody::heavy).collect::<Option<Vec<HeavyTop>>>() {
             let motions = tops.get_or_insert_default();
-            motions.set_up(&in_lanes(&bodies));
+            motions.set_up(&in_lanes(&bodies), bodies.len());
             let is_known = |l: usize| motions.has(l) && bodies[l].is_exact();
             let horizons = |l: usize| is_known(l).then_some([motions.horizons[l]; 2]);
             let at = |times: &_, rows: &mut Rows| motions.at(times, &mut rows.rotors, &mut rows.omegas);
             self.under_torques(members, horizons, at);
         } else if let Some(bodies) = bodies().map(ExactBody::damped).collect::<Option<Vec<_>>>() {
             let motions = damped.get_or_insert_default();
-            motions.set_up(&in_lanes(&bodies));
+            motions.set_up(&in_lanes(&bodies), bodies.len());
             let horizons = |l: usize| motions.horizons[l].as_ref().ok().copied();
             let at = |times: &_, rows: &mut Rows| motions.at(times, &mut rows.rotors, &mut rows.omegas);
             self.under_torques(members, horizons, at);

@@ -45,7 +45,7 @@ impl<'a> Scheduler<'a> {
         if !self.are_together(members.len()) {
             return members.drain(..).for_each(|member| self.free_alone(member));
         }
-        motions.set_up(&from_fn(|l| free_body(of(members, l))));
+        motions.set_up(&from_fn(|l| free_body(of(members, l))), members.len());
         let known = self.known(members, |l| Some([motions.horizons[l]; 2]));
         let (mut checks, mut rows) = (Checks::new(members, NO_TORQUES, known), Rows::default());
         let starts: [f64; TOGETHER] = from_fn(|l| of(members, l).start.time);

@@ -120,10 +120,9 @@ impl Default for DampedMotions {
 }
 
 impl DampedMotions {
-    /// Replaces the motions by those of other bodies, from each [`DampedTop::body`] and its g. Each has the bits that it has
-    /// alone.
-    pub fn set_up(&mut self, bodies: &[(FreeBody, f64); TOGETHER]) {
-        self.free.set_up(&bodies.map(|(body, _)| body));
+    /// [`SetUp::set_up`], from each [`DampedTop::body`] and its g. Each motion has the bits that it has alone.
+    pub fn set_up(&mut self, bodies: &[(FreeBody, f64); TOGETHER], count: usize) {
+        self.free.set_up(&bodies.map(|(body, _)| body), count);
         let dampings = bodies.map(|(_, g)| g);
         self.circular = DampedFlow::new(self.free.circular, dampings);
         if self.free.is_circular != [true; TOGETHER] {

@@ -1,4 +1,5 @@
-//! Coefficients of motions in closed form, one motion in each lane, their set-up, the sums that end every form, and products of rotors.
+//! Motions in closed form, one in each lane: their coefficients and set-up, the sums that end every form, and products of
+//! rotors.
 
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::{Phase, in_lane};
@@ -98,8 +99,9 @@ pub(crate) trait SetUp {
     /// Replaces the motion in lane l.
     fn set_up_alone(&mut self, l: usize, body: &Self::Body);
 
-    /// Replaces the motions by those of other bodies.
-    fn set_up(&mut self, bodies: &[Self::Body; TOGETHER]) {
+    /// Replaces the first motions by those of other bodies. Lanes beyond the number of bodies hold any, and their motions are
+    /// arbitrary.
+    fn set_up(&mut self, bodies: &[Self::Body; TOGETHER], count: usize) {
         let mut alone = bodies.each_ref().map(|body| !Self::is_moderate(body));
         if let Some(moderate) = alone.iter().position(|alone| !alone) {
             // Every lane needs a body.
@@ -108,7 +110,7 @@ pub(crate) trait SetUp {
                 alone = [true; TOGETHER];
             }
         }
-        for l in 0..TOGETHER {
+        for l in 0..count {
             if alone[l] {
                 self.set_up_alone(l, &bodies[l]);
             }

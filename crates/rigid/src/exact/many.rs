@@ -95,7 +95,7 @@ impl Tile {
     pub fn free<E>(bodies: impl Iterator<Item = Result<FreeBody, E>>) -> Result<Tile, (usize, E)> {
         let mut motions = FreeMotions::default();
         Tile::in_groups(bodies, |tile, bodies, count| {
-            motions.set_up(bodies);
+            motions.set_up(bodies, count);
             let first = tile.horizons.len();
             tile.horizons.extend(motions.horizons[..count].iter().map(|&horizon| [horizon; 2]));
             let [circular, hyperbolic] = motions.lanes(count);
@@ -114,7 +114,7 @@ impl Tile {
     ) -> Result<Tile, (usize, E)> {
         let mut motions = DampedMotions::default();
         Tile::in_groups(bodies, |tile, bodies, count| {
-            motions.set_up(bodies);
+            motions.set_up(bodies, count);
             let first = tile.horizons.len();
             for (l, horizons) in motions.horizons[..count].iter().enumerate() {
                 tile.horizons.push(*horizons.as_ref().map_err(|error| (l, error.to_string().into()))?);
@@ -135,7 +135,7 @@ impl Tile {
     ) -> Result<Tile, (usize, E)> {
         let mut motions = LagrangeTops::default();
         Tile::in_groups(tops, |tile, tops, count| {
-            motions.set_up(tops);
+            motions.set_up(tops, count);
             let (first, mut lanes) = (tile.horizons.len(), [Vec::new(), Vec::new()]);
             for (l, top) in tops[..count].iter().enumerate() {
                 if motions.has(l) {

@@ -144,7 +144,7 @@ impl<const W: usize, const FMA: bool> DoubleDoubles<W, FMA> {
         DoubleDouble { hi: self.hi[l], lo: self.lo[l] }
     }
 
-    /// Sums of numbers with the same signs: nothing cancels, so that the low parts need no exact sum.
+    /// Sums of numbers of the same sign: nothing cancels, so that the low parts need no exact sum.
     #[inline(always)]
     pub fn plus(mut self, o: Self) -> Self {
         for l in 0..W {

@@ -78,7 +78,7 @@ pub(crate) trait Precise<const W: usize, const FMA: bool>:
     /// 0 for a negative number.
     fn sqrt(self) -> Self;
 
-    /// Products and quotients rounded to floats: for what needs no more digits.
+    /// Products and quotients of the high parts, to a few roundings of floats: for what needs no more digits.
     fn times_roughly(self, o: Self) -> Self;
     fn over_roughly(self, o: Self) -> Self;
 
@@ -217,7 +217,7 @@ impl<const W: usize, const FMA: bool> Precise<W, FMA> for DoubleDoubles<W, FMA> 
         self
     }
 
-    /// By their parts, which is exact: the low part of a sum of two is at most half a unit of the high one.
+    /// By their parts, which is exact for finite numbers: the high part is the rounded sum of both.
     #[inline(always)]
     fn exceeds(self, o: Self) -> [bool; W] {
         let mut result = [false; W];

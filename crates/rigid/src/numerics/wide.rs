@@ -1,6 +1,7 @@
-//! Double-double numbers with an unbounded exponent, for fourth powers of a tilt of 1e-300, in lanes.
+//! Double-double numbers with an unbounded exponent, for fourth powers of a tilt of 1e-300.
 //!
-//! There are no branches, so loops over lanes are vectorised; a single number is one lane.
+//! They have lanes, as [`DoubleDoubles`] do, so that kernels are written once for both; bodies that need them are set up one by
+//! one.
 
 use super::double_double::{DoubleDouble, DoubleDoubles};
 use std::cmp::Ordering;

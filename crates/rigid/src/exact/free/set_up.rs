@@ -92,7 +92,7 @@ impl<const W: usize> FreeMotions<W> {
         [circular, hyperbolic]
     }
 
-    /// The same; whether each turns steadily, and the orbits of the others.
+    /// Replaces the motions by those of other bodies; returns whether each turns steadily, and the orbits of the others.
     #[inline(always)]
     fn filled<N: Precise<W, FMA>, const FMA: bool>(
         &mut self,

@@ -11,14 +11,14 @@ use crate::numerics::precise::Precise;
 pub(super) struct Energies<const W: usize> {
     /// Whether u > 0 at the start.
     upper: [bool; W],
-    /// Powers of two next below the largest |w| and the largest distance from the pole, |β| or |α|.
+    /// Powers of two next below the largest |w| with its rounding and the largest distance from the pole, |β| or |α|.
     rate: [f64; W],
     tilt: [f64; W],
     /// |w|².
     across: [f64; W],
     /// `1 − u` or `1 + u`, in double-double precision.
     distance: [[f64; W]; 2],
-    /// 2ĉ times the square of the unit of tilts by that of rates.
+    /// 2ĉ times the square of the unit of tilts over the square of that of rates.
     gravity: [f64; W],
     /// The largest change of the energy from rounding.
     most: [f64; W],
@@ -37,10 +37,10 @@ impl<const W: usize> Energies<W> {
         let (mut rate, mut tilt, mut most) = ([0.0; W], [0.0; W], [0.0; W]);
         for l in 0..W {
             let largest = sizes[2][l];
-            rate[l] = power_of_two([largest; 3]);
-            tilt[l] = power_of_two([if upper[l] { sizes[1][l] } else { sizes[0][l] }; 3]);
-            // That of the rate about the axis, in body axes.
+            // The rounding of the rate about the axis, in body axes.
             let spin = starts.omega3[l].abs() / starts.scale[l] * f64::EPSILON * 8.0 + LEAST;
+            rate[l] = power_of_two([largest + spin; 3]);
+            tilt[l] = power_of_two([if upper[l] { sizes[1][l] } else { sizes[0][l] }; 3]);
             let (largest, spin) = (largest / rate[l], spin / rate[l]);
             most[l] = MOST * (largest * largest) + (largest + spin) * spin;
         }

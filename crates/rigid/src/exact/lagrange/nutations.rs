@@ -1,7 +1,7 @@
 //! What the flows of heavy tops are made of, as floats, one top in each lane.
 //!
-//! Orbits are solved in double-double precision, or beyond the range of floats; the code of all that follows from them is the
-//! same for both.
+//! Orbits are solved in double-double numbers, within the range of floats or beyond it; the code of all that follows from them
+//! is the same for both.
 
 use super::MOST_TURNS;
 use super::energies::Energies;
@@ -74,10 +74,11 @@ impl<const W: usize> Nutations<W> {
         let excess = starts.excess.narrowed();
         let half = excess.half();
         let [alpha, beta, across] = orbits.rates;
-        let phases = [alpha + half, beta - half, across - excess].map(|rate| {
+        let mut phases = [Phases::STILL; 3];
+        for (phase, rate) in phases.iter_mut().zip([alpha + half, beta - half, across - excess]) {
             let rate = rate * DoubleDoubles::all(DoubleDouble::OVER_TWO_PI);
-            Phases([rate.hi, rate.lo, [0.0; W], [0.0; W]])
-        });
+            (phase.0[0], phase.0[1]) = (rate.hi, rate.lo);
+        }
         let nutations = Nutations {
             frames,
             rotors,

@@ -297,7 +297,7 @@ impl<N: Precise<W, FMA>, const W: usize, const FMA: bool> Modulus<N, W, FMA> {
     /// does not cancel.
     #[inline(always)]
     fn zeros(&self, side: [f64; W], [eta, rest]: [[N; 2]; 2]) -> Zeros<W> {
-        let (eta, rest) = (eta.map(N::values), rest.map(N::values));
+        let [eta, rest] = [[eta[0].values(), eta[1].values()], [rest[0].values(), rest[1].values()]];
         let (mut sin2, mut cos2, mut begins) = ([0.0; W], [0.0; W], [false; W]);
         for l in 0..W {
             begins[l] = eta[0][l] <= rest[0][l];

@@ -13,7 +13,7 @@ fn states(motions: &FreeMotions<TOGETHER>) -> ([[f64; 4]; TOGETHER], [[f64; 3]; 
 /// In lanes, and one by one, as on machines without wide instructions.
 fn same_in_lanes(bodies: &[FreeBody; TOGETHER]) -> FreeMotions<TOGETHER> {
     let [mut lanes, mut singles] = [FreeMotions::default(), FreeMotions::default()];
-    lanes.set_up(bodies);
+    lanes.set_up(bodies, TOGETHER);
     for (l, body) in bodies.iter().enumerate() {
         singles.set_up_alone(l, body);
     }
@@ -57,8 +57,9 @@ proptest! {
     ) {
         same_in_lanes(&from_fn(|l| {
             let [a, b] = apart[l].map(|x| 0.4 * x.abs());
-            let omega = Bivector(rates[l]);
-            FreeBody::in_frame(Rotor::IDENTITY, [1.0, 1.0 + a, 1.0 + a + b], Rotor::IDENTITY, omega)
+            // Frames with components of rounding.
+            let frame = Rotor::exp(Bivector([apart[l][0], 0.25 * PI, apart[l][1]]));
+            FreeBody::in_frame(frame, [1.0, 1.0 + a, 1.0 + a + b], frame, Bivector(rates[l]))
         }));
     }
 }

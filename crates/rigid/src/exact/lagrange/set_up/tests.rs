@@ -3,6 +3,7 @@ use crate::body::inertia::Inertia;
 use polhode_ga::{Rotor, Vector};
 use proptest::prelude::*;
 use std::array::from_fn;
+use std::f64::consts::PI;
 
 fn top(tilt: f64, omega: [f64; 3], c: f64) -> HeavyTop {
     let inertia = Inertia::from_principal_moments([1.0, 1.0, 0.5]).expect("a body's");
@@ -10,10 +11,17 @@ fn top(tilt: f64, omega: [f64; 3], c: f64) -> HeavyTop {
     HeavyTop::new(&inertia, rotor, Bivector(omega), Vector([0.0, 0.0, c])).expect("a symmetric top")
 }
 
+/// The same about e1.
+fn top_about_e1(tilt: f64, [x, y, z]: [f64; 3], c: f64) -> HeavyTop {
+    let inertia = Inertia::from_principal_moments([0.5, 1.0, 1.0]).expect("a body's");
+    let rotor = Rotor::exp(Bivector([0.0, 0.25 * PI - 0.5 * tilt, 0.0]));
+    HeavyTop::new(&inertia, rotor, Bivector([z, y, x]), Vector([c, 0.0, 0.0])).expect("a symmetric top")
+}
+
 /// In lanes, and one by one, as on machines without wide instructions.
 fn same_in_lanes(tops: &[HeavyTop; TOGETHER]) -> LagrangeTops<TOGETHER> {
     let [mut lanes, mut singles] = [LagrangeTops::default(), LagrangeTops::default()];
-    lanes.set_up(tops);
+    lanes.set_up(tops, TOGETHER);
     for (l, top) in tops.iter().enumerate() {
         singles.set_up_alone(l, top);
     }
@@ -68,6 +76,9 @@ proptest! {
     ) {
         same_in_lanes(&from_fn(|l| {
             let [tilt, c] = tilts[l];
+            // Near either pole.
+            let tilt = if l % 4 < 2 { tilt } else { PI - tilt };
+            let top = if l % 2 == 0 { top } else { top_about_e1 };
             top(tilt, rates[l], c.abs().max(1e-15))
         }));
     }

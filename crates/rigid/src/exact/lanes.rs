@@ -235,3 +235,6 @@ pub(crate) fn turned<const W: usize>(rotor: &[[f64; W]; 4], plane: &[[f64; W]; 3
     }
     result
 }
+
+#[cfg(test)]
+pub(in crate::exact) mod tests;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::exact::lanes::tests::rate;
 use proptest::prelude::*;
 use std::array::from_fn;
 
@@ -38,12 +39,6 @@ fn of_every_kind() {
         FreeBody::in_frame(rotor, [1.0, 2.0, 3.0 - 0.01 * part], rotor, Bivector(omega))
     }));
     assert!(lanes.is_circular.contains(&true) && lanes.is_circular.contains(&false));
-}
-
-/// Rates from the least of a moderate body, or below it, up, of either sign.
-fn rate() -> impl Strategy<Value = f64> {
-    (-20.2..0.3f64, prop::bool::ANY)
-        .prop_map(|(power, minus)| 10f64.powf(power) * if minus { -1.0 } else { 1.0 })
 }
 
 proptest! {

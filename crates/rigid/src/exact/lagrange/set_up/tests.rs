@@ -1,5 +1,6 @@
 use super::*;
 use crate::body::inertia::Inertia;
+use crate::exact::lanes::tests::rate;
 use polhode_ga::{Rotor, Vector};
 use proptest::prelude::*;
 use std::array::from_fn;
@@ -57,12 +58,6 @@ fn of_every_kind() {
     }));
     assert_eq!((0..TOGETHER).filter(|&l| lanes.has(l)).count(), TOGETHER - 1);
     assert!(lanes.is_circular.contains(&true) && lanes.is_circular.contains(&false));
-}
-
-/// Rates and tilts from the least of a moderate top, or below it, up, of either sign.
-fn rate() -> impl Strategy<Value = f64> {
-    (-20.2..0.3f64, prop::bool::ANY)
-        .prop_map(|(power, minus)| 10f64.powf(power) * if minus { -1.0 } else { 1.0 })
 }
 
 proptest! {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::exact::lanes::tests::rate;
+use crate::exact::lanes::tests::{in_lanes_and_alone, rate};
 use proptest::prelude::*;
 use std::array::from_fn;
 
@@ -11,13 +11,8 @@ fn states(motions: &FreeMotions<TOGETHER>) -> ([[f64; 4]; TOGETHER], [[f64; 3]; 
     (rotors, omegas)
 }
 
-/// In lanes, and one by one, as on machines without wide instructions.
 fn same_in_lanes(bodies: &[FreeBody; TOGETHER]) -> FreeMotions<TOGETHER> {
-    let [mut lanes, mut singles] = [FreeMotions::default(), FreeMotions::default()];
-    lanes.set_up(bodies, TOGETHER);
-    for (l, body) in bodies.iter().enumerate() {
-        singles.set_up_alone(l, body);
-    }
+    let [lanes, singles] = in_lanes_and_alone::<FreeMotions<TOGETHER>>(bodies);
     assert_eq!(lanes.is_circular, singles.is_circular);
     assert_eq!(lanes.horizons, singles.horizons);
     assert_eq!(states(&lanes), states(&singles));

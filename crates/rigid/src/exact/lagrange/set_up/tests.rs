@@ -1,6 +1,6 @@
 use super::*;
 use crate::body::inertia::Inertia;
-use crate::exact::lanes::tests::rate;
+use crate::exact::lanes::tests::{in_lanes_and_alone, rate};
 use polhode_ga::{Rotor, Vector};
 use proptest::prelude::*;
 use std::array::from_fn;
@@ -19,13 +19,8 @@ fn top_about_e1(tilt: f64, [x, y, z]: [f64; 3], c: f64) -> HeavyTop {
     HeavyTop::new(&inertia, rotor, Bivector([z, y, x]), Vector([c, 0.0, 0.0])).expect("a symmetric top")
 }
 
-/// In lanes, and one by one, as on machines without wide instructions.
 fn same_in_lanes(tops: &[HeavyTop; TOGETHER]) -> LagrangeTops<TOGETHER> {
-    let [mut lanes, mut singles] = [LagrangeTops::default(), LagrangeTops::default()];
-    lanes.set_up(tops, TOGETHER);
-    for (l, top) in tops.iter().enumerate() {
-        singles.set_up_alone(l, top);
-    }
+    let [lanes, singles] = in_lanes_and_alone::<LagrangeTops<TOGETHER>>(tops);
     let times = from_fn(|l| 0.7 * l as f64 - 2.0);
     let states = |tops: &LagrangeTops<TOGETHER>| {
         let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);

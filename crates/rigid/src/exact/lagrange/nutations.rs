@@ -167,14 +167,18 @@ impl<const W: usize> Nutations<W> {
     #[inline(always)]
     pub fn resolved<S: Series<W>, const FMA: bool>(&self, flow: &Flow<S, W>) -> [bool; W] {
         let mut resolved = self.starts_at::<S, FMA>(flow);
+        let (mut quarters, to_axes) = ([0.0; W], reverse(&self.frames));
+        for l in 0..W {
+            let quarter = if self.on_separatrix[l] { 1.0 } else { 0.5 * PI / self.mean[l] };
+            quarters[l] = quarter / self.lambda[l] / self.scale[l];
+        }
         for part in [0.3, 1.0, 2.2] {
             let mut times = [0.0; W];
             for l in 0..W {
-                let quarter = if self.on_separatrix[l] { 1.0 } else { 0.5 * PI / self.mean[l] };
-                times[l] = part * (quarter / self.lambda[l] / self.scale[l]);
+                times[l] = part * quarters[l];
             }
             let (rotors, omegas) = flow.values::<W, FMA>(&times);
-            let (rotors, omegas) = (product(&rotors, &self.frames), turned(&reverse(&self.frames), &omegas));
+            let (rotors, omegas) = (product(&rotors, &self.frames), turned(&to_axes, &omegas));
             let kept = self.energies.are_kept::<FMA>(&rotors, &omegas, &self.scale);
             for l in 0..W {
                 resolved[l] &= kept[l];

@@ -83,11 +83,19 @@ impl Path {
     }
 
     /// A function at its place in a chain; `None` where the path has no chains.
-    pub fn link<'a, K: Short<A, B, OUT>, T: Element, const A: usize, const B: usize, const OUT: usize>(
+    pub fn link<
+        'a,
+        K: Short<A, B, OUT>,
+        T: Element,
+        const A: usize,
+        const B: usize,
+        const OUT: usize,
+        const W: usize,
+    >(
         self,
         from: [Source<'a, T>; 2],
         to: usize,
-    ) -> Option<Link<'a, T>> {
+    ) -> Option<Link<'a, T, W>> {
         const { assert!(are_short(&[A, B, OUT]), "one, three or four numbers") };
         #[cfg(not(target_arch = "x86_64"))]
         let _ = (from, to);
@@ -95,9 +103,9 @@ impl Path {
         let sizes = [A, B, OUT];
         match self.0 {
             #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => Some(Link { apply: x86::avx2::link::<T, K, A, B, OUT>, from, to, sizes }),
+            Level::Avx2 => Some(Link { apply: x86::avx2::link::<T, K, A, B, OUT, W>, from, to, sizes }),
             #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => Some(Link { apply: x86::avx512::link::<T, K, A, B, OUT>, from, to, sizes }),
+            Level::Avx512 => Some(Link { apply: x86::avx512::link::<T, K, A, B, OUT, W>, from, to, sizes }),
             _ => None,
         }
     }

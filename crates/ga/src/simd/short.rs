@@ -71,15 +71,15 @@ impl<'a, T> Source<'a, T> {
     /// # Safety
     /// Rows: those of the group exist. Lanes: they exist, and nothing writes to them while the numbers are in use.
     #[inline(always)]
-    pub(super) unsafe fn numbers(
+    pub(super) unsafe fn numbers<const W: usize>(
         self,
         group: usize,
         size: usize,
-        lanes: *const Lane<GROUP>,
-    ) -> Numbers<'a, T, GROUP> {
+        lanes: *const Lane<W>,
+    ) -> Numbers<'a, T, W> {
         match self {
             Source::Rows(rows) => {
-                let place = GROUP * size * group..GROUP * size * (group + 1);
+                let place = W * size * group..W * size * (group + 1);
                 // SAFETY: as the caller promises.
                 Numbers::Rows(unsafe { rows.get_unchecked(place) })
             }
@@ -96,13 +96,12 @@ impl<'a, T> Source<'a, T> {
 /// # Safety
 /// The machine has the instructions. The pointer is to `n` lanes, and the link [fits](Link::fits) them and more groups than
 /// the number.
-pub(super) type Apply<T> = unsafe fn(&Link<T>, usize, *mut Lane<GROUP>);
+pub(super) type Apply<T, const W: usize> = unsafe fn(&Link<T, W>, usize, *mut Lane<W>);
 
-/// A short function within a chain: each group of rows goes through all links before the next one, so that the values
+/// A short function within a chain: each group of `W` rows goes through all links before the next one, so that the values
 /// between them stay in the first-level cache, and all inputs are read at the same pace.
-pub(crate) struct Link<'a, T> {
-    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code))]
-    pub(super) apply: Apply<T>,
+pub(crate) struct Link<'a, T, const W: usize = GROUP> {
+    pub(super) apply: Apply<T, W>,
     pub(super) from: [Source<'a, T>; 2],
     /// The first lane of the value.
     pub(super) to: usize,
@@ -110,12 +109,12 @@ pub(crate) struct Link<'a, T> {
     pub(super) sizes: [usize; 3],
 }
 
-impl<T> Link<'_, T> {
+impl<T, const W: usize> Link<'_, T, W> {
     /// Whether there are rows for so many groups, and the lanes that it needs, those of the value apart from the others.
     pub(super) fn fits(&self, groups: usize, lanes: usize) -> bool {
         let value = self.to..self.to.saturating_add(self.sizes[2]);
         let fits = |(source, size): (&Source<T>, usize)| match source {
-            Source::Rows(rows) => rows.len() / (GROUP * size) >= groups,
+            Source::Rows(rows) => rows.len() / (W * size) >= groups,
             Source::Lanes(first) => {
                 let end = first.saturating_add(size);
                 end <= lanes && (end <= value.start || value.end <= *first)
@@ -125,20 +124,50 @@ impl<T> Link<'_, T> {
     }
 }
 
+/// Links from lanes to lanes, of which it is checked once that they fit.
+pub(crate) struct Chain<const W: usize> {
+    links: Vec<Link<'static, f64, W>>,
+    lanes: usize,
+}
+
+impl<const W: usize> Chain<W> {
+    /// Links for so many lanes.
+    ///
+    /// # Panics
+    /// If a link does not fit them.
+    pub fn new(links: Vec<Link<'static, f64, W>>, lanes: usize) -> Chain<W> {
+        assert!(links.iter().all(|link| link.fits(1, lanes)), "links fit the lanes");
+        Chain { links, lanes }
+    }
+
+    /// Applies the links one after the other.
+    ///
+    /// # Panics
+    /// If there are not so many lanes.
+    #[inline]
+    pub fn apply(&self, lanes: &mut [Lane<W>]) {
+        assert_eq!(lanes.len(), self.lanes, "the lanes of the chain");
+        for link in &self.links {
+            // SAFETY: links exist where the instructions were detected, and this one fits the lanes and one group.
+            unsafe { (link.apply)(link, 0, lanes.as_mut_ptr()) };
+        }
+    }
+}
+
 /// A link from sources of these sizes to lanes, for [`Path::link`].
-pub(crate) struct AsLink<'a, T> {
+pub(crate) struct AsLink<'a, T, const W: usize = GROUP> {
     pub path: Path,
     pub from: [(Source<'a, T>, usize); 2],
     pub to: Range<usize>,
 }
 
-impl<'a, T: Element> WithShort for AsLink<'a, T> {
-    type Output = Option<Link<'a, T>>;
+impl<'a, T: Element, const W: usize> WithShort for AsLink<'a, T, W> {
+    type Output = Option<Link<'a, T, W>>;
 
     fn with<K: Short<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(self) -> Self::Output {
         let [(a, size_a), (b, size_b)] = self.from;
         assert_eq!([size_a, size_b, self.to.len()], [A, B, OUT], "the function is of these sizes");
-        self.path.link::<K, T, A, B, OUT>([a, b], self.to.start)
+        self.path.link::<K, T, A, B, OUT, W>([a, b], self.to.start)
     }
 }
 

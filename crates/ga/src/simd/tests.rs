@@ -76,8 +76,8 @@ fn chained<T: Element + PartialEq + std::fmt::Debug, const N: usize>(
         let mut lanes = vec![Lane::<GROUP>::filled(f64::NAN); 2 * N];
         let (a_rows, b_rows) = (Source::Rows(&a[..]), Source::Rows(&b[..]));
         let links = [
-            path.link::<Difference, T, N, N, N>([a_rows, b_rows], N),
-            path.link::<Difference, T, N, N, N>([b_rows, Source::Lanes(N)], 0),
+            path.link::<Difference, T, N, N, N, GROUP>([a_rows, b_rows], N),
+            path.link::<Difference, T, N, N, N, GROUP>([b_rows, Source::Lanes(N)], 0),
         ];
         let Some(links) = links.into_iter().collect::<Option<Vec<_>>>() else {
             assert!(!path.has_short_blocks());
@@ -114,7 +114,7 @@ fn chains_compute_whole_groups() {
 fn links_that_do_not_fit_are_refused() {
     let rows = [1.0; 3 * GROUP];
     let refused = |from: [Source<f64>; 2], to: usize, groups: usize| {
-        let Some(link) = Path::best().link::<Difference, f64, 3, 3, 3>(from, to) else { return true };
+        let Some(link) = Path::best().link::<Difference, f64, 3, 3, 3, GROUP>(from, to) else { return true };
         !link.fits(groups, 6)
     };
     let (some, first) = (Source::Rows(&rows[..]), Source::Lanes(0));

@@ -13,7 +13,7 @@ mod tests;
 use super::compile::program::Id;
 use crate::MathError;
 use crate::graded::{Graded, size};
-use crate::simd::short::{GROUP, Numbers};
+use crate::simd::short::{GROUP, Numbers, Source};
 use crate::simd::threads::{Threads, for_each};
 use crate::simd::traverse::{Factor, SHARED, Target, by_blocks};
 use crate::simd::{Element, Lane, Path};
@@ -229,7 +229,8 @@ impl Sweep<'_> {
         if target.data.len() < GROUP * target.size {
             return 0;
         }
-        let Some(links) = self.runner.chain(self.path, self.schedule, factors) else { return 0 };
+        let rows = |input: usize| (Source::Rows(factors[input].all()), factors[input].size());
+        let Some(links) = self.runner.chain(self.path, self.schedule, rows) else { return 0 };
         let mut lanes = self.schedule.filled::<GROUP>();
         let place = (target.at, target.size);
         let done = self.path.chain(&links, &mut lanes, place, target.data, self.streamed);

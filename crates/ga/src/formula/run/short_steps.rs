@@ -7,7 +7,6 @@ use crate::product::Plan;
 use crate::rows::compose::Compose;
 use crate::rows::product::{Turn, TurnBack};
 use crate::simd::short::{AsLink, Link, Numbers, Short, Source, WholeBlock, WithShort};
-use crate::simd::traverse::Factor;
 use crate::simd::{Element, Lane, Path};
 
 /// `a + b`, or with `MINUS` `a − b`: the bits of `a + sign b`.
@@ -116,20 +115,19 @@ impl Selection {
 }
 
 impl Runner {
-    /// The tasks of a schedule as a chain; `None` unless all of them are short.
-    pub(super) fn chain<'a, T: Element>(
+    /// The tasks of a schedule as a chain, with the sources and sizes of inputs; `None` unless all of them are short.
+    pub(super) fn chain<'a, T: Element, const W: usize>(
         &self,
         path: Path,
         schedule: &Schedule,
-        factors: &[Factor<'a, T>],
-    ) -> Option<Vec<Link<'a, T>>> {
-        let rows = |input: usize| (Source::Rows(factors[input].all()), factors[input].size());
+        input: impl Fn(usize) -> (Source<'a, T>, usize),
+    ) -> Option<Vec<Link<'a, T, W>>> {
         let mut links = Vec::with_capacity(schedule.tasks.len());
         for task in &schedule.tasks {
             match task {
                 Task::Read { direct: true, .. } => {}
-                Task::Read { input, to, .. } => {
-                    let link = AsLink { path, from: [rows(*input); 2], to: to.clone() };
+                Task::Read { input: number, to, .. } => {
+                    let link = AsLink { path, from: [input(*number); 2], to: to.clone() };
                     links.push(match to.len() {
                         1 => link.with::<Signs<0>, 1, 1, 1>()?,
                         3 => link.with::<Signs<0>, 3, 3, 3>()?,
@@ -140,7 +138,7 @@ impl Runner {
                 Task::Do { step, operands, rows: direct, to } => {
                     let step = &self.steps[*step];
                     let in_lanes = |k: usize| (Source::Lanes(operands[k].start), operands[k].len());
-                    let source = |k: usize| direct[k].map_or(in_lanes(k), rows);
+                    let source = |k: usize| direct[k].map_or(in_lanes(k), &input);
                     let second = if step.operands().len() == 1 { 0 } else { 1 };
                     let from = [source(0), source(second)];
                     links.push(step.short(AsLink { path, from, to: to.clone() })??);

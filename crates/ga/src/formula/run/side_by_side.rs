@@ -7,6 +7,7 @@ use super::tasks::{Schedule, Task};
 use crate::formula::compile::program::Id;
 use crate::graded::size;
 use crate::simd::lookahead::Lookahead;
+use crate::simd::short::{Chain, Source};
 use crate::simd::{Lane, Path};
 use std::ops::Range;
 
@@ -15,6 +16,8 @@ pub struct SideBySide<'r, const W: usize> {
     runner: &'r Runner,
     path: Path,
     schedule: Schedule,
+    /// The tasks, if all of them are short.
+    chain: Option<Chain<W>>,
     /// The inputs common to all rows and times.
     known: Vec<Option<Given>>,
     /// Whether each step belongs to the program, or to the part of one that does not depend on values from outside.
@@ -32,13 +35,19 @@ struct Parameter<'r, const W: usize> {
     /// The steps, with numbers as rows.
     steps: SideBySide<'r, W>,
     /// The numbers to which the values of the program belong.
-    now: Option<[f64; W]>,
+    now: Option<Numbers<W>>,
     /// Whether some row has no value now.
     missing: bool,
     lookahead: Lookahead,
     /// The values for these, one row after the other, of this number of components.
     values: Vec<f64>,
     count: usize,
+}
+
+/// Numbers of all rows.
+enum Numbers<const W: usize> {
+    Common(f64),
+    Each([f64; W]),
 }
 
 impl Runner {
@@ -74,9 +83,16 @@ impl Runner {
     fn part<const W: usize>(&self, known: &[Option<Given>], part: Part) -> Option<SideBySide<'_, W>> {
         let schedule = self.schedule(known, true, &part).ok()?;
         let of = |(&id, &first): (&Id, &usize)| (id, first..first + size(self.steps[id].grades));
+        let path = Path::best();
+        let input = |number: usize| {
+            let lanes = &schedule.inputs[number];
+            (Source::Lanes(lanes.start), lanes.len())
+        };
+        let links = self.chain(path, &schedule, input);
         Some(SideBySide {
             runner: self,
-            path: Path::best(),
+            path,
+            chain: links.map(|links| Chain::new(links, schedule.lanes)),
             known: known.to_vec(),
             results: part.results.iter().zip(&schedule.results).map(of).collect(),
             steps: part.steps,
@@ -96,14 +112,19 @@ impl<const W: usize> SideBySide<'_, W> {
     }
 
     /// Sets the parameter of each row.
-    #[inline]
     pub fn set_parameter(&mut self, input: usize, numbers: &[f64; W]) {
         self.input(input)[0].0 = *numbers;
-        if let Some(parameter) = &mut self.parameter
-            && !parameter.now.as_ref().is_some_and(|now| have_same_bits(now, numbers))
-        {
-            parameter.now = Some(*numbers);
-            parameter.missing = parameter.fill(numbers, &self.schedule.given, &mut self.lanes);
+        if let Some(parameter) = &mut self.parameter {
+            parameter.set(Numbers::Each(*numbers), &self.schedule.given, &mut self.lanes);
+        }
+    }
+
+    /// Sets the parameter of all rows to one number.
+    #[inline(always)]
+    pub fn set_common_parameter(&mut self, input: usize, number: f64) {
+        self.input(input)[0] = Lane::filled(number);
+        if let Some(parameter) = &mut self.parameter {
+            parameter.set_common(number, &self.schedule.given, &mut self.lanes);
         }
     }
 
@@ -122,22 +143,25 @@ impl<const W: usize> SideBySide<'_, W> {
 
     /// Evaluates all rows, each with the bits of [`Runner::value`]; a row with a failing step has NaN as its results.
     pub fn run(&mut self) {
-        let inputs = &self.schedule.inputs;
-        let known = self.runner.do_all(
-            &self.schedule.tasks,
-            (self.path, W),
-            &mut self.lanes,
-            |task, lanes| match task {
-                Task::Read { input, to, .. } => {
-                    lanes.copy_within(inputs[*input].clone(), to.start);
-                    true
-                }
-                Task::Do { .. } => false,
-            },
-        );
-        if !known || self.parameter.as_ref().is_some_and(|parameter| parameter.missing) {
+        if !self.do_tasks() || self.parameter.as_ref().is_some_and(|parameter| parameter.missing) {
             (0..W).for_each(|row| self.complete(row));
         }
+    }
+
+    /// Evaluates all steps; false if some row may have no value.
+    fn do_tasks(&mut self) -> bool {
+        if let Some(chain) = &self.chain {
+            chain.apply(&mut self.lanes);
+            return true;
+        }
+        let Schedule { inputs, tasks, .. } = &self.schedule;
+        self.runner.do_all(tasks, (self.path, W), &mut self.lanes, |task, lanes| match task {
+            Task::Read { input, to, .. } => {
+                lanes.copy_within(inputs[*input].clone(), to.start);
+                true
+            }
+            Task::Do { .. } => false,
+        })
     }
 
     /// Evaluates one row, where another one failed in its block.
@@ -170,32 +194,49 @@ impl<const W: usize> SideBySide<'_, W> {
 }
 
 impl<const W: usize> Parameter<'_, W> {
-    /// Fills the lanes with the values for these numbers; whether some row has none.
-    fn fill(&mut self, numbers: &[f64; W], given: &[Range<usize>], lanes: &mut [Lane<W>]) -> bool {
-        if have_same_bits(&[numbers[0]; W], numbers)
-            && let Some(place) = self.lookahead.find(numbers[0])
+    /// Fills the lanes with the values for a number of all rows.
+    #[inline(always)]
+    fn set_common(&mut self, number: f64, given: &[Range<usize>], lanes: &mut [Lane<W>]) {
+        if let Some(Numbers::Common(now)) = &self.now
+            && now.to_bits() == number.to_bits()
         {
-            let mut values = &self.values[place * self.count..(place + 1) * self.count];
-            let mut missing = false;
-            for range in given {
-                let (own, others) = values.split_at(range.len());
-                for (lane, &x) in lanes[range.clone()].iter_mut().zip(own) {
-                    *lane = Lane::filled(x);
-                    missing |= x.is_nan();
-                }
-                values = others;
-            }
-            return missing;
+            return;
         }
-        self.steps.set_parameter(self.input, numbers);
+        let Some(place) = self.lookahead.find(number) else {
+            return self.set(Numbers::Common(number), given, lanes);
+        };
+        self.now = Some(Numbers::Common(number));
+        self.missing = false;
+        let mut values = self.values[place * self.count..(place + 1) * self.count].iter();
+        for range in given {
+            for (lane, &x) in lanes[range.clone()].iter_mut().zip(values.by_ref()) {
+                *lane = Lane::filled(x);
+                self.missing |= x.is_nan();
+            }
+        }
+    }
+
+    /// Computes the values for these numbers, if they are others than now.
+    #[inline(never)]
+    fn set(&mut self, numbers: Numbers<W>, given: &[Range<usize>], lanes: &mut [Lane<W>]) {
+        let rows = match numbers {
+            Numbers::Common(number) => [number; W],
+            Numbers::Each(rows) => rows,
+        };
+        if let Some(Numbers::Each(now)) = &self.now
+            && have_same_bits(now, &rows)
+        {
+            return;
+        }
+        self.now = Some(numbers);
+        self.steps.set_parameter(self.input, &rows);
         self.steps.run();
-        let mut missing = false;
+        self.missing = false;
         for (number, range) in given.iter().enumerate() {
             let values = self.steps.result(number);
             lanes[range.clone()].copy_from_slice(values);
-            missing |= values.iter().any(|lane| lane.0.iter().any(|x| x.is_nan()));
+            self.missing |= values.iter().any(|lane| lane.0.iter().any(|x| x.is_nan()));
         }
-        missing
     }
 
     fn foresee(&mut self, numbers: impl Iterator<Item = f64>) {
@@ -222,7 +263,6 @@ impl<const W: usize> Parameter<'_, W> {
 }
 
 /// Whether numbers are the same, also NaN and zeros.
-#[inline(always)]
 fn have_same_bits<const W: usize>(a: &[f64; W], b: &[f64; W]) -> bool {
     let mut different = 0;
     for row in 0..W {

@@ -6,6 +6,7 @@ use crate::g3::functions::Function;
 use crate::product::{Grades, Plan, Product};
 use crate::rows::{compose, product, rotor_functions};
 use crate::simd::Path;
+use crate::simd::short::{GROUP, Source};
 use crate::simd::threads::Threads;
 use crate::simd::traverse::Factor;
 use crate::table::{G3, Signature};
@@ -228,7 +229,9 @@ fn chains_equal_single_values() {
         let factors: Vec<_> = given.iter().zip(sizes).map(|(x, size)| Factor::new(x, size, rows)).collect();
         let schedule = runner.schedule(&[None; 5], false, &runner.whole()).unwrap();
         for path in Path::available() {
-            assert_eq!(runner.chain(path, &schedule, &factors).is_some(), path.has_short_blocks());
+            let input = |i: usize| (Source::Rows(factors[i].all()), factors[i].size());
+            let chain = runner.chain::<_, GROUP>(path, &schedule, input);
+            assert_eq!(chain.is_some(), path.has_short_blocks());
             let mut out = vec![0.5; expected.len()];
             for part in [0..rows / 3, rows / 3..rows] {
                 runner.run_on(path, Threads::ONE, &given, &mut [&mut out], part).unwrap();
@@ -279,8 +282,9 @@ fn lanes_equal_single_values() {
 fn lanes_against_single_values<const ROWS: usize>() -> usize {
     let mut random = Random(11);
     let mut failures = 0;
-    for _ in 0..150 {
-        let program = random_program(&mut random);
+    for round in 0..200 {
+        let short = round % 4 == 0;
+        let program = if short { random_short_program(&mut random) } else { random_program(&mut random) };
         let runner = Runner::new(&program).unwrap();
         let fixed = random.below(128);
         let is_known = |i: usize| fixed >> i & 1 == 1;
@@ -304,13 +308,20 @@ fn lanes_against_single_values<const ROWS: usize>() -> usize {
             let shared = second[parameter][0];
             second[parameter].fill(shared);
         }
-        for (data, announced) in [(&first, false), (&second, false), (&first, true), (&second, true)] {
+        for (data, announced) in
+            [(&first, false), (&second, false), (&first, true), (&second, true), (&second, false)]
+        {
             if let Some(beside) = &mut beside {
                 if let Some(parameter) = parameter {
                     if announced {
                         beside.foresee([0.5, 0.5, data[parameter][0], 0.25].into_iter());
                     }
-                    beside.set_parameter(parameter, data[parameter].as_slice().try_into().unwrap());
+                    let numbers: &[f64; ROWS] = data[parameter].as_slice().try_into().unwrap();
+                    if announced && *numbers == [numbers[0]; ROWS] {
+                        beside.set_common_parameter(parameter, numbers[0]);
+                    } else {
+                        beside.set_parameter(parameter, numbers);
+                    }
                 }
                 for i in (0..program.inputs.len()).filter(|&i| !is_known(i) && Some(i) != parameter) {
                     let lanes = beside.input(i);

@@ -91,10 +91,11 @@ macro_rules! short {
             const A: usize,
             const B: usize,
             const OUT: usize,
+            const W: usize,
         >(
-            link: &Link<T>,
+            link: &Link<T, W>,
             group: usize,
-            lanes: *mut Lane<GROUP>,
+            lanes: *mut Lane<W>,
         ) {
             // SAFETY: the link fits, so that it has the rows of the group, and the lanes, which differ from those of the
             // value.
@@ -102,7 +103,7 @@ macro_rules! short {
                 let a = link.from[0].numbers(group, A, lanes);
                 let b = link.from[1].numbers(group, B, lanes);
                 let out = std::slice::from_raw_parts_mut(lanes.add(link.to), OUT);
-                short_block::<T, K, A, B, OUT, GROUP>(a, b, out);
+                short_block::<T, K, A, B, OUT, W>(a, b, out);
             }
         }
 

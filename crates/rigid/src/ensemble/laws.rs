@@ -318,7 +318,7 @@ fn lane_by_lane<const W: usize, const F: bool>(
             return [f64::NAN; 3];
         }
         let momentum = body.momentum(Bivector(at.omega.map(|lanes| lanes.0[l])));
-        let phase = Phase { rotor: Rotor::from_unit_components(rotor), momentum, time: at.time.0[l] };
+        let phase = Phase { rotor: Rotor::from_unit_components(rotor), momentum, time: at.time.of(l) };
         each[l]
             .value_within(&Point::at_rest(body, &phase), middle.0[l])
             .map_or([f64::NAN; 3], |torque| torque.0)

@@ -5,7 +5,7 @@ use super::member::{Member, of};
 use super::observe::{LaneBodies, LanePhases};
 use crate::laws::forcing::Forcing;
 use crate::laws::torque::lanes::in_lanes;
-use crate::methods::classical::{self, Bodies, State};
+use crate::methods::classical::{self, Bodies, Parts, State};
 use crate::methods::splitting::turns::{Spin, Turns, stage_times};
 use polhode_ga::simd::lanes::{Lanes, Work};
 use std::ops::Range;
@@ -126,13 +126,17 @@ impl<E: Forcing<W, F>, const W: usize, const F: bool> Stepper<W> for Components<
             lengths[0][k] = times[k + 1] - times[k];
             lengths[1][k] = lengths[0][k] / 6.0;
         }
-        for k in 0..count {
-            let length = [lengths[0][k], lengths[1][k]];
-            if E::IN_REGISTERS {
+        if E::IN_REGISTERS {
+            for k in 0..count {
+                let length = [lengths[0][k], lengths[1][k]];
                 classical::step(&bodies, &mut self.forcing, &mut now, times[k], length);
-            } else {
-                classical::step_in_parts(&bodies, &mut self.forcing, &mut now, times[k], length);
             }
+        } else {
+            let mut parts = Parts::new(&bodies, &now);
+            for k in 0..count {
+                parts.step(&mut self.forcing, times[k], [lengths[0][k], lengths[1][k]]);
+            }
+            now = *parts.state();
         }
         *state = classical::doubled(&now);
     }

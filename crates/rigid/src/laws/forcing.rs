@@ -10,15 +10,42 @@ use crate::state::point::Point;
 use polhode_ga::simd::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor};
 
-/// States of bodies in lanes.
+/// States of bodies in lanes, in this order, so that in whole cache lines all begins at one.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(crate) struct Place<const W: usize, const F: bool> {
     /// From principal axes to space; |R| is 1 up to the error of a step.
     pub rotor: [Lanes<W, F>; 4],
     /// In principal axes, rad/s.
     pub omega: [Lanes<W, F>; 3],
-    /// In s.
-    pub time: Lanes<W, F>,
+    pub time: Time<W, F>,
+}
+
+/// Times of bodies in lanes, in s.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Time<const W: usize, const F: bool> {
+    Common(f64),
+    Each(Lanes<W, F>),
+}
+
+impl<const W: usize, const F: bool> Time<W, F> {
+    /// That of one body.
+    #[inline(always)]
+    pub fn of(&self, lane: usize) -> f64 {
+        match self {
+            Time::Common(time) => *time,
+            Time::Each(times) => times.0[lane],
+        }
+    }
+
+    /// Those of all bodies.
+    #[inline(always)]
+    pub fn lanes(&self) -> Lanes<W, F> {
+        match self {
+            Time::Common(time) => Lanes::all(*time),
+            Time::Each(times) => *times,
+        }
+    }
 }
 
 /// Torques and accelerations of bodies in lanes.
@@ -115,7 +142,7 @@ impl<'a> BodyForcing<'a> {
     fn phase(&self, at: &Place<1, false>) -> Phase {
         let rotor = Rotor::from_unit_components(One::alone(at.rotor));
         let momentum = self.body.momentum(Bivector(One::alone(at.omega)));
-        Phase { rotor, momentum, time: at.time.0[0] }
+        Phase { rotor, momentum, time: at.time.of(0) }
     }
 }
 

@@ -12,9 +12,13 @@
 //! Each step renormalizes R. Nothing else is conserved by construction. The method has few operations, 134 in a step of
 //! a free body, so bodies in lanes stay in registers.
 
+mod parts;
+
+pub(crate) use parts::Parts;
+
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
-use crate::laws::forcing::{BodyForcing, Forcing, Place};
+use crate::laws::forcing::{BodyForcing, Forcing, Place, Time};
 use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
@@ -63,18 +67,6 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
             self.wheel[k].0[l] = body.wheel.0[k];
         }
         self.damping.0[l] = damping;
-    }
-
-    /// [`PART`] of the bodies, from one on.
-    #[inline(always)]
-    fn part(&self, first: usize) -> Bodies<PART, F> {
-        let Bodies { inverse, coupling, wheel, damping } = self;
-        Bodies {
-            inverse: part(inverse, first),
-            coupling: part(coupling, first),
-            wheel: part(wheel, first),
-            damping: part(&[*damping], first)[0],
-        }
     }
 
     /// `Ω = I⁻¹(m − h)`.
@@ -136,8 +128,8 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
 ) {
     let (half, whole) = (Lanes::all(0.5 * h), Lanes::all(h));
     let (sixth, third) = (Lanes::all(sixth), Lanes::all(sixth + sixth));
-    let [begin, middle, end] = stage_times(time, h).map(Lanes::all);
-    forcing.begin(middle);
+    let [begin, middle, end] = stage_times(time, h);
+    forcing.begin(Lanes::all(middle));
     let k = slope(bodies, forcing, y, begin);
     let mut sum = moved(y, &k, sixth);
     let k = slope(bodies, forcing, &moved(y, &k, half), middle);
@@ -148,74 +140,6 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     sum = moved(&sum, &k, sixth);
     renormalize(&mut sum);
     *y = sum;
-}
-
-/// Bodies for which the numbers of a stage stay in registers.
-const PART: usize = 8;
-
-/// [`step`], with the same bits, of many bodies whose torques are computed in memory: between two torques part by part.
-/// All at once they would be read and written at each operation, in code larger than the cache for instructions.
-#[inline(always)]
-pub(crate) fn step_in_parts<const W: usize, const F: bool, E: Forcing<W, F>>(
-    bodies: &Bodies<W, F>,
-    forcing: &mut E,
-    y: &mut State<7, W, F>,
-    time: f64,
-    [h, sixth]: [f64; 2],
-) {
-    let [begin, middle, end] = stage_times(time, h).map(Lanes::all);
-    let (half, third) = (0.5 * h, sixth + sixth);
-    forcing.begin(middle);
-    // Of each stage its time, its part of the sum, and the step to the next stage.
-    let stages = [(begin, sixth, half), (middle, third, half), (middle, third, h), (end, sixth, 0.0)];
-    let (mut at, mut sum) = (place(y, begin), [Lanes::<W, F>::ZERO; 7]);
-    for (number, (time, part_of_sum, to_next)) in stages.into_iter().enumerate() {
-        at.time = time;
-        let torque = forcing.torque(&at, &[Lanes::ZERO; 6]);
-        for first in (0..W).step_by(PART) {
-            let bodies = bodies.part(first);
-            let ([s, a, b, c], [p, q, r]) = (part(&at.rotor, first), part(&at.omega, first));
-            let here = halved(&[s, a, b, c, p, q, r]);
-            let mut slope = free_slope(&bodies, &here);
-            drive(&bodies, E::WHEELS, &here, part(&torque, first), &mut slope);
-            let before = if number == 0 { part(y, first) } else { part(&sum, first) };
-            let mut total = moved(&before, &slope, Lanes::all(part_of_sum));
-            if number + 1 < stages.len() {
-                put(&mut sum, first, &total);
-                let next = place(&moved(&part(y, first), &slope, Lanes::all(to_next)), Lanes::ZERO);
-                put(&mut at.rotor, first, &next.rotor);
-                put(&mut at.omega, first, &next.omega);
-            } else {
-                renormalize(&mut total);
-                put(y, first, &total);
-            }
-        }
-    }
-}
-
-/// [`PART`] of the bodies, from one on.
-#[inline(always)]
-fn part<const N: usize, const W: usize, const F: bool>(
-    all: &[Lanes<W, F>; N],
-    first: usize,
-) -> [Lanes<PART, F>; N] {
-    let mut part = [Lanes::ZERO; N];
-    for k in 0..N {
-        part[k].0.copy_from_slice(&all[k].0[first..first + PART]);
-    }
-    part
-}
-
-/// The inverse of [`part`].
-#[inline(always)]
-fn put<const N: usize, const W: usize, const F: bool>(
-    all: &mut [Lanes<W, F>; N],
-    first: usize,
-    part: &[Lanes<PART, F>; N],
-) {
-    for k in 0..N {
-        all[k].0[first..first + PART].copy_from_slice(&part[k].0);
-    }
 }
 
 /// `y + h k`.
@@ -239,7 +163,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     bodies: &Bodies<W, F>,
     forcing: &mut E,
     y: &State<N, W, F>,
-    time: Lanes<W, F>,
+    time: f64,
 ) -> State<N, W, F> {
     let mut slope = free_slope(bodies, y);
     let at = place(y, time);
@@ -261,13 +185,10 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
 
 /// The place of a state, with ω instead of a.
 #[inline(always)]
-fn place<const N: usize, const W: usize, const F: bool>(
-    y: &State<N, W, F>,
-    time: Lanes<W, F>,
-) -> Place<W, F> {
+fn place<const N: usize, const W: usize, const F: bool>(y: &State<N, W, F>, time: f64) -> Place<W, F> {
     let minus_two = Lanes::all(-2.0);
     let omega = [y[4] * minus_two, y[5] * minus_two, y[6] * minus_two];
-    Place { rotor: [y[0], y[1], y[2], y[3]], omega, time }
+    Place { rotor: [y[0], y[1], y[2], y[3]], omega, time: Time::Common(time) }
 }
 
 /// The slope of rotor and angular velocity without torque.

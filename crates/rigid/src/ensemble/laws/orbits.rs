@@ -1,6 +1,6 @@
 //! Gravity gradients of bodies on their orbits, in lanes.
 
-use crate::laws::forcing::Place;
+use crate::laws::forcing::{Place, Time};
 use crate::laws::torque::lanes::{Three, gradient, seen};
 use crate::laws::torque::orbit::kepler::Elements;
 use crate::laws::torque::{Orbit, Torque};
@@ -12,6 +12,8 @@ pub(super) struct Orbits<const W: usize> {
     elements: Elements<W>,
     /// 3n², in rad²/s².
     strength: [f64; W],
+    /// The time of the latest positions in s, of all bodies or of each; NaN before the first ones.
+    common: Option<f64>,
     times: [f64; W],
     /// Directions u, whose third component is 0, and `3n² (a/r)³`.
     places: [[f64; W]; 3],
@@ -33,6 +35,7 @@ impl<const W: usize> Orbits<W> {
         Some(Orbits {
             elements: Elements::new(orbits.each_ref().map(Orbit::elements)),
             strength: orbits.map(|orbit| 3.0 * orbit.rate() * orbit.rate()),
+            common: None,
             times: [f64::NAN; W],
             places: [[0.0; W]; 3],
             shared: orbits.iter().all(|orbit| *orbit == orbits[0]),
@@ -43,15 +46,26 @@ impl<const W: usize> Orbits<W> {
 
     #[inline(always)]
     pub fn torque<const F: bool>(&mut self, moments: &Three<W, F>, at: &Place<W, F>) -> Three<W, F> {
-        let mut elsewhere = false;
-        for l in 0..W {
-            elsewhere |= at.time.0[l] != self.times[l];
-        }
-        if elsewhere {
-            fastest(Moved { orbits: self, times: &at.time.0 });
+        if !self.are_at(&at.time) {
+            fastest(Moved { orbits: self, time: &at.time });
         }
         let [x, y, strength] = self.places;
         gradient(moments, &seen(&at.rotor, &[Lanes(x), Lanes(y), Lanes::ZERO]), Lanes(strength))
+    }
+
+    /// Whether the latest positions are those at a time.
+    #[inline(always)]
+    fn are_at<const F: bool>(&self, time: &Time<W, F>) -> bool {
+        match time {
+            Time::Common(time) => self.common == Some(*time),
+            Time::Each(times) => {
+                let mut same = self.common.is_none();
+                for l in 0..W {
+                    same &= times.0[l] == self.times[l];
+                }
+                same
+            }
+        }
     }
 
     /// Computes the places at times to come, in order, if all bodies share them.
@@ -69,30 +83,32 @@ impl<const W: usize> Orbits<W> {
     }
 }
 
-/// Moves all bodies to these times, compiled outside the stages of the steps and, with the copies, for their registers.
-struct Moved<'a, const W: usize> {
+/// Moves all bodies to a time, compiled outside the stages of the steps and, with the copies, for their registers.
+struct Moved<'a, const W: usize, const F: bool> {
     orbits: &'a mut Orbits<W>,
-    times: &'a [f64; W],
+    time: &'a Time<W, F>,
 }
 
-impl<const W: usize> Work for Moved<'_, W> {
+impl<const W: usize, const F: bool> Work for Moved<'_, W, F> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let Moved { orbits, times } = self;
-        let mut together = orbits.shared;
-        for l in 0..W {
-            orbits.times[l] = times[l];
-            together &= times[l] == times[0];
-        }
-        if together && let Some(place) = orbits.lookahead.find(times[0]) {
-            for k in 0..3 {
-                orbits.places[k] = [orbits.then[place][k]; W];
+        let Moved { orbits, time } = self;
+        orbits.times = time.lanes().0;
+        orbits.common = None;
+        if let Time::Common(time) = *time {
+            orbits.common = Some(time);
+            if orbits.shared
+                && let Some(place) = orbits.lookahead.find(time)
+            {
+                for k in 0..3 {
+                    orbits.places[k] = [orbits.then[place][k]; W];
+                }
+                return;
             }
-            return;
         }
-        let [x, y, mut strength] = orbits.elements.places::<FUSED>(times);
+        let [x, y, mut strength] = orbits.elements.places::<FUSED>(&orbits.times);
         for l in 0..W {
             strength[l] *= orbits.strength[l];
         }

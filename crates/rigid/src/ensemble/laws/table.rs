@@ -26,7 +26,7 @@ impl<'t> CachedTable<'t> {
     ) -> Three<W, F> {
         let mut torques = [Lanes::ZERO; 3];
         for l in 0..W {
-            let at = [place.time.0[l], middle.0[l]];
+            let at = [place.time.of(l), middle.0[l]];
             if at != self.at {
                 self.at = at;
                 self.torque = self.table.within(at[0], at[1]).map_or([f64::NAN; 3], |torque| torque.0);

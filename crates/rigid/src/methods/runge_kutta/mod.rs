@@ -24,7 +24,7 @@ use super::classical::{Bodies, renormalize};
 use crate::error::SimulateError;
 use crate::laws::driven_wheels::driven;
 use crate::laws::force::Translation;
-use crate::laws::forcing::{BodyForcing, Forcing, Place};
+use crate::laws::forcing::{BodyForcing, Forcing, Place, Time};
 use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
@@ -166,7 +166,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         let momentum = mapped_back(&axes, &at.momentum);
         let wheel = forcing.wheel(&bodies.wheel, &at.time);
         let omega = bodies.omega_with_wheel(&momentum, &wheel);
-        let place = Place { rotor, omega, time: at.time };
+        let place = Place { rotor, omega, time: Time::Each(at.time) };
         let omega = mapped(&axes, &omega);
         let first = cross(&turned, &omega);
         let second = cross(&turned, &first);

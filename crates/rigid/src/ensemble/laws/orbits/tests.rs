@@ -5,16 +5,16 @@ fn ellipse(body: usize) -> Orbit {
     Orbit::new(0.1 + 0.01 * part, 0.05 * part, 0.3 * part).unwrap()
 }
 
-fn assert_there(orbits: &mut Orbits<8>, each: &[Orbit; 8], times: [f64; 8]) {
+fn assert_there(orbits: &mut Orbits<8>, each: &[Orbit; 8], time: Time<8, false>) {
     let one = Lanes::all(1.0);
     let rotor = [one, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO];
-    let at = Place::<8, false> { rotor, omega: [Lanes::ZERO; 3], time: Lanes(times) };
+    let at = Place::<8, false> { rotor, omega: [Lanes::ZERO; 3], time };
     orbits.torque(&[one; 3], &at);
     for l in 0..8 {
-        let (u, nearness) = each[l].place(times[l]);
+        let (u, nearness) = each[l].place(time.of(l));
         let strength = 3.0 * each[l].rate() * each[l].rate() * nearness;
         let found = [0, 1, 2].map(|k| orbits.places[k][l]);
-        assert_eq!(found, [u.0[0], u.0[1], strength], "body {l} at {}", times[l]);
+        assert_eq!(found, [u.0[0], u.0[1], strength], "body {l} at {}", time.of(l));
     }
 }
 
@@ -24,12 +24,13 @@ fn shared_orbits_are_found_at_any_time() {
     let each = [ellipse(3); 8];
     let law = Torque::GravityGradient(each[0]);
     let mut orbits = Orbits::<8>::new([&law; 8]).unwrap();
-    assert_there(&mut orbits, &each, [0.25; 8]);
+    assert_there(&mut orbits, &each, Time::Common(0.25));
     orbits.foresee((0..20).map(|k| 0.5 * f64::from(k)));
     for time in [0.0, 0.5, 0.5, 1.0, 7.25, 1.5, 4.0, -2.0, 9.5, 10.0] {
-        assert_there(&mut orbits, &each, [time; 8]);
+        assert_there(&mut orbits, &each, Time::Common(time));
+        assert_there(&mut orbits, &each, Time::Each(Lanes([time; 8])));
     }
-    assert_there(&mut orbits, &each, std::array::from_fn(|l| l as f64));
+    assert_there(&mut orbits, &each, Time::Each(Lanes(std::array::from_fn(|l| l as f64))));
 }
 
 #[test]
@@ -39,7 +40,8 @@ fn own_orbits_are_not_foreseen() {
     let mut orbits = Orbits::<8>::new(laws.each_ref()).unwrap();
     orbits.foresee([0.0, 1.0].into_iter());
     for time in [0.0, 1.0, 2.5] {
-        assert_there(&mut orbits, &each, [time; 8]);
+        assert_there(&mut orbits, &each, Time::Common(time));
     }
-    assert_there(&mut orbits, &each, std::array::from_fn(|l| 100.0 * l as f64));
+    assert_there(&mut orbits, &each, Time::Each(Lanes(std::array::from_fn(|l| 100.0 * l as f64))));
+    assert_there(&mut orbits, &each, Time::Common(100.0));
 }

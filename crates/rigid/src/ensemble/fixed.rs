@@ -4,7 +4,7 @@ use super::laws::{LaneForcing, Laws};
 use super::member::{Member, Plan, of};
 use super::recorder::{Recorder, moderate};
 use super::scheduler::Scheduler;
-use super::steppers::{Advance, Components, Kicks, Segment, Stepper};
+use super::steppers::{Advance, Components, InMemory, InRegisters, Kicks, Marching, Segment, Stepper};
 use crate::laws::torque::{Torque, damping_rate};
 use crate::methods::Method;
 use crate::methods::classical::Bodies;
@@ -47,32 +47,30 @@ impl<const W: usize> Work for FixedSteps<'_, '_, W> {
             let (stages, laws) = ((&stages[..], last), Laws::new(gyrostats, array::from_fn(laws)));
             self.advance_all::<F, _>(&mut Kicks::<W, F> { turns, stages, laws }, &torques);
         } else {
-            let bodies = Bodies::new(array::from_fn(|l| (gyrostats[l], damping(l))));
+            let bodies = Bodies::<W, F>::new(array::from_fn(|l| (gyrostats[l], damping(l))));
             match LaneForcing::new(gyrostats, array::from_fn(laws)) {
-                LaneForcing::NoForcing(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
-                }
-                LaneForcing::Weight(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
-                }
-                LaneForcing::Gradient(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
-                }
-                LaneForcing::Controller(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
-                }
-                LaneForcing::Formula(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
-                }
-                LaneForcing::Laws(forcing) => {
-                    self.advance_all::<F, _>(&mut Components::<_, W, F> { bodies, forcing }, &torques);
-                }
+                LaneForcing::NoForcing(forcing) => self.march(bodies, InRegisters(forcing), &torques),
+                LaneForcing::Weight(forcing) => self.march(bodies, InRegisters(forcing), &torques),
+                LaneForcing::Controller(forcing) => self.march(bodies, InRegisters(forcing), &torques),
+                LaneForcing::Gradient(forcing) => self.march(bodies, InMemory(forcing), &torques),
+                LaneForcing::Formula(forcing) => self.march(bodies, InMemory(forcing), &torques),
+                LaneForcing::Laws(forcing) => self.march(bodies, InMemory(forcing), &torques),
             }
         }
     }
 }
 
 impl<const W: usize> FixedSteps<'_, '_, W> {
+    /// The classical method.
+    fn march<const F: bool, M: Marching<W, F>>(
+        self,
+        bodies: Bodies<W, F>,
+        acting: M,
+        torques: &[Cow<[Torque]>],
+    ) {
+        self.advance_all::<F, _>(&mut Components { bodies, acting }, torques);
+    }
+
     fn advance_all<const F: bool, S: Stepper<W>>(self, stepper: &mut S, torques: &[Cow<[Torque]>]) {
         let FixedSteps { scheduler, plan, members, progress } = self;
         let gyrostats: Vec<Gyrostat> = members.iter().map(|member| member.gyrostat).collect();

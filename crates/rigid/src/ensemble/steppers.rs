@@ -1,11 +1,12 @@
 //! Fixed-step methods for bodies in SIMD lanes.
 
-use super::laws::Laws;
-use super::member::{Member, of};
+use super::laws::{InParts, Laws};
+use super::member::{Member, SIDE_BY_SIDE, of};
 use super::observe::{LaneBodies, LanePhases};
 use crate::laws::forcing::Forcing;
 use crate::laws::torque::lanes::in_lanes;
-use crate::methods::classical::{self, Bodies, Parts, State};
+use crate::methods::classical::parts::{Parts, part, put};
+use crate::methods::classical::{self, Bodies, State};
 use crate::methods::splitting::turns::{Spin, Turns, stage_times};
 use polhode_ga::simd::lanes::{Lanes, Work};
 use std::ops::Range;
@@ -91,9 +92,83 @@ impl<S: Stepper<W>, const W: usize, const F: bool> Work for Advance<'_, S, W, F>
 }
 
 /// The classical method.
-pub(super) struct Components<E, const W: usize, const F: bool> {
+pub(super) struct Components<M, const W: usize, const F: bool> {
     pub bodies: Bodies<W, F>,
-    pub forcing: E,
+    pub acting: M,
+}
+
+/// Torques with the way in which the classical method steps under them.
+pub(super) trait Marching<const W: usize, const F: bool> {
+    /// A number of steps, from each time to the next. `#[inline(always)]`.
+    fn march(
+        &mut self,
+        bodies: &Bodies<W, F>,
+        state: &mut State<7, W, F>,
+        times: &[f64; TIMED + 1],
+        count: usize,
+    );
+}
+
+/// Torques that are computed in registers with the steps, for as many bodies at a time as have room there.
+pub(super) struct InRegisters<E>(pub E);
+
+/// Torques that are computed in memory, for all bodies at a time.
+pub(super) struct InMemory<E>(pub E);
+
+/// The lengths of steps from each time to the next, and their sixths.
+#[inline(always)]
+fn lengths(times: &[f64; TIMED + 1]) -> [[f64; TIMED]; 2] {
+    // One division of many lanes instead of many of one.
+    let mut lengths = [[0.0; TIMED]; 2];
+    for k in 0..TIMED {
+        lengths[0][k] = times[k + 1] - times[k];
+        lengths[1][k] = lengths[0][k] / 6.0;
+    }
+    lengths
+}
+
+impl<E: InParts<W, F>, const W: usize, const F: bool> Marching<W, F> for InRegisters<E> {
+    #[inline(always)]
+    fn march(
+        &mut self,
+        bodies: &Bodies<W, F>,
+        state: &mut State<7, W, F>,
+        times: &[f64; TIMED + 1],
+        count: usize,
+    ) {
+        let lengths = lengths(times);
+        for group in 0..W / SIDE_BY_SIDE {
+            let first = group * SIDE_BY_SIDE;
+            // Copies, which the compiler may keep in registers.
+            let (bodies, mut now) = (bodies.part(first), classical::halved(&part(state, first)));
+            let mut forcing = self.0.part::<SIDE_BY_SIDE>(first);
+            for k in 0..count {
+                let length = [lengths[0][k], lengths[1][k]];
+                classical::step(&bodies, &mut forcing, &mut now, times[k], length);
+            }
+            put(state, first, &classical::doubled(&now));
+        }
+    }
+}
+
+impl<E: Forcing<W, F>, const W: usize, const F: bool> Marching<W, F> for InMemory<E> {
+    #[inline(always)]
+    fn march(
+        &mut self,
+        bodies: &Bodies<W, F>,
+        state: &mut State<7, W, F>,
+        times: &[f64; TIMED + 1],
+        count: usize,
+    ) {
+        let steps = times[..=count].windows(2);
+        self.0.ahead(steps.flat_map(|t| classical::stage_times(t[0], t[1] - t[0])));
+        let lengths = lengths(times);
+        let mut parts = Parts::new(bodies, &classical::halved(state));
+        for k in 0..count {
+            parts.step(&mut self.0, times[k], [lengths[0][k], lengths[1][k]]);
+        }
+        *state = classical::doubled(parts.state());
+    }
 }
 
 /// A splitting, with its kicks and drifts.
@@ -103,7 +178,7 @@ pub(super) struct Kicks<'t, const W: usize, const F: bool> {
     pub laws: Laws<'t, W, F>,
 }
 
-impl<E: Forcing<W, F>, const W: usize, const F: bool> Stepper<W> for Components<E, W, F> {
+impl<M: Marching<W, F>, const W: usize, const F: bool> Stepper<W> for Components<M, W, F> {
     type State = State<7, W, F>;
 
     fn start(&self, members: &[Member]) -> Self::State {
@@ -116,29 +191,7 @@ impl<E: Forcing<W, F>, const W: usize, const F: bool> Stepper<W> for Components<
 
     #[inline(always)]
     fn advance(&mut self, state: &mut Self::State, times: &[f64; TIMED + 1], count: usize) {
-        let steps = times[..=count].windows(2);
-        self.forcing.ahead(steps.flat_map(|t| classical::stage_times(t[0], t[1] - t[0])));
-        // Copies, which the compiler may keep in registers.
-        let (bodies, mut now) = (self.bodies, classical::halved(state));
-        // One division of many lanes instead of many of one.
-        let mut lengths = [[0.0; TIMED]; 2];
-        for k in 0..TIMED {
-            lengths[0][k] = times[k + 1] - times[k];
-            lengths[1][k] = lengths[0][k] / 6.0;
-        }
-        if E::IN_REGISTERS {
-            for k in 0..count {
-                let length = [lengths[0][k], lengths[1][k]];
-                classical::step(&bodies, &mut self.forcing, &mut now, times[k], length);
-            }
-        } else {
-            let mut parts = Parts::new(&bodies, &now);
-            for k in 0..count {
-                parts.step(&mut self.forcing, times[k], [lengths[0][k], lengths[1][k]]);
-            }
-            now = *parts.state();
-        }
-        *state = classical::doubled(&now);
+        self.acting.march(&self.bodies, state, times, count);
     }
 
     fn numbers(state: &Self::State) -> impl Iterator<Item = &[f64; W]> {

@@ -56,9 +56,6 @@ pub(crate) trait Forcing<const W: usize, const F: bool> {
     /// Whether there may be wheels.
     const WHEELS: bool = true;
 
-    /// Whether torques are computed in registers, with the steps, and not by a call.
-    const IN_REGISTERS: bool = false;
-
     /// Begins a step with this middle, in s: laws that jump in time are taken on its side of the jump. By default laws
     /// do not jump.
     #[inline(always)]

@@ -12,9 +12,7 @@
 //! Each step renormalizes R. Nothing else is conserved by construction. The method has few operations, 134 in a step of
 //! a free body, so bodies in lanes stay in registers.
 
-mod parts;
-
-pub(crate) use parts::Parts;
+pub(crate) mod parts;
 
 use crate::error::SimulateError;
 use crate::laws::force::Translation;

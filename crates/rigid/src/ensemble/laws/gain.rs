@@ -1,6 +1,7 @@
 //! Linear maps of bivectors for bodies in lanes: gains of springs, dampers and controllers.
 
 use crate::laws::torque::lanes::{Three, add};
+use crate::methods::classical::parts::part;
 use polhode_ga::simd::lanes::{Lanes, mapped};
 
 /// A linear map for each body.
@@ -12,6 +13,9 @@ pub(super) enum Gain<const W: usize, const F: bool> {
 }
 
 impl<const W: usize, const F: bool> Gain<W, F> {
+    /// Maps all to zero.
+    pub const NONE: Self = Gain::Diagonal([Lanes::ZERO; 3]);
+
     /// From its matrix, by rows.
     pub fn new(m: [Three<W, F>; 3]) -> Gain<W, F> {
         let off = [&m[0][1], &m[0][2], &m[1][0], &m[1][2], &m[2][0], &m[2][1]];
@@ -19,6 +23,15 @@ impl<const W: usize, const F: bool> Gain<W, F> {
             Gain::Diagonal([m[0][0], m[1][1], m[2][2]])
         } else {
             Gain::Matrix(m)
+        }
+    }
+
+    /// That of `P` of the bodies, from one on.
+    #[inline(always)]
+    pub fn part<const P: usize>(&self, first: usize) -> Gain<P, F> {
+        match self {
+            Gain::Diagonal(entries) => Gain::Diagonal(part(entries, first)),
+            Gain::Matrix([x, y, z]) => Gain::Matrix([part(x, first), part(y, first), part(z, first)]),
         }
     }
 

@@ -54,9 +54,10 @@ impl<const W: usize, const F: bool> Parts<W, F> {
             let (part_of_sum, to_next) = (Lanes::all(parts_of_sum[stage]), Lanes::all(to_next[stage]));
             for first in (0..W).step_by(PART) {
                 let ([s, a, b, c], [p, q, r]) = (part(&self.at.rotor, first), part(&self.at.omega, first));
-                let here = halved(&[s, a, b, c, p, q, r]);
-                let mut slope = free_slope(&self.bodies.part(first), &here);
-                drive(&self.bodies.part(first), E::WHEELS, &here, part(&self.torque, first), &mut slope);
+                let here = halved::<7, PART, F>(&[s, a, b, c, p, q, r]);
+                let bodies = self.bodies.part(first);
+                let mut slope = free_slope(&bodies, &here);
+                drive(&bodies, E::WHEELS, &here, part(&self.torque, first), &mut slope);
                 let before = part(&self.state, first);
                 if stage < last {
                     let so_far = if stage == 0 { before } else { part(&self.sum, first) };
@@ -82,9 +83,9 @@ impl<const W: usize, const F: bool> Parts<W, F> {
 }
 
 impl<const W: usize, const F: bool> Bodies<W, F> {
-    /// [`PART`] of the bodies, from one on.
+    /// `P` of the bodies, from one on.
     #[inline(always)]
-    fn part(&self, first: usize) -> Bodies<PART, F> {
+    pub fn part<const P: usize>(&self, first: usize) -> Bodies<P, F> {
         let Bodies { inverse, coupling, wheel, damping } = self;
         Bodies {
             inverse: part(inverse, first),
@@ -95,12 +96,12 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
     }
 }
 
-/// [`PART`] of the bodies, from one on.
+/// The numbers of `P` of the bodies, from one on.
 #[inline(always)]
-fn part<const N: usize, const W: usize, const F: bool>(
+pub(crate) fn part<const N: usize, const W: usize, const P: usize, const F: bool>(
     all: &[Lanes<W, F>; N],
     first: usize,
-) -> [Lanes<PART, F>; N] {
+) -> [Lanes<P, F>; N] {
     let mut part = [Lanes::ZERO; N];
     for k in 0..N {
         part[k] = some(&all[k], first);
@@ -108,22 +109,22 @@ fn part<const N: usize, const W: usize, const F: bool>(
     part
 }
 
-/// A number of [`PART`] of the bodies.
+/// A number of `P` of the bodies.
 #[inline(always)]
-fn some<const W: usize, const F: bool>(all: &Lanes<W, F>, first: usize) -> Lanes<PART, F> {
+fn some<const W: usize, const P: usize, const F: bool>(all: &Lanes<W, F>, first: usize) -> Lanes<P, F> {
     let mut some = Lanes::ZERO;
-    some.0.copy_from_slice(&all.0[first..first + PART]);
+    some.0.copy_from_slice(&all.0[first..first + P]);
     some
 }
 
 /// The inverse of [`part`].
 #[inline(always)]
-fn put<const N: usize, const W: usize, const F: bool>(
+pub(crate) fn put<const N: usize, const W: usize, const P: usize, const F: bool>(
     all: &mut [Lanes<W, F>; N],
     first: usize,
-    part: &[Lanes<PART, F>; N],
+    part: &[Lanes<P, F>; N],
 ) {
     for k in 0..N {
-        all[k].0[first..first + PART].copy_from_slice(&part[k].0);
+        all[k].0[first..first + P].copy_from_slice(&part[k].0);
     }
 }

@@ -128,3 +128,6 @@ pub(crate) fn put<const N: usize, const W: usize, const P: usize, const F: bool>
         all[k].0[first..first + P].copy_from_slice(&part[k].0);
     }
 }
+
+#[cfg(test)]
+mod tests;

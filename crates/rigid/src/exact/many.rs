@@ -52,12 +52,13 @@ pub struct Tile {
     horizons: Vec<[f64; 2]>,
 }
 
-/// The motions of one form.
+/// The motions of one form. Blocks are large: in boxes they are not copied when the list grows.
 #[derive(Clone, Debug)]
-struct Blocks<K>(Vec<Block<K>>);
+struct Blocks<K>(Vec<Box<Block<K>>>);
 
-/// Motions of one form in their lanes.
+/// Motions of one form in their lanes, in whole cache lines: a register that spans two takes twice as long to read.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 struct Block<K> {
     coefficients: K,
     /// Their places in the tile, ascending.
@@ -85,7 +86,7 @@ impl Tile {
         for (place, motion) in motions.take(TILE).enumerate() {
             tile.add(&motion.map_err(|error| (place, error))?);
         }
-        Ok(tile.without_room())
+        Ok(tile)
     }
 
     /// The motions of the next bodies without a torque, set up in lanes.
@@ -177,7 +178,7 @@ impl Tile {
             }
             match failed {
                 Some(error) => return Err(error),
-                None if group.is_empty() => return Ok(tile.without_room()),
+                None if group.is_empty() => return Ok(tile),
                 None => {}
             }
         }
@@ -196,18 +197,6 @@ impl Tile {
             Form::DampedHyperbolic(one) => self.damped_hyperbolic.add(place, one),
             Form::Larmor(one) => self.larmor.add(place, one),
         }
-    }
-
-    /// Without room for more motions: blocks are large.
-    fn without_room(mut self) -> Tile {
-        self.free_circular.0.shrink_to_fit();
-        self.free_hyperbolic.0.shrink_to_fit();
-        self.lagrange_circular.0.shrink_to_fit();
-        self.lagrange_hyperbolic.0.shrink_to_fit();
-        self.damped_circular.0.shrink_to_fit();
-        self.damped_hyperbolic.0.shrink_to_fit();
-        self.larmor.0.shrink_to_fit();
-        self
     }
 
     /// [`ExactMotion::horizons`] of each motion.
@@ -236,8 +225,9 @@ impl<K: Lanes<TOGETHER>> Blocks<K> {
     /// The block with the next lane.
     fn open(&mut self) -> &mut Block<K> {
         let Blocks(blocks) = self;
-        if blocks.last().is_none_or(Block::is_full) {
-            blocks.push(Block { coefficients: K::empty(), places: [0; TOGETHER], count: 0 });
+        if blocks.last().is_none_or(|block| block.is_full()) {
+            let block = Block { coefficients: K::empty(), places: [0; TOGETHER], count: 0 };
+            blocks.push(Box::write(Box::new_uninit(), block));
         }
         let last = blocks.len() - 1;
         &mut blocks[last]
@@ -253,10 +243,11 @@ impl<K: Lanes<TOGETHER>> Blocks<K> {
 
     /// Puts the motions in some lanes, those of the places `first` and up, into the next lanes.
     fn add_lanes(&mut self, first: usize, motions: &mut K, mut lanes: &[usize]) {
-        if lanes.len() == TOGETHER && self.0.last().is_none_or(Block::is_full) {
+        if lanes.len() == TOGETHER && self.0.last().is_none_or(|block| block.is_full()) {
             // All lanes, in their order.
             let places = array::from_fn(|l| (first + l) as u16);
-            return self.0.push(Block { coefficients: *motions, places, count: TOGETHER });
+            let block = Block { coefficients: *motions, places, count: TOGETHER };
+            return self.0.push(Box::write(Box::new_uninit(), block));
         }
         while !lanes.is_empty() {
             let block = self.open();

@@ -101,7 +101,7 @@ fn run(
         let threads = Threads::new(threads);
         let summary = ensemble.run(times, options, threads, outputs, &mut |_| true).unwrap();
         fit = summary.failures.is_empty();
-        steps = summary.steps.iter().map(|[steps, _]| steps).sum();
+        steps = summary.steps.iter().sum();
     });
     fit.then_some((steps, time))
 }

@@ -116,7 +116,7 @@ fn bodies_match_single_runs() {
                 };
                 let states = motion.states();
                 assert_eq!(summary.method(body), motion.certificate.method);
-                assert_eq!(summary.steps[body][0], motion.certificate.steps);
+                assert_eq!(summary.steps[body], motion.certificate.steps);
                 for (k, row) in found[body * TIMES.len()..][..TIMES.len()].iter().enumerate() {
                     let single = states.rotors[k].components().into_iter().chain(states.omegas[k].0);
                     let single = single.chain(states.momenta_space[k].0).chain([states.energies[k]]);
@@ -218,15 +218,14 @@ fn certificates_have_the_bits_of_single_runs() {
                     assert_eq!(summary.norm_drifts[body], alone.certificate.norm_drift);
                 }
                 for (quantity, start, drift) in &alone.certificate.drifts {
-                    let (_, column) =
-                        summary.drifts.iter().find(|(name, _)| *name == quantity.name()).unwrap();
-                    assert_eq!(column[body][0], *start, "{}", quantity.name());
-                    assert!((column[body][1] - drift).abs() <= 8.0 * f64::EPSILON);
+                    let drifts = summary.drifts.iter().find(|drift| drift.name == quantity.name()).unwrap();
+                    assert_eq!(drifts.values[body], *start, "{}", quantity.name());
+                    assert!((drifts.changes[body] - drift).abs() <= 8.0 * f64::EPSILON);
                 }
                 named += alone.certificate.drifts.len();
             }
-            let known = summary.drifts.iter().flat_map(|(_, rows)| rows);
-            assert_eq!(known.filter(|[start, _]| !start.is_nan()).count(), named);
+            let known = summary.drifts.iter().flat_map(|drift| &drift.values);
+            assert_eq!(known.filter(|value| !value.is_nan()).count(), named);
         }
     }
 }

@@ -12,7 +12,7 @@ use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::SimulateError;
-use polhode_rigid::ensemble::{self, Ensemble, Outputs, Start, Summary};
+use polhode_rigid::ensemble::{self, Drift, Ensemble, Outputs, Start, Summary};
 use polhode_rigid::run::Options;
 use polhode_rigid::state::center::Center;
 use pyo3::prelude::*;
@@ -135,25 +135,27 @@ pub(crate) fn starts(
 ) -> PyResult<Vec<Start>> {
     let count = shape.iter().product();
     let begins = spread(numbers(begins)?, begins.shape(), shape)?;
-    let rotors = {
-        let own = batch(rotors);
-        let rows = numbers(rotors)?.as_chunks::<4>().0.iter().enumerate();
-        let failed = |row, error| bad(format!("{}{error}", place(row, own)));
-        let mut rotors = Vec::with_capacity(rows.len());
-        for (row, components) in rows {
-            rotors.push(Rotor::from_components(*components).map_err(|error| failed(row, error))?);
-        }
-        spread(rotors, own, shape)?
+    let rotors = spread(numbers(rotors)?.as_chunks::<4>().0, batch(rotors), shape)?;
+    let whose = if rotors.len() == 1 { &[] } else { shape };
+    let rotor = |body: usize| {
+        let rotor = Rotor::from_components(*one_of(&rotors, body));
+        rotor.map_err(|error| bad(format!("{}{error}", place(body, whose))))
     };
     let omegas = spread(numbers(omegas)?.as_chunks::<3>().0, batch(omegas), shape)?;
     let centers = spread(numbers(centers)?.as_chunks::<6>().0, batch(centers), shape)?;
-    let start = |body: usize| Start {
-        time: *one_of(&begins, body),
-        rotor: *one_of(&rotors, body),
-        omega: Bivector(*one_of(&omegas, body)),
-        center: Center::from(*one_of(&centers, body)),
+    let start = |body: usize| -> PyResult<Start> {
+        Ok(Start {
+            time: *one_of(&begins, body),
+            rotor: rotor(body)?,
+            omega: Bivector(*one_of(&omegas, body)),
+            center: Center::from(*one_of(&centers, body)),
+        })
     };
-    Ok((0..count).map(start).collect())
+    let mut starts = Vec::with_capacity(count);
+    for body in 0..count {
+        starts.push(start(body)?);
+    }
+    Ok(starts)
 }
 
 fn one_of<T>(rows: &[T], body: usize) -> &T {
@@ -166,18 +168,18 @@ fn batch<'a>(rows: &'a Rows<'_>) -> &'a [usize] {
 
 /// The summary as a dict: arrays with one number per body, and lists of numbers, times and messages of failures.
 fn dictionary<'py>(py: Python<'py>, summary: Summary) -> PyResult<Bound<'py, PyDict>> {
-    let methods = PyArray1::from_iter(py, summary.methods.iter().map(|&place| place as i64));
-    let counts = |k: usize| PyArray1::from_iter(py, summary.steps.iter().map(|counts| counts[k] as i64));
+    // In the same memory.
+    let counts = |words: Vec<u64>| PyArray1::from_vec(py, words.into_iter().map(|n| n as i64).collect());
     let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
-    for (name, rows) in &summary.drifts {
-        conserved.set_item(name, line(py, rows.iter().map(|row| row[0]).collect()))?;
-        drift.set_item(name, line(py, rows.iter().map(|row| row[1]).collect()))?;
+    for Drift { name, values, changes } in summary.drifts {
+        conserved.set_item(name, line(py, values))?;
+        drift.set_item(name, line(py, changes))?;
     }
     let failures = &summary.failures;
     let result = PyDict::new(py);
-    result.set_item("methods", (&summary.method_names, methods))?;
-    result.set_item("steps", counts(0))?;
-    result.set_item("evaluations", counts(1))?;
+    result.set_item("methods", (&summary.method_names, counts(summary.methods)))?;
+    result.set_item("steps", counts(summary.steps))?;
+    result.set_item("evaluations", counts(summary.evaluations))?;
     result.set_item("step", line(py, summary.longest))?;
     result.set_item("error_estimate", line(py, summary.estimates))?;
     result.set_item("conserved", conserved)?;

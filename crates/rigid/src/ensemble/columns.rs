@@ -4,7 +4,7 @@
 
 use super::Failure;
 use super::member::Outcome;
-use super::output::Summary;
+use super::output::{Drift, Summary};
 use crate::error::SimulateError;
 use crate::laws::conserved::{Conserved, NAMES};
 use std::array::from_fn;
@@ -17,28 +17,31 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// N numbers of each body.
-struct Column<const N: usize>(Vec<[AtomicU64; N]>);
+/// A number of each body.
+struct Column(Vec<AtomicU64>);
 
-impl<const N: usize> Column<N> {
-    fn new(bodies: usize, filling: u64) -> Column<N> {
-        Column((0..bodies).map(|_| from_fn(|_| AtomicU64::new(filling))).collect())
+impl Column {
+    fn new(bodies: usize, filling: u64) -> Column {
+        Column((0..bodies).map(|_| AtomicU64::new(filling)).collect())
     }
 
-    fn write(&self, body: usize, words: [u64; N]) {
-        for (place, word) in self.0[body].iter().zip(words) {
-            place.store(word, Ordering::Relaxed);
-        }
+    /// Of numbers that are not known yet: NaN.
+    fn unknown(bodies: usize) -> Column {
+        Column::new(bodies, f64::NAN.to_bits())
     }
 
-    fn finish(self) -> Vec<[u64; N]> {
-        let row = |row: [AtomicU64; N]| from_fn(|k| row[k].load(Ordering::Relaxed));
-        self.0.into_iter().map(row).collect()
+    fn write(&self, body: usize, word: u64) {
+        self.0[body].store(word, Ordering::Relaxed);
     }
 
-    fn numbers(self) -> Vec<[f64; N]> {
-        let row = |row: [AtomicU64; N]| from_fn(|k| f64::from_bits(row[k].load(Ordering::Relaxed)));
-        self.0.into_iter().map(row).collect()
+    /// The words, in the same memory.
+    fn words(self) -> Vec<u64> {
+        self.0.into_iter().map(AtomicU64::into_inner).collect()
+    }
+
+    /// The numbers, in the same memory.
+    fn numbers(self) -> Vec<f64> {
+        self.0.into_iter().map(|word| f64::from_bits(word.into_inner())).collect()
     }
 }
 
@@ -73,13 +76,14 @@ struct Rare {
 pub(super) struct Columns {
     bodies: usize,
     /// By number.
-    methods: Column<1>,
-    steps: Column<2>,
-    longest: Column<1>,
-    estimates: Column<1>,
-    norm_drifts: Column<1>,
-    /// By [`Conserved::number`], made when a body has the quantity; NaN for bodies that do not.
-    drifts: [OnceLock<Column<2>>; NAMES.len()],
+    methods: Column,
+    steps: Column,
+    evaluations: Column,
+    longest: Column,
+    estimates: Column,
+    norm_drifts: Column,
+    /// Values and changes, by [`Conserved::number`], made when a body has the quantity; NaN for bodies that do not.
+    drifts: [OnceLock<[Column; 2]>; NAMES.len()],
     rare: Mutex<Rare>,
 }
 
@@ -103,8 +107,9 @@ impl Columns {
             bodies,
             methods: Column::new(bodies, 0),
             steps: Column::new(bodies, 0),
+            evaluations: Column::new(bodies, 0),
             longest: Column::new(bodies, 0),
-            estimates: Column::new(bodies, f64::NAN.to_bits()),
+            estimates: Column::unknown(bodies),
             norm_drifts: Column::new(bodies, 0),
             drifts: from_fn(|_| OnceLock::new()),
             rare: Mutex::default(),
@@ -122,18 +127,19 @@ impl Columns {
 
     pub fn record(&self, body: usize, record: Record) {
         let Record { method, longest, steps, evaluations, estimate, norm_drift } = record;
-        self.methods.write(body, [method as u64]);
-        self.steps.write(body, [steps, evaluations]);
-        self.longest.write(body, [longest.to_bits()]);
-        self.estimates.write(body, [estimate.to_bits()]);
-        self.norm_drifts.write(body, [norm_drift.to_bits()]);
+        self.methods.write(body, method as u64);
+        self.steps.write(body, steps);
+        self.evaluations.write(body, evaluations);
+        self.longest.write(body, longest.to_bits());
+        self.estimates.write(body, estimate.to_bits());
+        self.norm_drifts.write(body, norm_drift.to_bits());
     }
 
     /// Records a conserved quantity at the start, and its largest relative change.
     pub fn drift(&self, body: usize, quantity: Conserved, numbers: [f64; 2]) {
-        let column =
-            self.drifts[quantity.number()].get_or_init(|| Column::new(self.bodies, f64::NAN.to_bits()));
-        column.write(body, numbers.map(f64::to_bits));
+        let columns =
+            self.drifts[quantity.number()].get_or_init(|| from_fn(|_| Column::unknown(self.bodies)));
+        columns.iter().zip(numbers).for_each(|(column, x)| column.write(body, x.to_bits()));
     }
 
     pub fn fail(&self, body: usize, (time, error): (f64, SimulateError)) {
@@ -176,25 +182,26 @@ impl Columns {
         let mut rare = mem::take(&mut *lock(&self.rare));
         rare.failures.sort_by_key(|failure| failure.body);
         rare.warnings.sort_by_key(|(body, place, _)| (*body, *place));
-        let mut methods = self.methods.finish().into_flattened();
+        let mut methods = self.methods.words();
         let method_names = by_first_use(rare.methods, &mut methods);
         let mut drifts = Vec::new();
-        for (name, column) in NAMES.into_iter().zip(self.drifts) {
-            let Some(column) = column.into_inner() else { continue };
-            let rows = column.numbers();
+        for (name, columns) in NAMES.into_iter().zip(self.drifts) {
+            let Some(columns) = columns.into_inner() else { continue };
+            let [values, changes] = columns.map(Column::numbers);
             // In the order of the first bodies that have them.
-            let first = rows.iter().position(|[start, _]| !start.is_nan()).unwrap_or(rows.len());
-            drifts.push((first, (name, rows)));
+            let first = values.iter().position(|value| !value.is_nan()).unwrap_or(values.len());
+            drifts.push((first, Drift { name, values, changes }));
         }
-        drifts.sort_by_key(|(first, _): &(usize, _)| *first);
+        drifts.sort_by_key(|(first, _)| *first);
         Summary {
             method_names,
             methods,
-            steps: self.steps.finish(),
-            longest: self.longest.numbers().into_flattened(),
-            estimates: self.estimates.numbers().into_flattened(),
-            norm_drifts: self.norm_drifts.numbers().into_flattened(),
-            drifts: drifts.into_iter().map(|(_, column)| column).collect(),
+            steps: self.steps.words(),
+            evaluations: self.evaluations.words(),
+            longest: self.longest.numbers(),
+            estimates: self.estimates.numbers(),
+            norm_drifts: self.norm_drifts.numbers(),
+            drifts: drifts.into_iter().map(|(_, drift)| drift).collect(),
             failures: rare.failures,
             warnings: rare.warnings.into_iter().map(|(_, _, text)| text).collect(),
         }

@@ -32,7 +32,7 @@ use crate::run::limits::span;
 use crate::run::{NO_CLOSED_FORM, Options, Problem, Progress, check_start_time};
 use crate::state::center::Center;
 use crate::state::checks::check_moments;
-pub use output::{Outputs, Summary};
+pub use output::{Drift, Outputs, Summary};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use scheduler::{Scheduler, Shared};

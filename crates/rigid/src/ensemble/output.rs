@@ -28,21 +28,33 @@ pub struct Summary {
     pub method_names: Vec<&'static str>,
     /// For each body the place of its method among the names.
     pub methods: Vec<u64>,
-    /// For each body the steps of all its sweeps, and the evaluations of its torque.
-    pub steps: Vec<[u64; 2]>,
+    /// For each body the steps of all its sweeps.
+    pub steps: Vec<u64>,
+    /// For each body the evaluations of its torque.
+    pub evaluations: Vec<u64>,
     /// For each body its longest step in s.
     pub longest: Vec<f64>,
     /// For each body the estimate of its error, NaN where there is none.
     pub estimates: Vec<f64>,
     /// For each body its largest `abs(|R| − 1)`.
     pub norm_drifts: Vec<f64>,
-    /// For each conserved quantity its name, and for each body its value at the start and its largest relative change;
-    /// NaN for a body that does not conserve it.
-    pub drifts: Vec<(&'static str, Vec<[f64; 2]>)>,
+    /// The quantities that bodies conserve.
+    pub drifts: Vec<Drift>,
     /// By ascending body number.
     pub failures: Vec<Failure>,
     /// Each once: see [`crate::run::certificate::Certificate::warnings`].
     pub warnings: Vec<String>,
+}
+
+/// A conserved quantity; NaN for bodies that do not conserve it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drift {
+    /// The name of the quantity.
+    pub name: &'static str,
+    /// For each body its value at the start.
+    pub values: Vec<f64>,
+    /// For each body its largest relative change.
+    pub changes: Vec<f64>,
 }
 
 impl Summary {

@@ -136,6 +136,7 @@ impl<E: InParts<W, F>, const W: usize, const F: bool> Marching<W, F> for InRegis
         times: &[f64; TIMED + 1],
         count: usize,
     ) {
+        const { assert!(W.is_multiple_of(SIDE_BY_SIDE), "whole groups") };
         let lengths = lengths(times);
         for group in 0..W / SIDE_BY_SIDE {
             let first = group * SIDE_BY_SIDE;

@@ -135,25 +135,23 @@ pub(crate) fn starts(
 ) -> PyResult<Vec<Start>> {
     let count = shape.iter().product();
     let begins = spread(numbers(begins)?, begins.shape(), shape)?;
+    let whose = if batch(rotors).is_empty() { &[] } else { shape };
     let rotors = spread(numbers(rotors)?.as_chunks::<4>().0, batch(rotors), shape)?;
-    let whose = if rotors.len() == 1 { &[] } else { shape };
     let rotor = |body: usize| {
         let rotor = Rotor::from_components(*one_of(&rotors, body));
         rotor.map_err(|error| bad(format!("{}{error}", place(body, whose))))
     };
     let omegas = spread(numbers(omegas)?.as_chunks::<3>().0, batch(omegas), shape)?;
     let centers = spread(numbers(centers)?.as_chunks::<6>().0, batch(centers), shape)?;
-    let start = |body: usize| -> PyResult<Start> {
-        Ok(Start {
-            time: *one_of(&begins, body),
-            rotor: rotor(body)?,
-            omega: Bivector(*one_of(&omegas, body)),
-            center: Center::from(*one_of(&centers, body)),
-        })
-    };
+    let common = if rotors.len() == 1 { Some(rotor(0)?) } else { None };
     let mut starts = Vec::with_capacity(count);
     for body in 0..count {
-        starts.push(start(body)?);
+        starts.push(Start {
+            time: *one_of(&begins, body),
+            rotor: common.map_or_else(|| rotor(body), Ok)?,
+            omega: Bivector(*one_of(&omegas, body)),
+            center: Center::from(*one_of(&centers, body)),
+        });
     }
     Ok(starts)
 }
@@ -168,7 +166,7 @@ fn batch<'a>(rows: &'a Rows<'_>) -> &'a [usize] {
 
 /// The summary as a dict: arrays with one number per body, and lists of numbers, times and messages of failures.
 fn dictionary<'py>(py: Python<'py>, summary: Summary) -> PyResult<Bound<'py, PyDict>> {
-    // In the same memory.
+    // Collecting them reuses the memory.
     let counts = |words: Vec<u64>| PyArray1::from_vec(py, words.into_iter().map(|n| n as i64).collect());
     let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
     for Drift { name, values, changes } in summary.drifts {

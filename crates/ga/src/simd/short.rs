@@ -143,7 +143,7 @@ impl<const W: usize> Chain<W> {
     /// Applies the links one after the other.
     ///
     /// # Panics
-    /// If there are not so many lanes.
+    /// Unless there are exactly as many lanes as the chain is for.
     #[inline]
     pub fn apply(&self, lanes: &mut [Lane<W>]) {
         assert_eq!(lanes.len(), self.lanes, "the lanes of the chain");

@@ -34,12 +34,12 @@ impl Column {
         self.0[body].store(word, Ordering::Relaxed);
     }
 
-    /// The words, in the same memory.
+    /// The words; collecting them reuses the memory.
     fn words(self) -> Vec<u64> {
         self.0.into_iter().map(AtomicU64::into_inner).collect()
     }
 
-    /// The numbers, in the same memory.
+    /// The numbers; collecting them reuses the memory.
     fn numbers(self) -> Vec<f64> {
         self.0.into_iter().map(|word| f64::from_bits(word.into_inner())).collect()
     }

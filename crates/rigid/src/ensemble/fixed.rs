@@ -61,7 +61,7 @@ impl<const W: usize> Work for FixedSteps<'_, '_, W> {
 }
 
 impl<const W: usize> FixedSteps<'_, '_, W> {
-    /// The classical method.
+    /// Steps by the classical method.
     fn march<const F: bool, M: Marching<W, F>>(
         self,
         bodies: Bodies<W, F>,

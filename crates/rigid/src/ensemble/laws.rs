@@ -10,8 +10,7 @@ mod table;
 use crate::laws::forcing::{Forcing, Place};
 use crate::laws::formula::Formulas;
 use crate::laws::torque::Torque;
-use crate::laws::torque::lanes::{Three, add, turn_from};
-use crate::methods::classical::parts::part;
+use crate::laws::torque::lanes::{Three, add, part, turn_from};
 use crate::state::phase::{Gyrostat, vertical};
 use gain::Gain;
 use merged::Law;
@@ -21,15 +20,15 @@ use polhode_ga::Bivector;
 use polhode_ga::simd::lanes::{Lanes, cross};
 
 /// A torque whose parameters are so few that it is computed in registers, with the steps of some of the bodies.
-pub(super) trait InParts<const W: usize, const F: bool> {
-    /// The same for `P` of the bodies, from one on.
+pub(super) trait Divisible<const W: usize, const F: bool> {
+    /// The same for `P` of the bodies, from `first` on.
     fn part<const P: usize>(&self, first: usize) -> impl Forcing<P, F>;
 }
 
 /// Free bodies without wheels.
 pub(crate) struct NoForcing;
 
-impl<const W: usize, const F: bool> InParts<W, F> for NoForcing {
+impl<const W: usize, const F: bool> Divisible<W, F> for NoForcing {
     #[inline(always)]
     fn part<const P: usize>(&self, _: usize) -> impl Forcing<P, F> {
         NoForcing
@@ -59,7 +58,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
     }
 }
 
-impl<const W: usize, const F: bool> InParts<W, F> for Weight<W, F> {
+impl<const W: usize, const F: bool> Divisible<W, F> for Weight<W, F> {
     #[inline(always)]
     fn part<const P: usize>(&self, first: usize) -> impl Forcing<P, F> {
         Weight::<P, F>(part(&self.0, first))
@@ -105,7 +104,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Controller<W, F> {
     }
 }
 
-impl<const W: usize, const F: bool> InParts<W, F> for Controller<W, F> {
+impl<const W: usize, const F: bool> Divisible<W, F> for Controller<W, F> {
     #[inline(always)]
     fn part<const P: usize>(&self, first: usize) -> impl Forcing<P, F> {
         Controller::<P, F> {

@@ -17,9 +17,9 @@ use std::borrow::Cow;
 /// Bodies in lanes: two registers of the widest machines, to hide latency.
 pub(super) const SIDE_BY_SIDE: usize = 16;
 
-/// Bodies in lanes for steps of the classical method under torques: an evaluation has an overhead, which more bodies
-/// share, and their states do not fit the registers anyway. The same number as without torques in the browser, since code
-/// for both would make the page larger.
+/// Bodies in lanes for steps of the classical method under torques: an evaluation in memory has an overhead, which more
+/// bodies share. Under torques computed in registers they go by [`SIDE_BY_SIDE`] again. The same number as without torques
+/// in the browser, since code for both would make the page larger.
 pub(super) const WIDE: usize = if cfg!(target_family = "wasm") { SIDE_BY_SIDE } else { 2 * SIDE_BY_SIDE };
 
 /// The method of adaptive steps.

@@ -38,7 +38,7 @@ pub struct Summary {
     pub estimates: Vec<f64>,
     /// For each body its largest `abs(|R| − 1)`.
     pub norm_drifts: Vec<f64>,
-    /// The quantities that bodies conserve.
+    /// The changes of the quantities that bodies conserve.
     pub drifts: Vec<Drift>,
     /// By ascending body number.
     pub failures: Vec<Failure>,
@@ -46,7 +46,7 @@ pub struct Summary {
     pub warnings: Vec<String>,
 }
 
-/// A conserved quantity; NaN for bodies that do not conserve it.
+/// The change of a conserved quantity; NaN for bodies that do not conserve it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drift {
     /// The name of the quantity.

@@ -1,11 +1,11 @@
 //! Fixed-step methods for bodies in SIMD lanes.
 
-use super::laws::{InParts, Laws};
+use super::laws::{Divisible, Laws};
 use super::member::{Member, SIDE_BY_SIDE, of};
 use super::observe::{LaneBodies, LanePhases};
 use crate::laws::forcing::Forcing;
-use crate::laws::torque::lanes::in_lanes;
-use crate::methods::classical::parts::{Parts, part, put};
+use crate::laws::torque::lanes::{in_lanes, part, put};
+use crate::methods::classical::parts::Parts;
 use crate::methods::classical::{self, Bodies, State};
 use crate::methods::splitting::turns::{Spin, Turns, stage_times};
 use polhode_ga::simd::lanes::{Lanes, Work};
@@ -127,7 +127,7 @@ fn lengths(times: &[f64; TIMED + 1]) -> [[f64; TIMED]; 2] {
     lengths
 }
 
-impl<E: InParts<W, F>, const W: usize, const F: bool> Marching<W, F> for InRegisters<E> {
+impl<E: Divisible<W, F>, const W: usize, const F: bool> Marching<W, F> for InRegisters<E> {
     #[inline(always)]
     fn march(
         &mut self,

@@ -226,8 +226,7 @@ impl<K: Lanes<TOGETHER>> Blocks<K> {
     fn open(&mut self) -> &mut Block<K> {
         let Blocks(blocks) = self;
         if blocks.last().is_none_or(|block| block.is_full()) {
-            let block = Block { coefficients: K::empty(), places: [0; TOGETHER], count: 0 };
-            blocks.push(Box::write(Box::new_uninit(), block));
+            blocks.push(boxed(Block { coefficients: K::empty(), places: [0; TOGETHER], count: 0 }));
         }
         let last = blocks.len() - 1;
         &mut blocks[last]
@@ -246,8 +245,7 @@ impl<K: Lanes<TOGETHER>> Blocks<K> {
         if lanes.len() == TOGETHER && self.0.last().is_none_or(|block| block.is_full()) {
             // All lanes, in their order.
             let places = array::from_fn(|l| (first + l) as u16);
-            let block = Block { coefficients: *motions, places, count: TOGETHER };
-            return self.0.push(Box::write(Box::new_uninit(), block));
+            return self.0.push(boxed(Block { coefficients: *motions, places, count: TOGETHER }));
         }
         while !lanes.is_empty() {
             let block = self.open();
@@ -270,6 +268,12 @@ impl<K: Lanes<TOGETHER>> Blocks<K> {
             block.fill(part);
         }
     }
+}
+
+/// `Box::new` would build the block in the stack frame and copy it.
+#[inline(always)]
+fn boxed<K>(block: Block<K>) -> Box<Block<K>> {
+    Box::write(Box::new_uninit(), block)
 }
 
 /// Motions in lanes, with their states.

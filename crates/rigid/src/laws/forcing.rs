@@ -10,7 +10,7 @@ use crate::state::point::Point;
 use polhode_ga::simd::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor};
 
-/// States of bodies in lanes, in this order, so that in whole cache lines all begins at one.
+/// States of bodies in lanes. The fields stay in this order, so that rotor and ω begin at cache lines if the whole does.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(crate) struct Place<const W: usize, const F: bool> {

@@ -17,6 +17,7 @@ pub(crate) mod parts;
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
 use crate::laws::forcing::{BodyForcing, Forcing, Place, Time};
+use crate::laws::torque::lanes::{part, some};
 use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
@@ -65,6 +66,18 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
             self.wheel[k].0[l] = body.wheel.0[k];
         }
         self.damping.0[l] = damping;
+    }
+
+    /// `P` of the bodies, from `first` on.
+    #[inline(always)]
+    pub fn part<const P: usize>(&self, first: usize) -> Bodies<P, F> {
+        let Bodies { inverse, coupling, wheel, damping } = self;
+        Bodies {
+            inverse: part(inverse, first),
+            coupling: part(coupling, first),
+            wheel: part(wheel, first),
+            damping: some(damping, first),
+        }
     }
 
     /// `Ω = I⁻¹(m − h)`.

@@ -34,8 +34,8 @@ struct Parameter<'r, const W: usize> {
     input: usize,
     /// The steps, with numbers as rows.
     steps: SideBySide<'r, W>,
-    /// The numbers to which the values of the program belong.
-    now: Option<Numbers<W>>,
+    /// The parameter to which the values of the program belong.
+    now: Option<Setting<W>>,
     /// Whether some row has no value now.
     missing: bool,
     lookahead: Lookahead,
@@ -44,8 +44,8 @@ struct Parameter<'r, const W: usize> {
     count: usize,
 }
 
-/// Numbers of all rows.
-enum Numbers<const W: usize> {
+/// The parameter of all rows.
+enum Setting<const W: usize> {
     Common(f64),
     Each([f64; W]),
 }
@@ -115,7 +115,7 @@ impl<const W: usize> SideBySide<'_, W> {
     pub fn set_parameter(&mut self, input: usize, numbers: &[f64; W]) {
         self.input(input)[0].0 = *numbers;
         if let Some(parameter) = &mut self.parameter {
-            parameter.set(Numbers::Each(*numbers), &self.schedule.given, &mut self.lanes);
+            parameter.set(Setting::Each(*numbers), &self.schedule.given, &mut self.lanes);
         }
     }
 
@@ -197,15 +197,15 @@ impl<const W: usize> Parameter<'_, W> {
     /// Fills the lanes with the values for a number of all rows.
     #[inline(always)]
     fn set_common(&mut self, number: f64, given: &[Range<usize>], lanes: &mut [Lane<W>]) {
-        if let Some(Numbers::Common(now)) = &self.now
+        if let Some(Setting::Common(now)) = &self.now
             && now.to_bits() == number.to_bits()
         {
             return;
         }
         let Some(place) = self.lookahead.find(number) else {
-            return self.set(Numbers::Common(number), given, lanes);
+            return self.set(Setting::Common(number), given, lanes);
         };
-        self.now = Some(Numbers::Common(number));
+        self.now = Some(Setting::Common(number));
         self.missing = false;
         let mut values = self.values[place * self.count..(place + 1) * self.count].iter();
         for range in given {
@@ -218,17 +218,16 @@ impl<const W: usize> Parameter<'_, W> {
 
     /// Computes the values for these numbers, if they are others than now.
     #[inline(never)]
-    fn set(&mut self, numbers: Numbers<W>, given: &[Range<usize>], lanes: &mut [Lane<W>]) {
+    fn set(&mut self, numbers: Setting<W>, given: &[Range<usize>], lanes: &mut [Lane<W>]) {
         let rows = match numbers {
-            Numbers::Common(number) => [number; W],
-            Numbers::Each(rows) => rows,
+            Setting::Common(number) => [number; W],
+            Setting::Each(rows) => rows,
         };
-        if let Some(Numbers::Each(now)) = &self.now
-            && have_same_bits(now, &rows)
+        if let Some(Setting::Each(before)) = self.now.replace(numbers)
+            && have_same_bits(&before, &rows)
         {
             return;
         }
-        self.now = Some(numbers);
         self.steps.set_parameter(self.input, &rows);
         self.steps.run();
         self.missing = false;

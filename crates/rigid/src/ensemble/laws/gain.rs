@@ -1,7 +1,6 @@
 //! Linear maps of bivectors for bodies in lanes: gains of springs, dampers and controllers.
 
-use crate::laws::torque::lanes::{Three, add};
-use crate::methods::classical::parts::part;
+use crate::laws::torque::lanes::{Three, add, part};
 use polhode_ga::simd::lanes::{Lanes, mapped};
 
 /// A linear map for each body.
@@ -26,7 +25,7 @@ impl<const W: usize, const F: bool> Gain<W, F> {
         }
     }
 
-    /// That of `P` of the bodies, from one on.
+    /// That of `P` of the bodies, from `first` on.
     #[inline(always)]
     pub fn part<const P: usize>(&self, first: usize) -> Gain<P, F> {
         match self {

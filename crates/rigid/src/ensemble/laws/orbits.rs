@@ -12,8 +12,9 @@ pub(super) struct Orbits<const W: usize> {
     elements: Elements<W>,
     /// 3n², in rad²/s².
     strength: [f64; W],
-    /// The time of the latest positions in s, of all bodies or of each; NaN before the first ones.
+    /// The time of the latest positions in s, if it is common to all bodies.
     common: Option<f64>,
+    /// That of each body otherwise; NaN before the first positions.
     times: [f64; W],
     /// Directions u, whose third component is 0, and `3n² (a/r)³`.
     places: [[f64; W]; 3],

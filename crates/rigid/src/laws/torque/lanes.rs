@@ -21,6 +21,42 @@ pub(crate) fn in_lanes<const N: usize, const W: usize, const F: bool>(
     lanes
 }
 
+/// The numbers of `P` of the bodies, from `first` on.
+#[inline(always)]
+pub(crate) fn part<const N: usize, const W: usize, const P: usize, const F: bool>(
+    all: &[Lanes<W, F>; N],
+    first: usize,
+) -> [Lanes<P, F>; N] {
+    let mut part = [Lanes::ZERO; N];
+    for k in 0..N {
+        part[k] = some(&all[k], first);
+    }
+    part
+}
+
+/// The same of one number.
+#[inline(always)]
+pub(crate) fn some<const W: usize, const P: usize, const F: bool>(
+    all: &Lanes<W, F>,
+    first: usize,
+) -> Lanes<P, F> {
+    let mut some = Lanes::ZERO;
+    some.0.copy_from_slice(&all.0[first..first + P]);
+    some
+}
+
+/// The inverse of [`part`].
+#[inline(always)]
+pub(crate) fn put<const N: usize, const W: usize, const P: usize, const F: bool>(
+    all: &mut [Lanes<W, F>; N],
+    first: usize,
+    part: &[Lanes<P, F>; N],
+) {
+    for k in 0..N {
+        all[k].0[first..first + P].copy_from_slice(&part[k].0);
+    }
+}
+
 /// Adds the other three.
 #[inline(always)]
 pub(crate) fn add<const W: usize, const F: bool>(a: &mut Three<W, F>, b: &Three<W, F>) {

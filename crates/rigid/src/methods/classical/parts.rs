@@ -2,6 +2,7 @@
 
 use super::{Bodies, State, drive, free_slope, halved, moved, place, renormalize, stage_times};
 use crate::laws::forcing::{Forcing, Place, Time};
+use crate::laws::torque::lanes::{part, put};
 use polhode_ga::simd::lanes::Lanes;
 
 /// Bodies for which the numbers of a stage stay in registers.
@@ -79,53 +80,6 @@ impl<const W: usize, const F: bool> Parts<W, F> {
         let next = place(state, 0.0);
         put(&mut self.at.rotor, first, &next.rotor);
         put(&mut self.at.omega, first, &next.omega);
-    }
-}
-
-impl<const W: usize, const F: bool> Bodies<W, F> {
-    /// `P` of the bodies, from one on.
-    #[inline(always)]
-    pub fn part<const P: usize>(&self, first: usize) -> Bodies<P, F> {
-        let Bodies { inverse, coupling, wheel, damping } = self;
-        Bodies {
-            inverse: part(inverse, first),
-            coupling: part(coupling, first),
-            wheel: part(wheel, first),
-            damping: some(damping, first),
-        }
-    }
-}
-
-/// The numbers of `P` of the bodies, from one on.
-#[inline(always)]
-pub(crate) fn part<const N: usize, const W: usize, const P: usize, const F: bool>(
-    all: &[Lanes<W, F>; N],
-    first: usize,
-) -> [Lanes<P, F>; N] {
-    let mut part = [Lanes::ZERO; N];
-    for k in 0..N {
-        part[k] = some(&all[k], first);
-    }
-    part
-}
-
-/// A number of `P` of the bodies.
-#[inline(always)]
-fn some<const W: usize, const P: usize, const F: bool>(all: &Lanes<W, F>, first: usize) -> Lanes<P, F> {
-    let mut some = Lanes::ZERO;
-    some.0.copy_from_slice(&all.0[first..first + P]);
-    some
-}
-
-/// The inverse of [`part`].
-#[inline(always)]
-pub(crate) fn put<const N: usize, const W: usize, const P: usize, const F: bool>(
-    all: &mut [Lanes<W, F>; N],
-    first: usize,
-    part: &[Lanes<P, F>; N],
-) {
-    for k in 0..N {
-        all[k].0[first..first + P].copy_from_slice(&part[k].0);
     }
 }
 

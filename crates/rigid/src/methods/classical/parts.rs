@@ -8,11 +8,11 @@ use polhode_ga::simd::lanes::Lanes;
 /// Bodies for which the numbers of a stage stay in registers.
 const PART: usize = 8;
 
-/// [`step`](super::step), with the same bits, of many bodies whose torques are computed in memory: between two torques
-/// part by part. All at once they would be read and written at each operation, in code larger than the cache for
+/// Many bodies whose torques are computed in memory. Their steps have the bits of [`step`](super::step), and go part by part
+/// between two torques: all at once they would be read and written at each operation, in code larger than the cache for
 /// instructions.
 ///
-/// In whole cache lines: a register that spans two takes twice as long to read.
+/// All numbers begin at cache lines: a register that spans two takes twice as long to read.
 #[repr(C, align(64))]
 pub(crate) struct Parts<const W: usize, const F: bool> {
     bodies: Bodies<W, F>,

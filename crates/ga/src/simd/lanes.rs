@@ -12,6 +12,51 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const W: usize, const FUSED: bool>(pub [f64; W]);
 
+/// A number for each lane, such as a time, that all mostly share. Cloning copies no more than there is.
+#[derive(Clone, Debug)]
+pub enum PerLane<const W: usize> {
+    /// The same in each.
+    Common(f64),
+    /// Its own in each.
+    Each([f64; W]),
+}
+
+impl<const W: usize> PerLane<W> {
+    /// That of one lane.
+    #[inline(always)]
+    pub fn of(&self, lane: usize) -> f64 {
+        match self {
+            PerLane::Common(x) => *x,
+            PerLane::Each(all) => all[lane],
+        }
+    }
+
+    /// Those of all lanes.
+    #[inline(always)]
+    pub fn all(&self) -> [f64; W] {
+        match self {
+            PerLane::Common(x) => [*x; W],
+            PerLane::Each(all) => *all,
+        }
+    }
+
+    /// Whether the numbers are the same, also NaN and zeros; a common one differs from any of their own.
+    #[inline(always)]
+    pub fn has_bits_of(&self, other: &PerLane<W>) -> bool {
+        match (self, other) {
+            (PerLane::Common(a), PerLane::Common(b)) => a.to_bits() == b.to_bits(),
+            (PerLane::Each(a), PerLane::Each(b)) => {
+                let mut different = 0;
+                for l in 0..W {
+                    different |= a[l].to_bits() ^ b[l].to_bits();
+                }
+                different == 0
+            }
+            _ => false,
+        }
+    }
+}
+
 /// One number, as of a single body.
 pub type One = Lanes<1, false>;
 

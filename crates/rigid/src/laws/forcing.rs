@@ -7,45 +7,19 @@ use crate::error::SimulateError;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
-use polhode_ga::simd::lanes::{Lanes, One};
+use polhode_ga::simd::lanes::{Lanes, One, PerLane};
 use polhode_ga::{Bivector, Rotor};
 
 /// States of bodies in lanes. The fields stay in this order, so that rotor and ω begin at cache lines if the whole does.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 #[repr(C)]
 pub(crate) struct Place<const W: usize, const F: bool> {
     /// From principal axes to space; |R| is 1 up to the error of a step.
     pub rotor: [Lanes<W, F>; 4],
     /// In principal axes, rad/s.
     pub omega: [Lanes<W, F>; 3],
-    pub time: Time<W, F>,
-}
-
-/// Times of bodies in lanes, in s.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Time<const W: usize, const F: bool> {
-    Common(f64),
-    Each(Lanes<W, F>),
-}
-
-impl<const W: usize, const F: bool> Time<W, F> {
-    /// That of one body.
-    #[inline(always)]
-    pub fn of(&self, lane: usize) -> f64 {
-        match self {
-            Time::Common(time) => *time,
-            Time::Each(times) => times.0[lane],
-        }
-    }
-
-    /// Those of all bodies.
-    #[inline(always)]
-    pub fn lanes(&self) -> Lanes<W, F> {
-        match self {
-            Time::Common(time) => Lanes::all(*time),
-            Time::Each(times) => *times,
-        }
-    }
+    /// In s.
+    pub time: PerLane<W>,
 }
 
 /// Torques and accelerations of bodies in lanes.

@@ -16,13 +16,13 @@ pub(crate) mod parts;
 
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
-use crate::laws::forcing::{BodyForcing, Forcing, Place, Time};
+use crate::laws::forcing::{BodyForcing, Forcing, Place};
 use crate::laws::torque::lanes::{part, some};
 use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::simd::lanes::{Lanes, One};
+use polhode_ga::simd::lanes::{Lanes, One, PerLane};
 use polhode_ga::{Bivector, Rotor};
 use std::array;
 
@@ -199,7 +199,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
 fn place<const N: usize, const W: usize, const F: bool>(y: &State<N, W, F>, time: f64) -> Place<W, F> {
     let minus_two = Lanes::all(-2.0);
     let omega = [y[4] * minus_two, y[5] * minus_two, y[6] * minus_two];
-    Place { rotor: [y[0], y[1], y[2], y[3]], omega, time: Time::Common(time) }
+    Place { rotor: [y[0], y[1], y[2], y[3]], omega, time: PerLane::Common(time) }
 }
 
 /// The slope of rotor and angular velocity without torque.

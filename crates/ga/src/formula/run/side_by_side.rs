@@ -6,6 +6,7 @@ use super::steps::Given;
 use super::tasks::{Schedule, Task};
 use crate::formula::compile::program::Id;
 use crate::graded::size;
+use crate::simd::lanes::PerLane;
 use crate::simd::lookahead::Lookahead;
 use crate::simd::short::{Chain, Source};
 use crate::simd::{Lane, Path};
@@ -35,19 +36,13 @@ struct Parameter<'r, const W: usize> {
     /// The steps, with numbers as rows.
     steps: SideBySide<'r, W>,
     /// The parameter to which the values of the program belong.
-    now: Option<Setting<W>>,
+    now: Option<PerLane<W>>,
     /// Whether some row has no value now.
     missing: bool,
     lookahead: Lookahead,
     /// The values for these, one row after the other, of this number of components.
     values: Vec<f64>,
     count: usize,
-}
-
-/// The parameter of all rows.
-enum Setting<const W: usize> {
-    Common(f64),
-    Each([f64; W]),
 }
 
 impl Runner {
@@ -111,20 +106,12 @@ impl<const W: usize> SideBySide<'_, W> {
         &mut self.lanes[self.schedule.inputs[number].clone()]
     }
 
-    /// Sets the parameter of each row.
-    pub fn set_parameter(&mut self, input: usize, numbers: &[f64; W]) {
-        self.input(input)[0].0 = *numbers;
-        if let Some(parameter) = &mut self.parameter {
-            parameter.set(Setting::Each(*numbers), &self.schedule.given, &mut self.lanes);
-        }
-    }
-
-    /// Sets the parameter of all rows to one number.
+    /// Sets the parameter of all rows.
     #[inline(always)]
-    pub fn set_common_parameter(&mut self, input: usize, number: f64) {
-        self.input(input)[0] = Lane::filled(number);
+    pub fn set_parameter(&mut self, input: usize, numbers: &PerLane<W>) {
+        self.input(input)[0].0 = numbers.all();
         if let Some(parameter) = &mut self.parameter {
-            parameter.set_common(number, &self.schedule.given, &mut self.lanes);
+            parameter.set(numbers, &self.schedule.given, &mut self.lanes);
         }
     }
 
@@ -194,41 +181,35 @@ impl<const W: usize> SideBySide<'_, W> {
 }
 
 impl<const W: usize> Parameter<'_, W> {
-    /// Fills the lanes with the values for a number of all rows.
+    /// Fills the lanes with the values for these numbers.
     #[inline(always)]
-    fn set_common(&mut self, number: f64, given: &[Range<usize>], lanes: &mut [Lane<W>]) {
-        if let Some(Setting::Common(now)) = &self.now
-            && now.to_bits() == number.to_bits()
+    fn set(&mut self, numbers: &PerLane<W>, given: &[Range<usize>], lanes: &mut [Lane<W>]) {
+        if let Some(now) = &self.now
+            && now.has_bits_of(numbers)
         {
             return;
         }
-        let Some(place) = self.lookahead.find(number) else {
-            return self.set(Setting::Common(number), given, lanes);
-        };
-        self.now = Some(Setting::Common(number));
-        self.missing = false;
-        let mut values = self.values[place * self.count..(place + 1) * self.count].iter();
-        for range in given {
-            for (lane, &x) in lanes[range.clone()].iter_mut().zip(values.by_ref()) {
-                *lane = Lane::filled(x);
-                self.missing |= x.is_nan();
+        self.now = Some(numbers.clone());
+        if let PerLane::Common(number) = numbers
+            && let Some(place) = self.lookahead.find(*number)
+        {
+            self.missing = false;
+            let mut values = self.values[place * self.count..(place + 1) * self.count].iter();
+            for range in given {
+                for (lane, &x) in lanes[range.clone()].iter_mut().zip(values.by_ref()) {
+                    *lane = Lane::filled(x);
+                    self.missing |= x.is_nan();
+                }
             }
+        } else {
+            self.compute(numbers, given, lanes);
         }
     }
 
-    /// Computes the values for these numbers, if they are others than now.
+    /// The same for numbers that were not announced.
     #[inline(never)]
-    fn set(&mut self, numbers: Setting<W>, given: &[Range<usize>], lanes: &mut [Lane<W>]) {
-        let rows = match numbers {
-            Setting::Common(number) => [number; W],
-            Setting::Each(rows) => rows,
-        };
-        if let Some(Setting::Each(before)) = self.now.replace(numbers)
-            && have_same_bits(&before, &rows)
-        {
-            return;
-        }
-        self.steps.set_parameter(self.input, &rows);
+    fn compute(&mut self, numbers: &PerLane<W>, given: &[Range<usize>], lanes: &mut [Lane<W>]) {
+        self.steps.set_parameter(self.input, numbers);
         self.steps.run();
         self.missing = false;
         for (number, range) in given.iter().enumerate() {
@@ -245,7 +226,7 @@ impl<const W: usize> Parameter<'_, W> {
         for (numbers, values) in numbers.chunks(W).zip(values.chunks_mut((W * *count).max(1))) {
             let mut rows = [numbers[0]; W];
             rows[..numbers.len()].copy_from_slice(numbers);
-            steps.set_parameter(*input, &rows);
+            steps.set_parameter(*input, &PerLane::Each(rows));
             steps.run();
             let mut first = 0;
             for number in 0..steps.results.len() {
@@ -259,13 +240,4 @@ impl<const W: usize> Parameter<'_, W> {
             }
         }
     }
-}
-
-/// Whether numbers are the same, also NaN and zeros.
-fn have_same_bits<const W: usize>(a: &[f64; W], b: &[f64; W]) -> bool {
-    let mut different = 0;
-    for row in 0..W {
-        different |= a[row].to_bits() ^ b[row].to_bits();
-    }
-    different == 0
 }

@@ -6,6 +6,7 @@ use crate::g3::functions::Function;
 use crate::product::{Grades, Plan, Product};
 use crate::rows::{compose, product, rotor_functions};
 use crate::simd::Path;
+use crate::simd::lanes::PerLane;
 use crate::simd::short::{GROUP, Source};
 use crate::simd::threads::Threads;
 use crate::simd::traverse::Factor;
@@ -317,11 +318,9 @@ fn lanes_against_single_values<const ROWS: usize>() -> usize {
                         beside.foresee([0.5, 0.5, data[parameter][0], 0.25].into_iter());
                     }
                     let numbers: &[f64; ROWS] = data[parameter].as_slice().try_into().unwrap();
-                    if announced && *numbers == [numbers[0]; ROWS] {
-                        beside.set_common_parameter(parameter, numbers[0]);
-                    } else {
-                        beside.set_parameter(parameter, numbers);
-                    }
+                    let common = announced && *numbers == [numbers[0]; ROWS];
+                    let numbers = if common { PerLane::Common(numbers[0]) } else { PerLane::Each(*numbers) };
+                    beside.set_parameter(parameter, &numbers);
                 }
                 for i in (0..program.inputs.len()).filter(|&i| !is_known(i) && Some(i) != parameter) {
                     let lanes = beside.input(i);

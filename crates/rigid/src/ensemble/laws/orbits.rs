@@ -1,10 +1,10 @@
 //! Gravity gradients of bodies on their orbits, in lanes.
 
-use crate::laws::forcing::{Place, Time};
+use crate::laws::forcing::Place;
 use crate::laws::torque::lanes::{Three, gradient, seen};
 use crate::laws::torque::orbit::kepler::Elements;
 use crate::laws::torque::{Orbit, Torque};
-use polhode_ga::simd::lanes::{Lanes, Work, fastest};
+use polhode_ga::simd::lanes::{Lanes, PerLane, Work, fastest};
 use polhode_ga::simd::lookahead::Lookahead;
 
 /// The orbits of all bodies, with their latest positions.
@@ -12,10 +12,8 @@ pub(super) struct Orbits<const W: usize> {
     elements: Elements<W>,
     /// 3n², in rad²/s².
     strength: [f64; W],
-    /// The time of the latest positions in s, if it is common to all bodies.
-    common: Option<f64>,
-    /// That of each body otherwise; NaN before the first positions.
-    times: [f64; W],
+    /// The times of the latest positions in s.
+    now: Option<PerLane<W>>,
     /// Directions u, whose third component is 0, and `3n² (a/r)³`.
     places: [[f64; W]; 3],
     /// Whether all bodies have the same orbit.
@@ -36,8 +34,7 @@ impl<const W: usize> Orbits<W> {
         Some(Orbits {
             elements: Elements::new(orbits.each_ref().map(Orbit::elements)),
             strength: orbits.map(|orbit| 3.0 * orbit.rate() * orbit.rate()),
-            common: None,
-            times: [f64::NAN; W],
+            now: None,
             places: [[0.0; W]; 3],
             shared: orbits.iter().all(|orbit| *orbit == orbits[0]),
             lookahead: Lookahead::default(),
@@ -47,26 +44,15 @@ impl<const W: usize> Orbits<W> {
 
     #[inline(always)]
     pub fn torque<const F: bool>(&mut self, moments: &Three<W, F>, at: &Place<W, F>) -> Three<W, F> {
-        if !self.are_at(&at.time) {
-            fastest(Moved { orbits: self, time: &at.time });
+        let are_there = match &self.now {
+            Some(now) => now.has_bits_of(&at.time),
+            None => false,
+        };
+        if !are_there {
+            fastest(Moved { orbits: self, times: &at.time });
         }
         let [x, y, strength] = self.places;
         gradient(moments, &seen(&at.rotor, &[Lanes(x), Lanes(y), Lanes::ZERO]), Lanes(strength))
-    }
-
-    /// Whether the latest positions are those at a time.
-    #[inline(always)]
-    fn are_at<const F: bool>(&self, time: &Time<W, F>) -> bool {
-        match time {
-            Time::Common(time) => self.common == Some(*time),
-            Time::Each(times) => {
-                let mut same = self.common.is_none();
-                for l in 0..W {
-                    same &= times.0[l] == self.times[l];
-                }
-                same
-            }
-        }
     }
 
     /// Computes the places at times to come, in order, if all bodies share them.
@@ -84,32 +70,29 @@ impl<const W: usize> Orbits<W> {
     }
 }
 
-/// Moves all bodies to a time, compiled outside the stages of the steps and, with the copies, for their registers.
-struct Moved<'a, const W: usize, const F: bool> {
+/// Moves all bodies to these times, compiled outside the stages of the steps and, with the copies, for their registers.
+struct Moved<'a, const W: usize> {
     orbits: &'a mut Orbits<W>,
-    time: &'a Time<W, F>,
+    times: &'a PerLane<W>,
 }
 
-impl<const W: usize, const F: bool> Work for Moved<'_, W, F> {
+impl<const W: usize> Work for Moved<'_, W> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let Moved { orbits, time } = self;
-        orbits.times = time.lanes().0;
-        orbits.common = None;
-        if let Time::Common(time) = *time {
-            orbits.common = Some(time);
-            if orbits.shared
-                && let Some(place) = orbits.lookahead.find(time)
-            {
-                for k in 0..3 {
-                    orbits.places[k] = [orbits.then[place][k]; W];
-                }
-                return;
+        let Moved { orbits, times } = self;
+        orbits.now = Some(times.clone());
+        if let PerLane::Common(time) = times
+            && orbits.shared
+            && let Some(place) = orbits.lookahead.find(*time)
+        {
+            for k in 0..3 {
+                orbits.places[k] = [orbits.then[place][k]; W];
             }
+            return;
         }
-        let [x, y, mut strength] = orbits.elements.places::<FUSED>(&orbits.times);
+        let [x, y, mut strength] = orbits.elements.places::<FUSED>(&times.all());
         for l in 0..W {
             strength[l] *= orbits.strength[l];
         }

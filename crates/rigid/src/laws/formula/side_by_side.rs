@@ -2,7 +2,7 @@
 
 use super::motion::inertia;
 use super::{Axes, Compiled, Formula, Motion, Purpose, Source};
-use crate::laws::forcing::{Place, Time};
+use crate::laws::forcing::Place;
 use crate::laws::torque::lanes::{Three, in_lanes, reversed, seen, turned};
 use crate::state::phase::Gyrostat;
 use polhode_ga::Rotor;
@@ -85,10 +85,7 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
             match (motion, &self.frame) {
                 (Motion::Rotor, None) => self.give(input, &at.rotor),
                 (Motion::Rotor, Some(frame)) => self.give(input, &composed(&at.rotor, &reversed(frame))),
-                (Motion::Time, _) => match &at.time {
-                    Time::Common(time) => self.program.set_common_parameter(input, *time),
-                    Time::Each(times) => self.program.set_parameter(input, &times.0),
-                },
+                (Motion::Time, _) => self.program.set_parameter(input, &at.time),
                 (Motion::OmegaSpace, _) => self.give(input, &turned(&at.rotor, &at.omega)),
                 (Motion::MomentumSpace, _) => self.give(input, &turned(&at.rotor, &self.momentum(at))),
                 (Motion::MomentumBody, None) => self.give(input, &self.momentum(at)),

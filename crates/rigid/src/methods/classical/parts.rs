@@ -1,9 +1,9 @@
 //! Steps of many bodies whose torques are computed in memory, not in registers.
 
 use super::{Bodies, State, drive, free_slope, halved, moved, place, renormalize, stage_times};
-use crate::laws::forcing::{Forcing, Place, Time};
+use crate::laws::forcing::{Forcing, Place};
 use crate::laws::torque::lanes::{part, put};
-use polhode_ga::simd::lanes::Lanes;
+use polhode_ga::simd::lanes::{Lanes, PerLane};
 
 /// Bodies for which the numbers of a stage stay in registers.
 const PART: usize = 8;
@@ -50,7 +50,7 @@ impl<const W: usize, const F: bool> Parts<W, F> {
         let last = times.len() - 1;
         forcing.begin(Lanes::all(middle));
         for stage in 0..=last {
-            self.at.time = Time::Common(times[stage]);
+            self.at.time = PerLane::Common(times[stage]);
             self.torque = forcing.torque(&self.at, &[Lanes::ZERO; 6]);
             let (part_of_sum, to_next) = (Lanes::all(parts_of_sum[stage]), Lanes::all(to_next[stage]));
             for first in (0..W).step_by(PART) {

@@ -24,7 +24,7 @@ use super::classical::{Bodies, renormalize};
 use crate::error::SimulateError;
 use crate::laws::driven_wheels::driven;
 use crate::laws::force::Translation;
-use crate::laws::forcing::{BodyForcing, Forcing, Place, Time};
+use crate::laws::forcing::{BodyForcing, Forcing, Place};
 use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
@@ -32,7 +32,7 @@ pub(crate) use dop853::STAGES;
 use dop853::{FIFTH, NODES, ROWS, THIRD, WEIGHTS};
 use exponential::exponential;
 pub(crate) use points::Points;
-use polhode_ga::simd::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
+use polhode_ga::simd::lanes::{Lanes, One, PerLane, composed, cross, dot, mapped, mapped_back, matrix};
 
 /// Largest angle of one step in rad; the exponential's differential has a pole at 2π.
 const LARGEST_TURN: f64 = 3.0;
@@ -166,7 +166,7 @@ impl<const N: usize, const W: usize, const F: bool> Change<N, W, F> {
         let momentum = mapped_back(&axes, &at.momentum);
         let wheel = forcing.wheel(&bodies.wheel, &at.time);
         let omega = bodies.omega_with_wheel(&momentum, &wheel);
-        let place = Place { rotor, omega, time: Time::Each(at.time) };
+        let place = Place { rotor, omega, time: PerLane::Each(at.time.0) };
         let omega = mapped(&axes, &omega);
         let first = cross(&turned, &omega);
         let second = cross(&turned, &first);

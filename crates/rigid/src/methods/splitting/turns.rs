@@ -1,10 +1,10 @@
 //! Rotations and kicks of a splitting, for bodies in lanes; a single body is one lane.
 
-use crate::laws::forcing::{Forcing, Place, Time};
+use crate::laws::forcing::{Forcing, Place};
 use crate::methods::classical::{Bodies, renormalize};
 use crate::numerics::sinc::cosine_and_sinc;
 use crate::state::phase::{Gyrostat, Phase};
-use polhode_ga::simd::lanes::{Lanes, One, composed, cross, dot, mapped, matrix};
+use polhode_ga::simd::lanes::{Lanes, One, PerLane, composed, cross, dot, mapped, matrix};
 use polhode_ga::{Bivector, Rotor};
 
 /// Rotors and momenta in principal axes.
@@ -204,7 +204,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
     pub fn kick<E: Forcing<W, F>>(&self, forcing: &mut E, spin: &mut Spin<W, F>, time: f64, h: f64) {
         let m = &mut spin.momentum;
         let omega = self.bodies.omega(m);
-        let place = Place { rotor: spin.rotor, omega, time: Time::Common(time) };
+        let place = Place { rotor: spin.rotor, omega, time: PerLane::Common(time) };
         let torque = forcing.torque(&place, &[Lanes::ZERO; 6]);
         let mut impulse = Lanes::all(h);
         if self.damped {

@@ -5,10 +5,10 @@ fn ellipse(body: usize) -> Orbit {
     Orbit::new(0.1 + 0.01 * part, 0.05 * part, 0.3 * part).unwrap()
 }
 
-fn assert_there(orbits: &mut Orbits<8>, each: &[Orbit; 8], time: Time<8, false>) {
+fn assert_there(orbits: &mut Orbits<8>, each: &[Orbit; 8], time: PerLane<8>) {
     let one = Lanes::all(1.0);
     let rotor = [one, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO];
-    let at = Place::<8, false> { rotor, omega: [Lanes::ZERO; 3], time };
+    let at = Place::<8, false> { rotor, omega: [Lanes::ZERO; 3], time: time.clone() };
     orbits.torque(&[one; 3], &at);
     for l in 0..8 {
         let (u, nearness) = each[l].place(time.of(l));
@@ -24,13 +24,13 @@ fn shared_orbits_are_found_at_any_time() {
     let each = [ellipse(3); 8];
     let law = Torque::GravityGradient(each[0]);
     let mut orbits = Orbits::<8>::new([&law; 8]).unwrap();
-    assert_there(&mut orbits, &each, Time::Common(0.25));
+    assert_there(&mut orbits, &each, PerLane::Common(0.25));
     orbits.foresee((0..20).map(|k| 0.5 * f64::from(k)));
     for time in [0.0, 0.5, 0.5, 1.0, 7.25, 1.5, 4.0, -2.0, 9.5, 10.0] {
-        assert_there(&mut orbits, &each, Time::Common(time));
-        assert_there(&mut orbits, &each, Time::Each(Lanes([time; 8])));
+        assert_there(&mut orbits, &each, PerLane::Common(time));
+        assert_there(&mut orbits, &each, PerLane::Each([time; 8]));
     }
-    assert_there(&mut orbits, &each, Time::Each(Lanes(std::array::from_fn(|l| l as f64))));
+    assert_there(&mut orbits, &each, PerLane::Each(std::array::from_fn(|l| l as f64)));
 }
 
 #[test]
@@ -40,8 +40,8 @@ fn own_orbits_are_not_foreseen() {
     let mut orbits = Orbits::<8>::new(laws.each_ref()).unwrap();
     orbits.foresee([0.0, 1.0].into_iter());
     for time in [0.0, 1.0, 2.5] {
-        assert_there(&mut orbits, &each, Time::Common(time));
+        assert_there(&mut orbits, &each, PerLane::Common(time));
     }
-    assert_there(&mut orbits, &each, Time::Each(Lanes(std::array::from_fn(|l| 100.0 * l as f64))));
-    assert_there(&mut orbits, &each, Time::Common(100.0));
+    assert_there(&mut orbits, &each, PerLane::Each(std::array::from_fn(|l| 100.0 * l as f64)));
+    assert_there(&mut orbits, &each, PerLane::Common(100.0));
 }

@@ -11,7 +11,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Driven {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
-        let time = at.time.lanes();
+        let time = Lanes(at.time.all());
         std::array::from_fn(|k| at.rotor[k + 1].times_plus(time, at.omega[k]) * Lanes::all(0.1))
     }
 }
